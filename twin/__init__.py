@@ -1,0 +1,1 @@
+"""The digital twin: machines, poses, touches and the physics that disturbs them."""

@@ -1,0 +1,102 @@
+"""Exceptions: what a user can put right, in one line, with what is available instead."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+
+class DesignError(Exception):
+    """Root of everything a user can put right; `matstd` shows it as one line and exits with 2.
+
+    The message is the one argument that `Exception` itself keeps, so that an error raised in a
+    worker process travels back unharmed; further facts are attributes.
+    """
+
+    def __init__(self, message: str, **facts: object) -> None:
+        super().__init__(message)
+        self.message = message
+        self.facts = facts
+
+    def __str__(self) -> str:
+        return self.message
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (_restore, (type(self), self.message, self.facts))
+
+
+def _restore(kind: type[DesignError], message: str, facts: dict[str, object]) -> DesignError:
+    error = kind.__new__(kind)
+    DesignError.__init__(error, message, **facts)
+    return error
+
+
+class UnknownAxis(DesignError, KeyError):
+    """An axis letter that the machine does not have."""
+
+    def __init__(self, axis: str, available: Iterable[str]) -> None:
+        available = list(available)
+        super().__init__(
+            f"unknown axis '{axis}'; this machine has {', '.join(available)}",
+            axis=axis,
+            available=available,
+        )
+
+
+class UnknownSymbol(DesignError, KeyError):
+    """An error parameter whose name is none of ISO 230-1, or none of this machine's."""
+
+    def __init__(self, symbol: str, available: Iterable[str]) -> None:
+        available = list(available)
+        shown = ", ".join(available[:12]) + (" ..." if len(available) > 12 else "")
+        super().__init__(
+            f"unknown error parameter '{symbol}'; available: {shown}",
+            symbol=symbol,
+            available=available,
+        )
+
+
+class UnknownEffect(DesignError, KeyError):
+    """An effect that is not in the library, or arguments it does not take."""
+
+
+class ShapeMismatch(DesignError, ValueError):
+    """Arrays whose shapes do not belong together."""
+
+
+class OutsideTravel(DesignError, ValueError):
+    """A reading beyond the travel of its axis."""
+
+
+class NotReachable(DesignError, ValueError):
+    """A pose or a touch that this machine cannot reach."""
+
+
+class NotBuildable(DesignError, ValueError):
+    """A standard that cannot be made; the message names the constraint that binds."""
+
+
+class NotEnoughData(DesignError, ValueError):
+    """Measurements too few or too uniform for what was asked; the message says what is possible."""
+
+
+class MissingLibrary(DesignError, ImportError):
+    """Something outside this package is needed for what was asked; the message names it."""
+
+
+class BadFile(DesignError, ValueError):
+    """A file that says something else than it should.
+
+    Args:
+        path: The file.
+        where: The line or key.
+        found: What stood there.
+        expected: What should stand there.
+    """
+
+    def __init__(self, path: str | Path, where: str, found: object, expected: str) -> None:
+        super().__init__(
+            f"{path}: {where}: found {found}, expected {expected}",
+            path=str(path),
+            where=where,
+            found=found,
+            expected=expected,
+        )

@@ -1,0 +1,111 @@
+"""Poses as matrices (..., 4, 4); `T_a_b` takes b coordinates to a coordinates."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def skew(v: Array) -> Array:
+    """Matrix of the cross product, ``skew(v) @ x == cross(v, x)``.
+
+    Args:
+        v: Vectors, shape (..., 3).
+
+    Returns:
+        Shape (..., 3, 3), skew-symmetric.
+    """
+    S = np.zeros((*np.shape(v), 3))
+    S[..., 0, 1], S[..., 0, 2] = -v[..., 2], v[..., 1]
+    S[..., 1, 0], S[..., 1, 2] = v[..., 2], -v[..., 0]
+    S[..., 2, 0], S[..., 2, 1] = -v[..., 1], v[..., 0]
+    return S
+
+
+def rotation(vector: Array) -> Array:
+    """Rotation matrix of a rotation vector (Rodrigues), exact for any angle.
+
+    ``R = 1 + sin(a)/a S + (1 - cos(a))/a^2 S^2`` with ``S = skew(vector)`` and ``a = |vector|``.
+
+    Args:
+        vector: Axis times angle, shape (..., 3), rad.
+
+    Returns:
+        Shape (..., 3, 3).
+    """
+    S = skew(np.asarray(vector, dtype=float))
+    angle = np.linalg.norm(vector, axis=-1)[..., None, None]
+    # np.sinc is sin(pi x)/(pi x): both factors stay accurate through angle zero.
+    first = np.sinc(angle / np.pi)
+    second = 0.5 * np.sinc(angle / (2.0 * np.pi)) ** 2
+    return np.eye(3) + first * S + second * (S @ S)
+
+
+def pose(R: Array | None = None, t: Array | None = None) -> Array:
+    """Pose from rotation matrices (..., 3, 3) and translations (..., 3), mm."""
+    shape = np.broadcast_shapes(
+        () if R is None else R.shape[:-2],
+        () if t is None else t.shape[:-1],
+    )
+    T = np.zeros((*shape, 4, 4))
+    T[..., :3, :3] = np.eye(3) if R is None else R
+    if t is not None:
+        T[..., :3, 3] = t
+    T[..., 3, 3] = 1.0
+    return T
+
+
+def turned_about(point: Array, R: Array, shift: Array | None = None) -> Array:
+    """Pose of a rotation about a point followed by a shift.
+
+    ``x -> point + R (x - point) + shift``.
+
+    Args:
+        point: Fixed point of the rotation, shape (..., 3), mm.
+        R: Rotations, shape (..., 3, 3).
+        shift: Translation afterwards, shape (..., 3), mm.
+
+    Returns:
+        Shape (..., 4, 4).
+    """
+    t = point - np.einsum("...ij,...j->...i", R, np.broadcast_to(point, (*R.shape[:-2], 3)))
+    return pose(R, t if shift is None else t + shift)
+
+
+def inverse(T: Array) -> Array:
+    """Inverse of rigid poses (..., 4, 4) by transposition; neighbours cancel: T_b_a of T_a_b."""
+    R = np.swapaxes(T[..., :3, :3], -1, -2)
+    return pose(R, -np.einsum("...ij,...j->...i", R, T[..., :3, 3]))
+
+
+def apply(T: Array, points: Array) -> Array:
+    """Coordinates of points after a pose: T (..., 4, 4) on points (..., 3), mm."""
+    return np.einsum("...ij,...j->...i", T[..., :3, :3], points) + T[..., :3, 3]
+
+
+def turn(T: Array, vectors: Array) -> Array:
+    """Directions after a pose: only the rotation of T (..., 4, 4) acts on vectors (..., 3)."""
+    return np.einsum("...ij,...j->...i", T[..., :3, :3], vectors)
+
+
+def fixed_xyz(angles: Array) -> Array:
+    """Rotations about the fixed x, then y, then z axis: ``R = Rz Ry Rx``.
+
+    Args:
+        angles: Shape (..., 3), rad.
+
+    Returns:
+        Shape (..., 3, 3).
+    """
+    a = np.asarray(angles, dtype=float)
+    axes = np.eye(3)
+    Rx, Ry, Rz = (rotation(a[..., i : i + 1] * axes[i]) for i in range(3))
+    return Rz @ Ry @ Rx
+
+
+def fixed_xyz_angles(R: Array) -> Array:
+    """Angles about fixed x, y, z of rotation matrices (..., 3, 3); inverse of `fixed_xyz`, rad."""
+    y = -np.arcsin(np.clip(R[..., 2, 0], -1.0, 1.0))
+    x = np.arctan2(R[..., 2, 1], R[..., 2, 2])
+    z = np.arctan2(R[..., 1, 0], R[..., 0, 0])
+    return np.stack([x, y, z], axis=-1)

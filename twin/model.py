@@ -1,0 +1,117 @@
+"""A machine with the effects that are in its model: exact deviations, and linear columns."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.effect import Contribution, Effect, Parameter, contribution
+from twin.frames import Array, apply, inverse
+from twin.kinematics import exact_tip, tip
+from twin.touches import Touches
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Chain plus effects; parameters of all effects stand in one vector, effect after effect.
+
+    Attributes:
+        chain: The machine.
+        effects: The physics in the model.
+    """
+
+    chain: Chain
+    effects: tuple[Effect, ...]
+
+    @cached_property
+    def parameters(self) -> tuple[tuple[Effect, Parameter], ...]:
+        """Every parameter with its effect, in the order of the parameter vector."""
+        return tuple((e, p) for e in self.effects for p in e.parameters)
+
+    @cached_property
+    def prior_sd(self) -> Array:
+        """Expected standard deviation of every parameter, (P,), base units."""
+        return np.array([p.sd for _, p in self.parameters])
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """`effect: parameter`, or the effect alone where it has one parameter."""
+        return tuple(
+            e.name if len(e.parameters) == 1 else f"{e.name}: {p.name}" for e, p in self.parameters
+        )
+
+    def columns(self, touches: Touches) -> Array:
+        """Deviation along the normal per unit of every parameter, first order, (N, P)."""
+        return columns(self.effects, touches)
+
+    def tip_columns(self, touches: Touches) -> Array:
+        """Deviation of the tip in the table frame per unit of every parameter, (N, 3, P).
+
+        What moves only the standard or the reading of the probe does not move the tip.
+        """
+        out = np.zeros((len(touches), 3, len(self.parameters)))
+        start = 0
+        for effect in self.effects:
+            for term in effect.terms(touches):
+                if term.where.part in ("twist", "place"):
+                    rows = getattr(touches.reach, term.where.part)
+                    per_unit = rows[:, term.where.link, term.where.component]
+                    out[:, :, start + term.parameter] += term.amount[:, None] * per_unit
+            start += len(effect.parameters)
+        return out
+
+    def contribution(self, touches: Touches, theta: Array) -> Contribution:
+        """What all effects add at every touch for a parameter vector (P,)."""
+        pairs: list[tuple[Effect, Array]] = []
+        start = 0
+        for effect in self.effects:
+            count = len(effect.parameters)
+            pairs.append((effect, theta[start : start + count]))
+            start += count
+        return contribution(pairs, touches)
+
+    def tip_deviation(self, touches: Touches, theta: Array) -> Array:
+        """Exact deviation of the tip in the table frame, actual minus nominal, (N, 3), mm."""
+        added = self.contribution(touches, theta)
+        actual = exact_tip(self.chain, touches.q, touches.length, added)
+        return actual - tip(self.chain, touches.q, touches.length)
+
+    def deviation(self, touches: Touches, theta: Array) -> Array:
+        """Deviation along the normal that a controller would measure, with the exact chain, (N,).
+
+        ``dev = -n . (tip deviation - shift of the standard) + bias``. Holds where the surface is
+        plane over the deviation; a curved one is met by moving the axes (`probe_paths`).
+        """
+        added = self.contribution(touches, theta)
+        actual = exact_tip(self.chain, touches.q, touches.length, added) - added.shift
+        moved = apply(inverse(touches.T_table_artefact), actual) - touches.ball_artefact
+        return -np.einsum("ni,ni->n", touches.normal, moved) + added.bias
+
+
+def columns(effects: Sequence[Effect], touches: Touches) -> Array:
+    """Deviation along the normal per unit of every parameter of some effects, first order.
+
+    Args:
+        effects: Any effects of the machine.
+        touches: N touches.
+
+    Returns:
+        Shape (N, P), mm per base unit of each parameter.
+    """
+    out = np.zeros((len(touches), sum(len(e.parameters) for e in effects)))
+    signature = touches.signature
+    start = 0
+    for effect in effects:
+        for term in effect.terms(touches):
+            part, link, component = term.where
+            if part == "bias":
+                per_unit = signature.bias
+            elif part == "shift":
+                per_unit = signature.shift[:, component]
+            else:
+                per_unit = getattr(signature, part)[:, link, component]
+            out[:, start + term.parameter] += term.amount * per_unit
+        start += len(effect.parameters)
+    return out

@@ -1,0 +1,50 @@
+"""The ordinary geometric model: what everybody models before asking what is missing."""
+
+import math
+
+from twin.chain import Chain
+from twin.effect import Effect
+from twin.effects.geometric import ComponentError
+from twin.effects.location import LocationError
+from twin.model import Model
+from twin.ranges import Ranges
+from twin.symbols import Family, Symbol
+
+
+def component_errors(chain: Chain, symbol: Symbol, sd: float) -> list[Effect]:
+    """One component error in the ordinary distributions.
+
+    Linear and parabolic over the range of the axis, and sinusoidal with free phase (sine and
+    cosine, one period over the range of a linear axis, one a turn of a rotary one). A spindle that
+    is not programmed stays at one angle, where an error can only be constant.
+    """
+    if not chain.link(symbol.link).programmed:
+        return [ComponentError(symbol, "constant", sd=sd)]
+    quarter = math.pi / 2.0
+    return [
+        ComponentError(symbol, "linear", sd=sd),
+        ComponentError(symbol, "parabolic", sd=sd),
+        ComponentError(symbol, "sinusoidal", sd=sd),
+        ComponentError(symbol, "sinusoidal", phase=quarter, sd=sd),
+    ]
+
+
+def ordinary_model(chain: Chain, ranges: Ranges | None = None) -> Model:
+    """Every component error in its ordinary distributions and every location error.
+
+    Set-ups of the standard are not in it: they belong to a run (`diagnosis`). The prior standard
+    deviations are those of amplitudes drawn from the ranges with random sign.
+
+    Args:
+        chain: The machine.
+        ranges: Expected amplitudes; None for the default ones.
+    """
+    ranges = ranges or Ranges()
+    effects: list[Effect] = []
+    for symbol in chain.symbols:
+        sd = ranges.sd(chain, symbol)
+        if symbol.family is Family.COMPONENT:
+            effects += component_errors(chain, symbol, sd)
+        else:
+            effects.append(LocationError(symbol, sd))
+    return Model(chain, tuple(effects))

@@ -1,0 +1,71 @@
+"""Error parameters by their ISO 230-1 names: `EXX`, `EC0Y`, `EX0w`, and what each one means.
+
+Two sentences hold for the whole house. The six components of an error are always in the letter
+order X Y Z A B C = (dx, dy, dz, ra, rb, rc), which is the second letter of the name. A component
+error is *tool side minus workpiece side* of its axis, in the directions of the body that the axis
+sits on, whichever side of the machine carries the axis.
+"""
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+
+LETTERS = "XYZABC"
+"""Second letter of a name -> index of the component."""
+
+_PATTERN = re.compile(r"E([XYZABC])(0?)([XYZUVWABCS]\d?|w|t)\Z")
+
+
+class Family(Enum):
+    """What kind of error a name stands for."""
+
+    COMPONENT = "component error of an axis (a function of its reading)"
+    LOCATION = "location error of an axis (a constant)"
+    SETUP = "set-up of the workpiece or the tool (a constant)"
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """One error parameter of ISO 230-1.
+
+    Attributes:
+        component: Index of the component in X Y Z A B C.
+        link: Name of the axis, or `w` (workpiece), `t` (tool).
+        family: Component, location or set-up.
+    """
+
+    component: int
+    link: str
+    family: Family
+
+    @property
+    def name(self) -> str:
+        """`EXX`, `EC0Y`, `EX0w`."""
+        zero = "" if self.family is Family.COMPONENT else "0"
+        return f"E{LETTERS[self.component]}{zero}{self.link}"
+
+    @property
+    def is_angular(self) -> bool:
+        """Whether the parameter is an angle (rad) rather than a length (mm)."""
+        return self.component >= 3
+
+
+def parse_symbol(name: str) -> Symbol | None:
+    """Symbol of a name, or None if the name is none of ISO 230-1.
+
+    Reference:
+        ISO 230-1:2012, 3.4 and annex A (names without comma and subscript).
+
+    Example:
+        >>> parse_symbol("EC0Y")
+        Symbol(component=5, link='Y', family=<Family.LOCATION: 'location error of an axis (a constant)'>)
+    """  # noqa: E501  (the output of the example is one line)
+    match = _PATTERN.match(name)
+    if match is None:
+        return None
+    letter, zero, link = match.groups()
+    if link in "wt":
+        family = Family.SETUP if zero else None
+    else:
+        family = Family.LOCATION if zero else Family.COMPONENT
+    return None if family is None else Symbol(LETTERS.index(letter), link, family)
