@@ -1,13 +1,23 @@
 """Component errors of an axis as functions of its own reading."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from twin.chain import Chain
-from twin.effect import Parameter, Term, Where
-from twin.shapes import ShapeName, shape
-from twin.symbols import Symbol
+from twin.effect import Effect, Parameter, Term, Where
+from twin.effects.kind import Kind, base_unit, component_symbol, counted, moving_axes, refusal
+from twin.ranges import Ranges
+from twin.shapes import SHAPES, ShapeName, scaled, shape
+from twin.symbols import Family, Symbol
 from twin.touches import Touches
+
+USAGE = "geometric(symbol,degree or shape)"
+HIGHEST = 12
+PROPOSED_DEGREE = 4
+_SHAPE = re.compile(r"([a-z]+)(?:,([\d.]+))?(?:@(-?[\d.]+(?:e-?\d+)?))?\Z")
 
 
 @dataclass(frozen=True)
@@ -64,3 +74,101 @@ class ComponentError:
 def component(chain: Chain, name: str, shape: ShapeName, **options: float) -> ComponentError:
     """Component error by its name; raises UnknownSymbol."""
     return ComponentError(chain.symbol(name), shape, **options)
+
+
+@dataclass(frozen=True)
+class HigherOrder:
+    """One component error of an axis up to some degree, or up to some harmonic.
+
+    ``E(q) = sum_k a_k T_k(u)``, k = 1 .. n, on a linear axis, with T_k the Chebyshev polynomials
+    (T_1 and T_2 are the linear and the parabolic distribution) and u the reading scaled to [-1, 1];
+    ``E(q) = sum_k s_k sin(k q) + c_k cos(k q)`` on a rotary one. Constants are location errors.
+    Parameters in mm or rad; expected to fall as 1/k^1.5 from the size of the class.
+
+    Attributes:
+        symbol: Which component of which axis.
+        degree: n.
+        sd: Expected standard deviation of the first coefficient, mm or rad.
+        rotary: Whether harmonics are meant.
+
+    Reference:
+        ISO 230-1:2012 (component errors); ISO 230-7 (harmonics of an axis of rotation).
+    """
+
+    symbol: Symbol
+    degree: int
+    sd: float
+    rotary: bool = False
+
+    kind = "geometric"
+
+    @property
+    def name(self) -> str:
+        """`geometric(EYX,4)`."""
+        return f"geometric({self.symbol.name},{self.degree})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Coefficients, by rising degree; sine before cosine."""
+        unit = base_unit(self.symbol)
+        out = []
+        for k in range(1, self.degree + 1):
+            for name in (f"sin{k}", f"cos{k}") if self.rotary else (f"T{k}",):
+                out.append(Parameter(name, unit, self.sd / k**1.5))
+        return tuple(out)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Twists of the axis."""
+        i = touches.chain.link_index(self.symbol.link)
+        where = Where("twist", i, self.symbol.component)
+        q = touches.reading(self.symbol.link)
+        if self.rotary:
+            harmonics = [f(k * q) for k in range(1, self.degree + 1) for f in (np.sin, np.cos)]
+            return tuple(Term(j, where, amount) for j, amount in enumerate(harmonics))
+        u = scaled(q, touches.chain.links[i])
+        basis = [np.ones_like(u), u]
+        for _ in range(1, self.degree):
+            basis.append(2.0 * u * basis[-1] - basis[-2])
+        return tuple(Term(k - 1, where, basis[k]) for k in range(1, self.degree + 1))
+
+
+def higher_order(chain: Chain, symbol: Symbol, degree: int) -> HigherOrder:
+    """One component error up to some degree, with the prior of the default ranges."""
+    rotary = chain.link(symbol.link).kind == "rotary"
+    return HigherOrder(symbol, degree, Ranges().sd(chain, symbol), rotary)
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> Effect:
+    """From the component error and a degree, or the name of a distribution."""
+    counted(USAGE, arguments, 2, 3)
+    symbol = component_symbol(chain, arguments[0])
+    rest = ",".join(arguments[1:])
+    if rest.isdigit() and 1 <= int(rest) <= HIGHEST:
+        return higher_order(chain, symbol, int(rest))
+    match = _SHAPE.match(rest)
+    word = next((s for s in SHAPES if match is not None and s == match.group(1)), None)
+    if match is None or word is None:
+        raise refusal(USAGE, arguments, f"a degree of 1 to {HIGHEST} or one of {', '.join(SHAPES)}")
+    _, periods, phase = match.groups()
+    sd = Ranges().sd(chain, symbol)
+    return ComponentError(symbol, word, float(periods or 1.0), float(phase or 0.0), sd)
+
+
+def propose(touches: Touches) -> Iterable[HigherOrder]:
+    """Every component error of an axis that moved, two degrees beyond the ordinary model."""
+    axes = moving_axes(touches)
+    for symbol in touches.chain.symbols:
+        if symbol.family is Family.COMPONENT and symbol.link in axes:
+            yield higher_order(touches.chain, symbol, PROPOSED_DEGREE)
+
+
+KIND = Kind(
+    word="geometric",
+    arguments="symbol,degree or shape",
+    formula="E = sum a_k T_k(u), k <= n (linear axis); sum s_k sin kq + c_k cos kq (rotary)",
+    units="a_k, s_k, c_k: µm or µrad",
+    typical="3 to 10 µm, 10 to 40 µrad; old machines ten times that",
+    source="ISO 230-1:2012; ISO 230-7",
+    make=make,
+    propose=propose,
+)

@@ -1,13 +1,18 @@
 """Location errors of axes, and the set-up errors of the workpiece and the tool: constants."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from twin.chain import Chain
 from twin.effect import Parameter, Term, Where
-from twin.symbols import Symbol
+from twin.effects.kind import Kind, counted, refusal
+from twin.ranges import Ranges
+from twin.symbols import Family, Symbol
 from twin.touches import Touches
+
+USAGE = "location(symbol)"
 
 
 @dataclass(frozen=True)
@@ -45,3 +50,32 @@ class LocationError:
         """A displacement of the link."""
         i = touches.chain.link_index(self.symbol.link)
         return (Term(0, Where("place", i, self.symbol.component), np.ones(len(touches))),)
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> LocationError:
+    """From the name of the constant, with the prior of the default ranges."""
+    counted(USAGE, arguments, 1, 1)
+    symbol = chain.symbol(arguments[0])
+    if symbol.family is Family.COMPONENT:
+        names = [s.name for s in chain.symbols if s.family is not Family.COMPONENT]
+        raise refusal(USAGE, arguments, f"one of {', '.join(names)}")
+    return LocationError(symbol, Ranges().sd(chain, symbol))
+
+
+def propose(touches: Touches) -> Iterable[LocationError]:
+    """Every location error; the set-ups of workpiece and tool are constants of the run."""
+    for symbol in touches.chain.symbols:
+        if symbol.family is Family.LOCATION:
+            yield LocationError(symbol, Ranges().sd(touches.chain, symbol))
+
+
+KIND = Kind(
+    word="location",
+    arguments="symbol",
+    formula="E = a, constant: squareness, line of a rotary axis, zero position, set-up",
+    units="a: µm or µrad",
+    typical="20 to 100 µm, 20 to 100 µrad when neglected; 2 to 10 µm, 10 to 30 µrad after care",
+    source="ISO 230-1:2012; ISO 230-7",
+    make=make,
+    propose=propose,
+)

@@ -1,0 +1,99 @@
+"""`Kind`: one word of the library of effects, with all that a user is told about it."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.effect import Effect
+from twin.errors import UnknownEffect
+from twin.frames import Array
+from twin.symbols import Family, Symbol
+from twin.touches import Touches
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A family of effects under one word of the trade.
+
+    Attributes:
+        word: First word of the names of its effects, `backlash`.
+        arguments: What stands in the brackets, for help: "axis"; empty where there are none.
+        formula: The closed formula, one line.
+        units: Of its parameters and inner parameters, as a user sees them.
+        typical: Size that is met in practice.
+        source: Where the formula and the size are from.
+        make: Effect from the arguments of its name; raises a child of DesignError.
+        propose: Every effect of the kind that makes sense for some touches.
+    """
+
+    word: str
+    arguments: str
+    formula: str
+    units: str
+    typical: str
+    source: str
+    make: Callable[[Chain, Sequence[str]], Effect]
+    propose: Callable[[Touches], Iterable[Effect]]
+
+    @property
+    def usage(self) -> str:
+        """`backlash(axis)`."""
+        return f"{self.word}({self.arguments})" if self.arguments else self.word
+
+
+def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:
+    """Exception for arguments that an effect does not take.
+
+    Args:
+        usage: How the effect is written.
+        found: The arguments that were given.
+        expected: What should stand there, with what is available.
+    """
+    word = usage.partition("(")[0]
+    given = f"{word}({','.join(found)})" if found else word
+    return UnknownEffect(f"effect '{given}': expected {usage}, {expected}")
+
+
+def counted(usage: str, arguments: Sequence[str], low: int, high: int) -> None:
+    """Check the number of arguments; raises UnknownEffect."""
+    if not low <= len(arguments) <= high:
+        number = f"{low}" if low == high else f"{low} to {high}"
+        raise refusal(usage, arguments, f"{number} argument{'' if high == 1 else 's'}")
+
+
+def component_symbol(chain: Chain, name: str) -> Symbol:
+    """Component error of an axis by its name; raises UnknownSymbol or UnknownEffect."""
+    symbol = chain.symbol(name)
+    if symbol.family is not Family.COMPONENT:
+        raise UnknownEffect(
+            f"'{name}' is a constant ({symbol.family.value}); expected a component error of an "
+            "axis, such as EXX"
+        )
+    return symbol
+
+
+def moving_axes(touches: Touches) -> list[str]:
+    """Programmed axes that stood at more than one reading, in chain order."""
+    return [axis for axis in touches.chain.programmed_axes if np.ptp(touches.reading(axis)) > 1e-6]
+
+
+def varies(values: Array) -> bool:
+    """Whether a record says more than one thing, and says it everywhere."""
+    return bool(np.all(np.isfinite(values)) and np.ptp(values) > 1e-6)
+
+
+def sensors(touches: Touches) -> list[str]:
+    """Sensors whose record varies and has no gap."""
+    return [name for name, values in touches.temperature.items() if varies(values)]
+
+
+def is_linear(chain: Chain, axis: str) -> bool:
+    """Whether an axis is a linear one; raises UnknownAxis."""
+    return chain.link(axis).kind == "linear"
+
+
+def base_unit(symbol: Symbol) -> str:
+    """Base unit of an error parameter: "rad" or "mm"."""
+    return "rad" if symbol.is_angular else "mm"
