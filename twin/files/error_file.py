@@ -1,0 +1,86 @@
+"""Error file (TOML, format "errors/1"): the errors of one machine, as distributions by name."""
+
+import math
+from pathlib import Path
+from typing import Literal
+
+from twin.chain import Chain
+from twin.effect import Effect
+from twin.effects.geometric import ComponentError
+from twin.effects.location import LocationError
+from twin.errors import BadFile, UnknownSymbol
+from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.frames import Array
+from twin.symbols import Family, Symbol
+from twin.units import DEG, UM, URAD
+
+
+class ErrorTable(Table):
+    """One error in one shape; a location error has an amplitude alone."""
+
+    shape: Literal["constant", "linear", "parabolic", "sinusoidal"] | None = None
+    amplitude: float
+    periods: float = 1.0
+    phase_deg: float = 0.0
+
+
+def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
+    """Errors of a machine as effects with their amplitudes (base units).
+
+    Raises:
+        BadFile: Unknown name or key, a shape missing or too many, a number that is none.
+    """
+    import numpy as np
+
+    data = parse_toml(read_text(path), path)
+    check_format(data, "errors/1", path)
+    out: list[tuple[Effect, Array]] = []
+    for name, tables in data.items():
+        if name == "format":
+            continue
+        try:
+            symbol = chain.symbol(name)
+        except UnknownSymbol as error:
+            raise BadFile(path, name, "an unknown error name", str(error).split("; ")[-1]) from None
+        several = isinstance(tables, list)
+        for i, table in enumerate(tables if several else [tables]):
+            key = f"{name}[{i}]" if several else name
+            entry = checked(ErrorTable, table, path, key)
+            unit = URAD if symbol.is_angular else UM
+            out.append((_effect(symbol, entry, path, key), np.array([entry.amplitude * unit])))
+    return out
+
+
+def _effect(symbol: Symbol, entry: ErrorTable, path: str | Path, key: str) -> Effect:
+    """Effect of one entry."""
+    if symbol.family is not Family.COMPONENT:
+        if entry.shape not in (None, "constant") or entry.periods != 1.0 or entry.phase_deg:
+            raise BadFile(path, key, f"shape {entry.shape!r}", "an amplitude alone: a constant")
+        return LocationError(symbol)
+    if entry.shape is None:
+        raise BadFile(path, f"{key}.shape", "nothing", "constant, linear, parabolic or sinusoidal")
+    if entry.shape != "sinusoidal" and (entry.periods != 1.0 or entry.phase_deg != 0.0):
+        raise BadFile(path, key, "periods or phase_deg", 'them only with shape = "sinusoidal"')
+    return ComponentError(symbol, entry.shape, entry.periods, entry.phase_deg * DEG)
+
+
+def errors_toml(errors: list[tuple[Effect, Array]]) -> str:
+    """Text of an error file for component and location errors, the inverse of `read_errors`."""
+    tables: dict[str, list[str]] = {}
+    for effect, theta in errors:
+        assert isinstance(effect, ComponentError | LocationError), effect
+        unit = URAD if effect.symbol.is_angular else UM
+        lines = [f"amplitude = {float(theta[0]) / unit!r}"]
+        if isinstance(effect, ComponentError):
+            lines.insert(0, f'shape = "{effect.shape}"')
+            if effect.shape == "sinusoidal":
+                lines += [
+                    f"periods = {float(effect.periods)!r}",
+                    f"phase_deg = {math.degrees(effect.phase)!r}",
+                ]
+        tables.setdefault(effect.symbol.name, []).append("\n".join(lines))
+    text = 'format = "errors/1"\n'
+    for name, entries in tables.items():
+        head = f"[{name}]" if len(entries) == 1 else f"[[{name}]]"
+        text += "".join(f"\n{head}\n{entry}\n" for entry in entries)
+    return text

@@ -1,0 +1,59 @@
+"""Machine file (TOML, "machine/1"): a chain in ISO notation and what is known of each axis."""
+
+from pathlib import Path
+
+from pydantic import Field
+
+from twin.chain import Axis, Chain, make_chain
+from twin.errors import BadFile, DesignError
+from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.units import DEG
+
+Vector = tuple[float, float, float]
+Pair = tuple[float, float]
+
+
+class AxisTable(Table):
+    """`[axis.X]`: range in mm or degrees, point in mm, direction."""
+
+    range: Pair | None = Field(default=None, strict=False)
+    point: Vector | None = Field(default=None, strict=False)
+    direction: Vector | None = Field(default=None, strict=False)
+
+
+class WorkpieceTable(Table):
+    """`[workpiece]`: origin of the table frame, mm."""
+
+    origin: Vector = Field(default=(0.0, 0.0, 0.0), strict=False)
+
+
+class MachineTable(Table):
+    """The whole file."""
+
+    format: str
+    name: str
+    chain: str
+    axis: dict[str, AxisTable]
+    workpiece: WorkpieceTable = WorkpieceTable()
+
+
+def read_machine(path: str | Path) -> Chain:
+    """Machine from its file.
+
+    Raises:
+        BadFile: File, key, what stood there, what was expected.
+    """
+    data = parse_toml(read_text(path), path)
+    check_format(data, "machine/1", path)
+    table = checked(MachineTable, data, path)
+    axes = {}
+    for name, axis in table.axis.items():
+        factor = DEG if name[:1] in "ABC" else 1.0
+        if axis.range is not None and not axis.range[0] < axis.range[1]:
+            raise BadFile(path, f"axis.{name}.range", list(axis.range), "the smaller reading first")
+        reach = None if axis.range is None else (axis.range[0] * factor, axis.range[1] * factor)
+        axes[name] = Axis(reach, axis.point, axis.direction)
+    try:
+        return make_chain(table.name, table.chain, axes, table.workpiece.origin)
+    except DesignError as error:
+        raise BadFile(path, "chain and axis", str(error), "a machine that fits together") from error

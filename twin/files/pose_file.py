@@ -1,0 +1,83 @@
+"""Pose file (CSV): axis readings, a row a pose, `X_mm,...,B_deg,...[,tool_length_mm]`."""
+
+from pathlib import Path
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.errors import BadFile
+from twin.files.table import CsvTable
+from twin.files.toml import read_text
+from twin.frames import Array
+from twin.units import DEG
+
+
+def reading_columns(chain: Chain) -> dict[str, tuple[str, float]]:
+    """Column name and factor to base units of every axis: `X_mm`, `B_deg`."""
+    return {
+        name: (f"{name}_mm", 1.0) if chain.link(name).kind == "linear" else (f"{name}_deg", DEG)
+        for name in chain.axes
+    }
+
+
+def readings(table: CsvTable, chain: Chain) -> Array:
+    """Readings (N, A) of a table; a spindle that is not programmed may be left out (zero).
+
+    Raises:
+        BadFile: A column missing, or a cell that is no number.
+    """
+    names = reading_columns(chain)
+    table.require(names[axis][0] for axis in chain.programmed_axes)
+    q = np.zeros((len(table), len(chain.axes)))
+    for i, axis in enumerate(chain.axes):
+        column, factor = names[axis]
+        if column in table:
+            q[:, i] = table.numbers(column) * factor
+    return q
+
+
+def outside_travel(table: CsvTable, chain: Chain, q: Array, slack: float = 1e-6) -> BadFile | None:
+    """The first reading beyond the travel of its axis, as an exception to raise or to tell.
+
+    Args:
+        table: The table, for line numbers.
+        chain: The machine.
+        q: Readings, (N, A).
+        slack: How far beyond is still within, as a part of the travel.
+    """
+    for i, (axis, (column, factor)) in enumerate(reading_columns(chain).items()):
+        low, high = chain.link(axis).range
+        margin = slack * (high - low)
+        beyond = np.flatnonzero((q[:, i] < low - margin) | (q[:, i] > high + margin))
+        if len(beyond):
+            row = int(beyond[0])
+            travel = f"{low / factor:g} to {high / factor:g}"
+            return table.bad(
+                row,
+                column,
+                f"{q[row, i] / factor:.6g}",
+                f"a reading within the travel {travel} of axis {axis}",
+            )
+    return None
+
+
+def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
+    """Poses and tool lengths.
+
+    Returns:
+        Readings (N, A), mm and rad, and tool lengths (N,), mm, zero where the file has none.
+
+    Raises:
+        BadFile: File, line and column, what stood there, what was expected.
+    """
+    table = CsvTable(read_text(path), path)
+    known = [column for column, _ in reading_columns(chain).values()] + ["tool_length_mm"]
+    table.allow_only(known)
+    if not len(table):
+        raise BadFile(path, "table", "no rows", "a row a pose")
+    q = readings(table, chain)
+    beyond = outside_travel(table, chain, q)
+    if beyond is not None:
+        raise beyond
+    length = table.numbers("tool_length_mm") if "tool_length_mm" in table else np.zeros(len(table))
+    return q, length

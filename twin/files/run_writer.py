@@ -1,0 +1,94 @@
+"""Writer of run files (CSV with a TOML head in comments, format "run/1")."""
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+
+from twin.files.pose_file import reading_columns
+from twin.files.run_file import FORCE, NORMAL, POINT
+from twin.files.whole import write_whole
+from twin.frames import Array, fixed_xyz_angles
+from twin.run import Run
+from twin.units import DEG, UM
+
+
+def write_run(path: str | Path, run: Run, machine: str) -> None:
+    """Write a run file, whole or not at all; `read_run` gives the same measurements back.
+
+    Args:
+        path: The file.
+        run: Measurements with one probe and one stated uncertainty or one a row.
+        machine: Path of the machine file as it shall stand in the head (relative to `path`).
+    """
+    write_whole(path, run_text(run, machine))
+
+
+def run_text(run: Run, machine: str) -> str:
+    """Text of a run file."""
+    t = run.touches
+    common_u = bool(np.all(run.u == run.u[0]))
+    out = io.StringIO()
+    out.write('# format = "run/1"\n')
+    out.write(f'# machine = "{machine}"\n')
+    out.write(
+        f"# probe = {{ radius_mm = {float(t.radius[0])!r}, length_mm = {float(t.length[0])!r} }}\n"
+    )
+    if common_u:
+        out.write(f"# u_um = {float(run.u[0]) / UM:.12g}\n")
+    for setup in t.setups:
+        T = setup.T_table_artefact
+        angles = fixed_xyz_angles(T[:3, :3]) / DEG
+        out.write(f"# [setup.{setup.name}]\n")
+        out.write(f"# origin_mm = [{', '.join(f'{v:.9f}' for v in T[:3, 3])}]\n")
+        out.write(f"# rotation_deg = [{', '.join(f'{v:.10f}' for v in angles)}]\n")
+    columns = _columns_out(run, common_u)
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values(), strict=True))
+    return out.getvalue()
+
+
+def _cells(values: Array, digits: int) -> list[str]:
+    return [f"{v:.{digits}f}" for v in values]
+
+
+def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
+    """Cells of every column."""
+    t = run.touches
+    columns: dict[str, list[str]] = {
+        "feature": list(t.feature),
+        "setup": [t.setups[i].name for i in t.setup],
+        "pose": [str(i) for i in t.pose],
+        "time_s": _cells(t.time, 3),
+    }
+    names = reading_columns(t.chain)
+    for axis in t.chain.programmed_axes:
+        column, factor = names[axis]
+        columns[column] = _cells(t.reading(axis) / factor, 7 if factor == 1.0 else 9)
+    columns |= {p: _cells(t.point[:, i], 7) for i, p in enumerate(POINT)}
+    columns |= {n: _cells(t.normal[:, i], 12) for i, n in enumerate(NORMAL)}
+    columns |= {f"dir{axis}": _cells(t.last_move(axis), 0) for axis in t.chain.rotary_axes}
+    columns |= {f"T_{sensor}_degC": _cells(v, 3) for sensor, v in t.temperature.items()}
+    columns |= _optional_columns(run, common_u)
+    # the deviation is in the readings, but only to their digits; instruments state it themselves
+    columns["dev_um"] = _cells(run.deviation / UM, 6)
+    return columns
+
+
+def _optional_columns(run: Run, common_u: bool) -> dict[str, list[str]]:
+    """Cells of the columns that not every run has."""
+    t = run.touches
+    columns: dict[str, list[str]] = {}
+    if t.spindle_rpm is not None:
+        columns["spindle_rpm"] = [f"{v:g}" for v in t.spindle_rpm]
+    if t.force is not None:
+        columns |= {name: [f"{v:g}" for v in t.force[:, i]] for i, name in enumerate(FORCE)}
+    if not common_u:
+        columns["u_um"] = [f"{v / UM:.12g}" for v in run.u]
+    if run.repeat is not None:
+        columns["repeat"] = [str(v) for v in run.repeat]
+    if np.any(run.split != ""):
+        columns["split"] = list(run.split)
+    return columns

@@ -1,0 +1,104 @@
+"""CSV tables at the border: columns by name, every fault with its line."""
+
+import csv
+import io
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from twin.errors import BadFile
+from twin.frames import Array
+
+
+class CsvTable:
+    """A table of text cells with the line number of every row.
+
+    Args:
+        text: The table with its header line.
+        path: The file, for messages.
+        first_line: Line number of the header in the file.
+    """
+
+    def __init__(self, text: str, path: str | Path, first_line: int = 1) -> None:
+        self.path = path
+        reader = csv.reader(io.StringIO(text))
+        rows = [(first_line + reader.line_num - 1, row) for row in reader if any(row)]
+        if not rows:
+            raise BadFile(path, f"line {first_line}", "nothing", "a line of column names")
+        self.header_line, header = rows[0]
+        self.columns = [name.strip() for name in header]
+        for name in self.columns:
+            if self.columns.count(name) > 1:
+                raise BadFile(path, f"line {self.header_line}", f"column {name} twice", "it once")
+        self.lines = [line for line, _ in rows[1:]]
+        self.cells = [row for _, row in rows[1:]]
+        for line, row in zip(self.lines, self.cells, strict=True):
+            if len(row) != len(self.columns):
+                raise BadFile(
+                    path, f"line {line}", f"{len(row)} cells", f"{len(self.columns)} as in the head"
+                )
+
+    def __len__(self) -> int:
+        return len(self.cells)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.columns
+
+    def require(self, names: Iterable[str]) -> None:
+        """Raise BadFile for the first column that is missing."""
+        for name in names:
+            if name not in self.columns:
+                raise BadFile(
+                    self.path,
+                    f"line {self.header_line}",
+                    f"columns {', '.join(self.columns)}",
+                    f"a column {name} among them",
+                )
+
+    def allow_only(self, known: Sequence[str], pattern: str = "") -> None:
+        """Raise BadFile for the first column that is not known."""
+        for name in self.columns:
+            if name not in known:
+                raise BadFile(
+                    self.path,
+                    f"line {self.header_line}",
+                    f"column {name!r}",
+                    f"one of {', '.join(known)}{pattern}",
+                )
+
+    def text(self, name: str) -> list[str]:
+        """Cells of a column."""
+        i = self.columns.index(name)
+        return [row[i].strip() for row in self.cells]
+
+    def numbers(self, name: str, empty: float | None = None, finite: bool = True) -> Array:
+        """Column as numbers, (N,).
+
+        Args:
+            name: The column.
+            empty: What an empty cell means; None refuses it.
+            finite: Whether NaN and infinity are refused.
+
+        Raises:
+            BadFile: Line, what stood there.
+        """
+        out = np.empty(len(self))
+        for i, cell in enumerate(self.text(name)):
+            if not cell and empty is not None:
+                out[i] = empty
+                continue
+            try:
+                out[i] = float(cell)
+            except ValueError:
+                out[i] = math.nan
+                if finite or cell:
+                    raise self.bad(i, name, repr(cell), "a number") from None
+            if finite and not math.isfinite(out[i]):
+                raise self.bad(i, name, cell, "a finite number")
+        return out
+
+    def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:
+        """The exception for a cell."""
+        return BadFile(self.path, f"line {self.lines[row]}, column {name}", found, expected)

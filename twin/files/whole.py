@@ -1,0 +1,55 @@
+"""Files are written whole or not at all, and a user's file is never lost."""
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from twin.errors import DesignError
+
+
+@contextmanager
+def written_whole(path: str | Path) -> Iterator[Path]:
+    """A neighbour name to write to; renamed to `path` when the block ends well, else removed.
+
+    Raises:
+        DesignError: The folder cannot be written to.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(
+            prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent
+        )
+    except OSError as error:
+        raise DesignError(f"{path}: cannot be written ({error.strerror})") from error
+    os.close(handle)
+    # mkstemp makes private files; an output is as readable as any other file of the user
+    umask = os.umask(0)
+    os.umask(umask)
+    os.chmod(name, 0o666 & ~umask)
+    part = Path(name)
+    try:
+        yield part
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
+    """Write a text file (UTF-8) whole or not at all.
+
+    Args:
+        path: The file.
+        text: Its text, lines ended by a line feed.
+        newline: How lines end in the file: a control wants carriage return and line feed.
+    """
+    with written_whole(path) as part:
+        part.write_bytes(text.replace("\n", newline).encode("utf-8"))
+
+
+def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:
+    """Raise DesignError if a file is there already and nobody asked to overwrite it."""
+    if not force and Path(path).exists():
+        raise DesignError(f"{path}: is there already; choose another name or give --force")
