@@ -14,18 +14,24 @@ from twin.symbols import Family, Symbol
 def component_errors(chain: Chain, symbol: Symbol, sd: float) -> list[Effect]:
     """One component error in the ordinary distributions.
 
-    Linear and parabolic over the range of the axis, and sinusoidal with free phase (sine and
-    cosine, one period over the range of a linear axis, one a turn of a rotary one). A spindle that
-    is not programmed stays at one angle, where an error can only be constant.
+    On a linear axis linear and parabolic over its range, and sinusoidal with free phase (sine and
+    cosine, one period over the range); on a rotary axis, whose errors repeat every turn, harmonic 1
+    with free phase. A spindle that is not programmed stays at one angle, where an error can only be
+    constant.
     """
-    if not chain.link(symbol.link).programmed:
+    link = chain.link(symbol.link)
+    if not link.programmed:
         return [ComponentError(symbol, "constant", sd=sd)]
-    quarter = math.pi / 2.0
+    waves: list[Effect] = [
+        ComponentError(symbol, "sinusoidal", sd=sd),
+        ComponentError(symbol, "sinusoidal", phase=math.pi / 2.0, sd=sd),
+    ]
+    if link.kind == "rotary":
+        return waves
     return [
         ComponentError(symbol, "linear", sd=sd),
         ComponentError(symbol, "parabolic", sd=sd),
-        ComponentError(symbol, "sinusoidal", sd=sd),
-        ComponentError(symbol, "sinusoidal", phase=quarter, sd=sd),
+        *waves,
     ]
 
 
