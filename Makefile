@@ -1,0 +1,36 @@
+# All set-up on a fresh machine with Python 3.11 or later, git and make:
+#   make design   the main job, into out/hsm600u
+#   make test     the tests
+PYTHON ?= python3
+BIN := .venv/bin
+ifeq ($(OS),Windows_NT)
+BIN := .venv/Scripts
+PYTHON = py -3
+endif
+
+.PHONY: design test proof lint benchmark clean
+
+.venv/installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[test]"
+	$(BIN)/python -c "open('.venv/installed', 'w').close()"
+
+design: .venv/installed
+	$(BIN)/matstd design examples/hsm600u.toml -o out/hsm600u --force
+
+test: .venv/installed
+	$(BIN)/python -m pytest
+
+proof: .venv/installed
+	$(BIN)/python -m pytest -m slow
+
+lint: .venv/installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+benchmark: .venv/installed
+	$(BIN)/python -m benchmarks
+
+clean:
+	$(PYTHON) -c "import shutil; [shutil.rmtree(d, ignore_errors=True) for d in ('.venv', 'build', 'out')]"

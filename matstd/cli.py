@@ -1,0 +1,70 @@
+"""Commands of `matstd`: arguments, exit codes, and one line for what a user can put right."""
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+
+COMMANDS = {
+    "design": "the main job: sensitivities, standard, STEP and STL, programs, proof, report",
+    "volumetric": "exact deviation of the tool point in the table frame, a row a pose",
+    "sensitivity": "sensitivity of the tool point to every error parameter at every pose",
+    "simulate": "run an emitted probing program on the machine's twin and write a run file",
+    "compare": "measurements against the model: where it fails",
+    "diagnose": "which effect is missing in the model, and how far the error falls with it",
+    "effects": "the effects that can be added, each with its formula and units",
+}
+
+EXIT_BAD_INPUT = 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Returns:
+        0 when it did its work, 2 after one line on what the user can put right; a fault of our own
+        keeps its traceback.
+    """
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    parser = _parser(arguments)
+    args = parser.parse_args(arguments)
+    from twin.errors import DesignError
+
+    try:
+        return int(args.run(args) or 0)
+    except DesignError as error:
+        print(f"matstd {args.command}: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except KeyboardInterrupt:
+        print(f"matstd {args.command}: stopped; nothing half-written is left", file=sys.stderr)
+        return 130
+
+
+def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+    """Parser that imports only the command that is called, so that help answers at once."""
+    parser = argparse.ArgumentParser(
+        prog="matstd",
+        description="Designs freeform material standards for multi-axis machine tools, probes them "
+        "on the machine's digital twin, and names the physics that a model lacks.",
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="what results depend on")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    called = next((word for word in arguments if not word.startswith("-")), None)
+    for name, line in COMMANDS.items():
+        command = commands.add_parser(name, help=line, description=line[0].upper() + line[1:] + ".")
+        if name == called:
+            module = importlib.import_module(f"matstd.commands.{name}")
+            module.add_arguments(command)
+            command.set_defaults(run=module.run)
+    return parser
+
+
+class _Version(argparse.Action):
+    """Prints the versions that a result depends on."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from matstd.versions import versions
+
+        for name, version in versions().items():
+            print(f"{name} {version}")
+        parser.exit()
