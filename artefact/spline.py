@@ -1,0 +1,122 @@
+"""Tensor-product B-splines over the plane: values and derivatives at many points at once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.errors import ShapeMismatch
+from twin.frames import Array
+
+
+def clamped_knots(low: float, high: float, count: int, degree: int) -> Array:
+    """Equally spaced clamped knots for `count` poles on [low, high], shape (count + degree + 1,).
+
+    Raises:
+        ShapeMismatch: Fewer poles than degree + 1.
+    """
+    if count < degree + 1:
+        raise ShapeMismatch(f"{count} poles cannot carry degree {degree}; at least {degree + 1}")
+    inner = np.linspace(low, high, count - degree + 1)
+    return np.concatenate([np.full(degree, low), inner, np.full(degree, high)])
+
+
+def greville(knots: Array, degree: int) -> Array:
+    """Abscissae at which poles must stand so that the spline reproduces ``x = u`` exactly.
+
+    ``g_i = (t_{i+1} + ... + t_{i+k}) / k``, shape (poles,).
+    """
+    count = len(knots) - degree - 1
+    windows = np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree)[:count]
+    means: Array = windows.mean(axis=1)
+    return means
+
+
+def basis(knots: Array, degree: int, x: Array) -> tuple[np.ndarray, Array]:
+    """The degree + 1 B-splines that do not vanish at each x, with two derivatives.
+
+    Cox-de Boor recursion on all x at once; the derivatives come from the two lower degrees,
+    ``N'_{i,k} = k (N_{i,k-1} / (t_{i+k} - t_i) - N_{i+1,k-1} / (t_{i+k+1} - t_{i+1}))``.
+    Beyond the ends the outermost polynomial is continued.
+
+    Args:
+        knots: Clamped or not, ascending, shape (poles + degree + 1,).
+        degree: At least 2.
+        x: Shape (N,).
+
+    Returns:
+        Index of the first of them, shape (N,); values for the orders 0, 1, 2, (3, N, degree + 1).
+
+    Reference:
+        Piegl and Tiller, The NURBS Book, algorithms A2.2 and A2.3.
+    """
+    count = len(knots) - degree - 1
+    span = np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1)
+    ladder = [np.ones((len(x), 1))]
+    for d in range(1, degree + 1):
+        ladder.append(_raised(knots, span, x, ladder[-1], d))
+    first = _derivative(knots, span, ladder[degree - 1], degree)
+    second = _derivative(
+        knots, span, _derivative(knots, span, ladder[degree - 2], degree - 1), degree
+    )
+    return span - degree, np.stack([ladder[degree], first, second])
+
+
+def _raised(knots: Array, span: np.ndarray, x: Array, lower: Array, d: int) -> Array:
+    """Basis values of degree d, (N, d + 1), from those of degree d - 1, (N, d)."""
+    values = np.zeros((len(x), d + 1))
+    for r in range(d):
+        left, right = knots[span - d + 1 + r], knots[span + 1 + r]
+        share = lower[:, r] / (right - left)
+        values[:, r] += (right - x) * share
+        values[:, r + 1] += (x - left) * share
+    return values
+
+
+def _derivative(knots: Array, span: np.ndarray, lower: Array, d: int) -> Array:
+    """Derivatives of degree d, (N, d + 1), from values or derivatives of degree d - 1."""
+    values = np.zeros((len(span), d + 1))
+    for r in range(d):
+        share = d * lower[:, r] / (knots[span + 1 + r] - knots[span - d + 1 + r])
+        values[:, r] -= share
+        values[:, r + 1] += share
+    return values
+
+
+@dataclass(frozen=True, eq=False)
+class Jet:
+    """Height and its derivatives at N points, each of shape (N,)."""
+
+    h: Array
+    hu: Array
+    hv: Array
+    huu: Array
+    huv: Array
+    hvv: Array
+
+
+def jet(knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array) -> Jet:
+    """Height field of a tensor spline with its first and second derivatives.
+
+    ``h(u, v) = sum_ij N_i(u) N_j(v) poles_ij``.
+
+    Args:
+        knots_u: Shape (nu + ku + 1,), mm.
+        knots_v: Shape (nv + kv + 1,), mm.
+        degree: (ku, kv).
+        poles: Control heights, shape (nu, nv), mm.
+        uv: Shape (N, 2), mm.
+
+    Returns:
+        Derivatives to the second order.
+    """
+    first_u, bu = basis(knots_u, degree[0], uv[:, 0])
+    first_v, bv = basis(knots_v, degree[1], uv[:, 1])
+    i = first_u[:, None, None] + np.arange(degree[0] + 1)[None, :, None]
+    j = first_v[:, None, None] + np.arange(degree[1] + 1)[None, None, :]
+    local = poles[i, j]  # (N, ku + 1, kv + 1)
+    along_u = np.einsum("oni,nij->onj", bu, local)  # (3, N, kv + 1)
+    value = {
+        (a, b): np.einsum("nj,nj->n", along_u[a], bv[b])
+        for a, b in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+    }
+    return Jet(*value.values())
