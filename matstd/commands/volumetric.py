@@ -1,0 +1,39 @@
+"""`matstd volumetric`: exact deviation of the tool point, a row a pose."""
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("machine", metavar="MACHINE.toml", help="the machine")
+    parser.add_argument("errors", metavar="ERRORS.toml", help="its errors")
+    parser.add_argument("poses", metavar="POSES.csv", help="axis readings, a row a pose")
+    parser.add_argument("-o", "--output", metavar="OUT.csv", required=True, help="to be written")
+    parser.add_argument("--force", action="store_true", help="overwrite the output")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write dx_um, dy_um, dz_um in the table frame, actual minus nominal."""
+    import numpy as np
+
+    from twin.files.error_file import read_errors
+    from twin.files.machine_file import read_machine
+    from twin.files.pose_file import read_poses
+    from twin.files.whole import refuse_to_overwrite, write_whole
+    from twin.model import Model
+    from twin.touches import at_poses
+    from twin.units import UM
+
+    refuse_to_overwrite(args.output, args.force)
+    chain = read_machine(args.machine)
+    errors = read_errors(args.errors, chain)
+    q, length = read_poses(args.poses, chain)
+    model = Model(chain, tuple(effect for effect, _ in errors))
+    theta = np.concatenate([amplitude for _, amplitude in errors] or [np.zeros(0)])
+    deviation = model.tip_deviation(at_poses(chain, q, length), theta) / UM
+    lines = ["dx_um,dy_um,dz_um"]
+    lines += [",".join(f"{v:.9f}" for v in row) for row in deviation]
+    write_whole(args.output, "\n".join(lines) + "\n")
+    size = np.linalg.norm(deviation, axis=1)
+    print(f"{args.output}: {len(q)} poses, mean {size.mean():.3f} µm, worst {size.max():.3f} µm")
+    return 0

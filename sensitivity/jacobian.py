@@ -1,0 +1,72 @@
+"""Sensitivity of the tool point to every error parameter of a machine, anywhere."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sensitivity.blocks import blocks
+from twin.chain import Chain
+from twin.frames import Array
+from twin.kinematics import checked_readings, reach
+from twin.symbols import Family, Symbol
+
+_POSES_A_BLOCK = 1000  # keeps the intermediate arrays of one block in the processor's cache
+
+
+def jacobian(
+    chain: Chain, q: Array, length: Array | float, symbols: Sequence[Symbol] | None = None
+) -> Array:
+    """First-order deviation of the tool point per unit of every error parameter.
+
+    ``dp/dE`` in closed form: a component error by the twist of its axis, a location or set-up
+    error by the displacement of its link (`twin.kinematics.reach`). A component error counts with
+    the value it has at the reading of the pose, whatever its distribution.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+        length: Tool length, scalar or (N,), mm.
+        symbols: P parameters; None for all of `chain.symbols`, in that order.
+
+    Returns:
+        Shape (N, P, 3), table frame, mm/mm and mm/rad.
+
+    Reference:
+        D-MT paper, eq. (3); the influence matrix of Bringmann and Knapp.
+    """
+    q = checked_readings(chain, q)
+    symbols = chain.symbols if symbols is None else symbols
+    length = np.broadcast_to(np.asarray(length, dtype=float), (len(q),))
+    is_twist = np.array([s.family is Family.COMPONENT for s in symbols], dtype=bool)
+    link = np.array([chain.link_index(s.link) for s in symbols], dtype=int)
+    component = np.array([s.component for s in symbols], dtype=int)
+    out = np.empty((len(q), len(symbols), 3))
+    for rows in blocks(len(q), _POSES_A_BLOCK):
+        reached = reach(chain, q[rows], length[rows])
+        out[rows, is_twist] = reached.twist[:, link[is_twist], component[is_twist]]
+        out[rows, ~is_twist] = reached.place[:, link[~is_twist], component[~is_twist]]
+    return out
+
+
+def sensitivity(
+    chain: Chain, q: Array, length: Array | float, symbols: Sequence[Symbol] | None = None
+) -> Array:
+    """``S = |dp/dE|`` of every error parameter at every pose.
+
+    It is one for every translational component error everywhere, and the distance from the axis of
+    the rotation for an angular one: a map of it says how far from the axis a pose is, and the
+    signed ``n . dp/dE`` of touches (`sensitivity.information`) what a touch can tell.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+        length: Tool length, scalar or (N,), mm.
+        symbols: P parameters; None for all of `chain.symbols`.
+
+    Returns:
+        Shape (N, P), mm/mm (the same in µm/µm) and mm/rad.
+
+    Reference:
+        D-MT paper, eq. (3).
+    """
+    return np.linalg.norm(jacobian(chain, q, length, symbols), axis=-1)
