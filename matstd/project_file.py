@@ -1,0 +1,219 @@
+"""Project file (TOML, format "project/1"): all that `matstd design` is told."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+
+from twin.chain import Chain
+from twin.errors import BadFile, UnknownAxis, UnknownSymbol
+from twin.files.machine_file import Pair, Vector, read_machine
+from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.frames import fixed_xyz, pose
+from twin.ranges import DEFAULT_RANGES, Ranges
+from twin.touches import Setup
+from twin.units import DEG, UM, URAD
+
+
+class ProbeTable(Table):
+    """`[probe]`: ball radius and length from the gauge point to the ball centre, mm."""
+
+    radius_mm: float = Field(gt=0.0, le=25.0)
+    length_mm: float = Field(gt=0.0)
+
+
+class ErrorsTable(Table):
+    """`[errors]`: amplitude ranges by class and by parameter, µm or µrad."""
+
+    classes: dict[str, Pair] = Field(default_factory=dict, strict=False)
+    parameters: dict[str, Pair] = Field(default_factory=dict, strict=False)
+
+
+class MonteCarloTable(Table):
+    """`[montecarlo]`: number of random machines."""
+
+    draws: int = Field(default=2000, ge=100)
+
+
+class StandardTable(Table):
+    """`[standard]`: what shall be made."""
+
+    name: str = "FFS-1"
+    material: str = "steel 1.2379"
+    expansion_per_K: float = Field(default=11.0e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
+    patches: int = Field(default=10, ge=8, le=16)
+    touches: int = Field(default=480, ge=100, le=2000)
+
+
+class SetupTable(Table):
+    """`[setup.a]`: pose of the standard in the table frame."""
+
+    origin_mm: Vector = Field(default=(0.0, 0.0, 0.0), strict=False)
+    rotation_deg: Vector = Field(default=(0.0, 0.0, 0.0), strict=False)
+
+
+class SimulationTable(Table):
+    """`[simulation]`: the proof on the twin."""
+
+    noise_um: float = Field(default=1.0, gt=0.0)
+    machines: int = Field(default=3, ge=1, le=50)
+
+
+class ProjectTable(Table):
+    """The whole file."""
+
+    format: str
+    machine: str
+    seed: int = Field(ge=0)
+    probe: ProbeTable
+    workspace: dict[str, object] = Field(default_factory=dict)
+    montecarlo: MonteCarloTable = MonteCarloTable()
+    errors: ErrorsTable = ErrorsTable()
+    standard: StandardTable = StandardTable()
+    setup: dict[str, SetupTable] = Field(default_factory=lambda: {"a": SetupTable()})
+    simulation: SimulationTable = SimulationTable()
+
+
+@dataclass(frozen=True)
+class Project:
+    """A design project in base units.
+
+    Attributes:
+        path: The project file.
+        machine_path: The machine file.
+        chain: The machine.
+        seed: Of all random numbers.
+        probe_radius: mm.
+        probe_length: Gauge point to ball centre, mm.
+        workspace: Smallest and largest reading of every programmed axis, mm or rad.
+        poses: Number of poses for the maps.
+        draws: Number of random machines for the maps.
+        ranges: Expected amplitudes of the errors.
+        standard: Name, material, expansion, number of patches and touches.
+        setup: Where the standard stands on the table.
+        noise: Standard deviation of one simulated touch, mm.
+        machines: Number of random machines of the proof.
+    """
+
+    path: Path
+    machine_path: Path
+    chain: Chain
+    seed: int
+    probe_radius: float
+    probe_length: float
+    workspace: dict[str, tuple[float, float]]
+    poses: int
+    draws: int
+    ranges: Ranges
+    standard: StandardTable
+    setup: Setup
+    noise: float
+    machines: int
+
+
+def read_project(path: str | Path) -> Project:
+    """Project with its machine.
+
+    Raises:
+        BadFile: File, key, what stood there, what was expected.
+    """
+    path = Path(path)
+    data = parse_toml(read_text(path), path)
+    check_format(data, "project/1", path)
+    table = checked(ProjectTable, data, path)
+    machine_path = path.parent / table.machine
+    chain = read_machine(machine_path)
+    workspace, poses = _workspace(table, chain, path)
+    if len(table.setup) != 1:
+        raise BadFile(path, "setup", f"{len(table.setup)} set-ups", "one set-up")
+    name, setup = next(iter(table.setup.items()))
+    return Project(
+        path=path,
+        machine_path=machine_path,
+        chain=chain,
+        seed=table.seed,
+        probe_radius=table.probe.radius_mm,
+        probe_length=table.probe.length_mm,
+        workspace=workspace,
+        poses=poses,
+        draws=table.montecarlo.draws,
+        ranges=_ranges(table.errors, chain, path),
+        standard=table.standard,
+        setup=Setup(
+            name,
+            pose(fixed_xyz(np.array(setup.rotation_deg) * DEG), np.array(setup.origin_mm)),
+        ),
+        noise=table.simulation.noise_um * UM,
+        machines=table.simulation.machines,
+    )
+
+
+def _workspace(
+    table: ProjectTable, chain: Chain, path: Path
+) -> tuple[dict[str, tuple[float, float]], int]:
+    """Ranges of readings that the user cares about, and the number of poses."""
+    given = dict(table.workspace)
+    poses = given.pop("poses", 2000)
+    if not isinstance(poses, int) or not 100 <= poses <= 100_000:
+        raise BadFile(path, "workspace.poses", repr(poses), "a whole number, 100 to 100000")
+    out = {axis: chain.link(axis).range for axis in chain.programmed_axes}
+    for axis, pair in given.items():
+        if axis not in chain.programmed_axes:
+            raise BadFile(
+                path,
+                f"workspace.{axis}",
+                "an unknown axis",
+                str(UnknownAxis(axis, chain.programmed_axes)).split("; ")[-1],
+            )
+        low, high = _pair(pair, path, f"workspace.{axis}")
+        factor = 1.0 if chain.link(axis).kind == "linear" else DEG
+        travel = chain.link(axis).range
+        if low * factor < travel[0] or high * factor > travel[1]:
+            raise BadFile(
+                path,
+                f"workspace.{axis}",
+                [low, high],
+                f"within the travel {travel[0] / factor:g} to {travel[1] / factor:g}",
+            )
+        out[axis] = (low * factor, high * factor)
+    return out, poses
+
+
+def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
+    """Two finite numbers, the smaller first."""
+    numbers = isinstance(value, list) and len(value) == 2
+    if not numbers or not all(isinstance(v, int | float) and np.isfinite(v) for v in value):
+        raise BadFile(path, key, repr(value), "two numbers")
+    low, high = float(value[0]), float(value[1])
+    if not low <= high:
+        raise BadFile(path, key, [low, high], "the smaller number first")
+    return low, high
+
+
+def _ranges(table: ErrorsTable, chain: Chain, path: Path) -> Ranges:
+    """Amplitude ranges in base units."""
+    by_class = dict(DEFAULT_RANGES)
+    for name, pair in table.classes.items():
+        if name not in by_class:
+            raise BadFile(
+                path, f"errors.classes.{name}", "an unknown class", f"one of {', '.join(by_class)}"
+            )
+        angular = name.split("_")[-1] in ("rotation", "tilt", "squareness") or name == "rotary_zero"
+        by_class[name] = _amplitudes(pair, URAD if angular else UM, path, f"errors.classes.{name}")
+    by_name = {}
+    for name, pair in table.parameters.items():
+        key = f"errors.parameters.{name}"
+        try:
+            symbol = chain.symbol(name)
+        except UnknownSymbol as error:
+            raise BadFile(path, key, "an unknown error name", str(error).split("; ")[-1]) from None
+        by_name[name] = _amplitudes(pair, URAD if symbol.is_angular else UM, path, key)
+    return Ranges(by_class, by_name)
+
+
+def _amplitudes(pair: Pair, unit: float, path: Path, key: str) -> tuple[float, float]:
+    if not 0.0 <= pair[0] <= pair[1]:
+        raise BadFile(path, key, list(pair), "amplitudes from zero up, the smaller first")
+    return pair[0] * unit, pair[1] * unit

@@ -1,0 +1,164 @@
+"""The border: what is read comes out in base units; every fault is one clear line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from twin.effects.geometric import ComponentError
+from twin.errors import BadFile
+from twin.files.error_file import errors_toml, read_errors
+from twin.files.machine_file import read_machine
+from twin.files.pose_file import read_poses
+from twin.units import DEG, UM, URAD
+
+MACHINE = """format = "machine/1"
+name = "test"
+chain = "[w C' B' X' f Y Z (C1) t]"
+[axis.X]
+range = [-400.0, 400.0]
+[axis.B]
+range = [-110.0, 30.0]
+point = [0.0, 0.0, -420.0]
+[axis.C]
+range = [-360.0, 360.0]
+[axis.Y]
+range = [-300.0, 300.0]
+[axis.Z]
+range = [-500.0, 0.0]
+[workpiece]
+origin = [0.0, 0.0, -500.0]
+"""
+ERRORS = """format = "errors/1"
+[EXX]
+shape = "linear"
+amplitude = 12.0
+[EC0Y]
+amplitude = 15.0
+[[EXC]]
+shape = "sinusoidal"
+amplitude = 10.0
+periods = 2
+phase_deg = 30.0
+[[EXC]]
+shape = "constant"
+amplitude = 1.0
+"""
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    path = tmp_path / "machine.toml"
+    path.write_text(MACHINE)
+    return path
+
+
+def test_machine_in_base_units(machine: Path) -> None:
+    chain = read_machine(machine)
+    assert chain.axes == ("C", "B", "X", "Y", "Z", "C1")
+    assert chain.programmed_axes == ("C", "B", "X", "Y", "Z")
+    assert chain.link("B").range == (-110.0 * DEG, 30.0 * DEG)
+    assert chain.table_origin.tolist() == [0.0, 0.0, -500.0]
+    assert len(chain.symbols) == 71
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("[axis.B]", "[axis.Q]", "unknown axis 'Q'"),
+        ("f Y Z", "f Y Q", "unknown axis 'Q'"),
+        ("[-300.0, 300.0]", "[300.0, -300.0]", r"axis\.Y\.range.*smaller reading first"),
+        ("[-300.0, 300.0]", "[nan, 300.0]", r"axis\.Y\.range.*finite"),
+        ("[-300.0, 300.0]", '["a", 300.0]', r"axis\.Y\.range"),
+        ("[-300.0, 300.0]", "[-300.0]", r"axis\.Y\.range"),
+        ("point", "pivot", r"axis\.B\.pivot: found an unknown key"),
+        ("C' B' X' f Y", "C' B' X f Y", "stands on the workpiece side"),
+        ("C' B' X' f Y Z", "C' C' X' f Y Z", "stands twice"),
+        ('"machine/1"', '"machine/2"', 'format.*expected "machine/1"'),
+        ("[-500.0, 0.0]", "[-500.0, 0.0", "TOML"),
+        ("[axis.Z]\nrange = [-500.0, 0.0]\n", "", "axis Z: no range"),
+    ],
+)
+def test_bad_machine(machine: Path, old: str, new: str, expected: str) -> None:
+    assert old in MACHINE
+    machine.write_text(MACHINE.replace(old, new))
+    with pytest.raises(BadFile, match=expected) as caught:
+        read_machine(machine)
+    assert str(machine) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_and_cut_off(tmp_path: Path) -> None:
+    with pytest.raises(BadFile, match="No such file"):
+        read_machine(tmp_path / "none.toml")
+    cut = tmp_path / "cut.toml"
+    cut.write_text(MACHINE[: len(MACHINE) // 3])
+    with pytest.raises(BadFile):
+        read_machine(cut)
+
+
+def test_errors_in_base_units_and_back(machine: Path, tmp_path: Path) -> None:
+    chain = read_machine(machine)
+    path = tmp_path / "errors.toml"
+    path.write_text(ERRORS)
+    errors = read_errors(path, chain)
+    assert [e.name for e, _ in errors][:2] == ["geometric(EXX,linear)", "location(EC0Y)"]
+    assert [float(t[0]) for _, t in errors] == [12 * UM, 15 * URAD, 10 * UM, 1 * UM]
+    sine = errors[2][0]
+    assert isinstance(sine, ComponentError)
+    assert (sine.periods, sine.phase) == (2.0, 30.0 * DEG)
+    again = tmp_path / "again.toml"
+    again.write_text(errors_toml(errors))
+    for (e, t), (f, s) in zip(errors, read_errors(again, chain), strict=True):
+        assert e.name == f.name
+        assert t == pytest.approx(s, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("[EXX]", "[EXQ]", "EXQ: found an unknown error name"),
+        ("[EXX]", "[EX0Y]", "unknown error name"),  # displacing a linear axis along Y says nothing
+        ("[EC0Y]", "[EC0Y]\nshape = 'linear'", "an amplitude alone"),
+        ('"linear"\n', '"cubic"\n', r"EXX\.shape"),
+        ('shape = "linear"\n', "", r"EXX\.shape: found nothing"),
+        ("12.0", "nan", r"EXX\.amplitude.*finite"),
+        ("12.0", "'12'", r"EXX\.amplitude"),
+        ("amplitude = 12.0", "amplitudes = 12.0", "EXX"),
+        ("amplitude = 12.0", "amplitude = 12.0\nphase_deg = 3.0", "only with shape"),
+    ],
+)
+def test_bad_errors(machine: Path, tmp_path: Path, old: str, new: str, expected: str) -> None:
+    path = tmp_path / "errors.toml"
+    path.write_text(ERRORS.replace(old, new))
+    with pytest.raises(BadFile, match=expected):
+        read_errors(path, read_machine(machine))
+
+
+def test_poses(machine: Path, tmp_path: Path) -> None:
+    path = tmp_path / "poses.csv"
+    path.write_text("X_mm,Y_mm,Z_mm,B_deg,C_deg,tool_length_mm\n100,50,-200,-90,0,160\n")
+    q, length = read_poses(path, read_machine(machine))
+    assert q == pytest.approx(np.array([[0.0, -90 * DEG, 100.0, 50.0, -200.0, 0.0]]))
+    assert length.tolist() == [160.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("X_mm,Y_mm,Z_mm,B_deg\n1,2,-3,4\n", "line 1.*a column C_deg"),
+        ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n1,2,-3,4,nan\n", "line 2, column C_deg.*finite"),
+        ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n1,2,-3,4,\n", "line 2, column C_deg.*a number"),
+        ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n1,2,-3,4,5\n1,2\n", "line 3: found 2 cells"),
+        ("X_mm,Y_mm,Z_mm,B_deg,C_deg,D\n1,2,-3,4,5,6\n", "line 1: found column 'D'"),
+        ("X_mm,X_mm,Y_mm,Z_mm,B_deg,C_deg\n1,1,2,-3,4,5\n", "column X_mm twice"),
+        ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n900,2,-3,4,5\n", "line 2, column X_mm: found 900.*travel"),
+        ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n", "no rows"),
+        ("", "column names"),
+    ],
+)
+def test_bad_poses(machine: Path, tmp_path: Path, text: str, expected: str) -> None:
+    path = tmp_path / "poses.csv"
+    path.write_text(text)
+    with pytest.raises(BadFile, match=expected):
+        read_poses(path, read_machine(machine))

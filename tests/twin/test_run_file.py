@@ -1,0 +1,146 @@
+"""Run files: read, mended where it can be done without guessing, refused where it cannot."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from twin.errors import BadFile
+from twin.files.run_file import read_run
+from twin.files.run_writer import write_run
+from twin.touches import computed_deviation
+from twin.units import NM, UM
+
+MACHINE = """format = "machine/1"
+name = "test"
+chain = "[w C' f X Y Z t]"
+[axis.X]
+range = [-400.0, 400.0]
+[axis.Y]
+range = [-300.0, 300.0]
+[axis.Z]
+range = [-500.0, 0.0]
+[axis.C]
+range = [-360.0, 360.0]
+[workpiece]
+origin = [0.0, 0.0, -500.0]
+"""
+HEAD = """# format = "run/1"
+# machine = "machine.toml"
+# probe = { radius_mm = 3.0, length_mm = 160.0 }
+# u_um = 0.6
+# [setup.a]
+# origin_mm = [10.0, 0.0, 0.0]
+# rotation_deg = [0.0, 0.0, 90.0]
+"""
+COLUMNS = "feature,setup,pose,time_s,X_mm,Y_mm,Z_mm,C_deg,px_mm,py_mm,pz_mm,nx,ny,nz,dirC,T_s_degC"
+# The ball centre in the table frame is (20, 0, 40): X 20, Z -300 - 160 + 500; in the artefact
+# frame, at (10, 0, 0) turned by 90 deg, it is (0, -10, 40). A horizontal face at z = 36.998 is
+# believed to stand 2 um too high.
+ROW = "a,a,0,1.5,20.0,0.0,-300.0,0.0,0.0,-10.0,36.998,0.0,0.0,1.0,1,20.5"
+
+
+def write(folder: Path, rows: list[str], head: str = HEAD, columns: str = COLUMNS) -> Path:
+    (folder / "machine.toml").write_text(MACHINE)
+    path = folder / "run.csv"
+    path.write_text(head + columns + "\n" + "\n".join(rows) + "\n")
+    return path
+
+
+def later(row: str, time: float) -> str:
+    return row.replace(",1.5,", f",{time},")
+
+
+def test_deviation_by_hand(tmp_path: Path) -> None:
+    run = read_run(write(tmp_path, [ROW]))
+    assert run.deviation == pytest.approx([2.0 * UM], abs=0.001 * NM)
+    assert run.u.tolist() == [0.6 * UM]
+    assert run.touches.ball_artefact[0] == pytest.approx([0.0, -10.0, 40.0], abs=NM)
+    assert run.touches.last_move("C").tolist() == [1.0]
+    # the probe comes down: Z ran towards minus, X and Y stood
+    assert [run.touches.last_move(a)[0] for a in "XYZ"] == [0.0, 0.0, -1.0]
+    assert run.remarks == ("T_s_degC is constant at 20.5 degC: it cannot explain anything",)
+
+
+def test_a_stated_deviation_goes_before_the_readings(tmp_path: Path) -> None:
+    run = read_run(write(tmp_path, [ROW + ",7.25"], columns=COLUMNS + ",dev_um"))
+    assert run.deviation == pytest.approx([7.25 * UM], abs=0.001 * NM)
+
+
+def test_what_is_written_is_read_back(tmp_path: Path) -> None:
+    columns = COLUMNS + ",u_um,split,spindle_rpm,repeat"
+    rows = [ROW + ",0.5,train,600,1", later(ROW, 9.0) + ",0.7,test,1200,2"]
+    run = read_run(write(tmp_path, rows, columns=columns))
+    write_run(tmp_path / "again.csv", run, "machine.toml")
+    again = read_run(tmp_path / "again.csv")
+    assert again.deviation == pytest.approx(run.deviation, abs=0.001 * NM)
+    assert computed_deviation(again.touches) == pytest.approx(run.deviation, abs=0.1 * NM)
+    assert again.u == pytest.approx(run.u)
+    assert again.split.tolist() == ["train", "test"]
+    assert again.touches.spindle_rpm is not None
+    assert again.touches.spindle_rpm.tolist() == [600.0, 1200.0]
+    assert again.touches.temperature["s"].tolist() == [20.5, 20.5]
+    np.testing.assert_allclose(
+        again.touches.setups[0].T_table_artefact,
+        run.touches.setups[0].T_table_artefact,
+        atol=NM,
+    )
+
+
+@pytest.mark.parametrize(
+    ("rows", "remark"),
+    [
+        ([ROW, ROW], "line 10: 1 rows stand twice"),
+        ([later(ROW, 5.0), later(ROW, 2.0)], "line 10: time_s goes back from 5 to 2"),
+        ([ROW.replace("20.5", ""), later(ROW, 2.0)], "line 9: T_s_degC has no number in 1 rows"),
+        ([ROW.replace("20.5", "nan"), later(ROW, 2.0)], "the sensor is left out"),
+        ([ROW, later(ROW, 3.0)], "T_s_degC is constant at 20.5"),
+        ([ROW.replace(",0.0,0.0,1.0,", ",0.0,0.0,1.0005,")], "normal of length 1.0005"),
+    ],
+)
+def test_what_can_be_mended_is_mended_and_told(
+    tmp_path: Path, rows: list[str], remark: str
+) -> None:
+    run = read_run(write(tmp_path, rows))
+    if "constant" in remark or len(rows) > 1:
+        assert any(remark in told for told in run.remarks), run.remarks
+    else:
+        assert remark in run.remarks[0]
+    assert len(run) >= 1
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("nz,", "", ""), "a column nz"),
+        (("dirC", "dirQ", ""), "column 'dirQ'"),
+        (("", "", "0.0,0.0,1.0,|0.0,0.0,2.0,"), "normal of length 2"),
+        (("", "", ",a,0,|,b,0,"), "column setup: found 'b'"),
+        (("", "", "36.998|nan"), "finite"),
+        (("", "", "-300.0|-0.3"), "units are mixed up"),
+    ],
+)
+def test_refused(tmp_path: Path, change: tuple[str, str, str], expected: str) -> None:
+    old, new, cell = change
+    row = ROW.replace(*cell.split("|")) if cell else ROW
+    columns = COLUMNS.replace(old, new) if old else COLUMNS
+    if "column nz" in expected:
+        row = row.replace(",1.0,1,", ",1,")
+    path = write(tmp_path, [row], columns=columns)
+    with pytest.raises(BadFile, match=expected):
+        read_run(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("# u_um = 0.6\n", "", "u_um.*standard uncertainty"),
+        ("# u_um = 0.6\n", "# u_um = -1.0\n", "u_um"),
+        ("radius_mm = 3.0, ", "", r"probe\.radius_mm"),
+        ("run/1", "run/9", "format"),
+        ("# machine", "# colour = 1\n# machine", "colour"),
+    ],
+)
+def test_bad_head(tmp_path: Path, old: str, new: str, expected: str) -> None:
+    with pytest.raises(BadFile, match=expected):
+        read_run(write(tmp_path, [ROW], head=HEAD.replace(old, new)))
