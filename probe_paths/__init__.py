@@ -1,0 +1,1 @@
+"""From a standard to iTNC 530 probing programs, and from a program's text back to measurements."""

@@ -1,0 +1,171 @@
+"""Room for the probe: heights at which nothing stands in the way, and gaps at a touch."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from artefact.body import Plate
+from artefact.patch import Meeting
+from artefact.standard import Standard
+from probe_paths.probe import Probe
+from twin.chain import Chain
+from twin.frames import Array, apply, inverse, turn
+from twin.kinematics import linear_directions, table_to_tool, tip
+from twin.touches import Labels, Setup
+
+TABLE_THICKNESS = 60.0
+"""How much of the table below its face is kept clear, mm."""
+
+_SWING = 7
+"""Samples of every rotary axis over one move: both axes turn, in no order that is known."""
+
+
+class Obstacles(NamedTuple):
+    """Balls (points with radii) whose hull holds everything solid on the table, table frame."""
+
+    points: Array  # (K, 3)
+    radii: Array  # (K,)
+
+
+def obstacles(standard: Standard, setup: Setup, table_radius: float) -> Obstacles:
+    """Corners of base, core and columns, the spheres, and the rim of the table."""
+    points = [_box(standard.base.half_size, 0.0, standard.base.thickness)]
+    for name, column in standard.columns.items():
+        patch = standard.features[name]
+        corners = _box(column.patch.half_size, -column.patch.depth, column.top)
+        points.append(apply(column.patch.T_artefact_patch, corners))
+        assert patch is column.patch
+    if standard.core is not None:
+        points.append(_ring(standard.core.high_radius, standard.core.height))
+    solid = np.concatenate(points)
+    centres = np.array([s.centre for s in standard.spheres]).reshape(-1, 3)
+    on_table = apply(setup.T_table_artefact, np.concatenate([solid, centres]))
+    rim = _ring(table_radius, 0.0)
+    radii = [np.zeros(len(solid)), [s.radius for s in standard.spheres], np.zeros(len(rim))]
+    return Obstacles(np.concatenate([on_table, rim]), np.concatenate(radii))
+
+
+def _box(half_size: tuple[float, float], low: float, high: float) -> Array:
+    x, y = half_size
+    return np.array([[a, b, c] for a in (-x, x) for b in (-y, y) for c in (low, high)])
+
+
+def _ring(radius: float, height: float, sides: int = 32) -> Array:
+    angle = np.arange(sides) * (2.0 * np.pi / sides)
+    return np.stack(
+        [radius * np.cos(angle), radius * np.sin(angle), np.full(sides, height)], axis=-1
+    )
+
+
+def readings_at(chain: Chain, rotary: Array) -> Array:
+    """Readings (N, A) with given rotary readings (N, R), rad, and every other axis at zero."""
+    q = np.zeros((len(rotary), len(chain.axes)))
+    q[:, [chain.axis_index(name) for name in chain.rotary_axes]] = rotary
+    return q
+
+
+def top_height(chain: Chain, rotary: Array, solid: Obstacles, probe: Probe) -> Array:
+    """Reading of Z at which the lowest point of the tool is level with the highest obstacle.
+
+    Args:
+        chain: The machine.
+        rotary: Readings of the rotary axes, shape (V, R), rad.
+        solid: What stands on the table, table frame.
+        probe: In the spindle.
+
+    Returns:
+        Shape (V,), mm.
+    """
+    q = readings_at(chain, rotary)
+    up = linear_directions(chain, q)[:, :, chain.linear_axes.index("Z")]
+    highest = (up @ solid.points.T + solid.radii).max(axis=1)
+    outline = turn(table_to_tool(chain, q)[:, None], probe.outline())  # (V, M, 3)
+    below = np.einsum("vmi,vi->vm", outline, up).min(axis=1)
+    below = np.minimum(below, -probe.radius)
+    level: Array = highest - below - np.einsum("vi,vi->v", up, tip(chain, q, probe.length))
+    return level
+
+
+def swing_height(chain: Chain, path: Array, solid: Obstacles, probe: Probe) -> Array:
+    """Highest `top_height` while the rotary axes turn along a path, whichever turns first.
+
+    Args:
+        chain: The machine.
+        path: Rotary readings in order, shape (W, R), rad.
+        solid: What stands on the table, table frame.
+        probe: In the spindle.
+
+    Returns:
+        Of each of the W - 1 moves, mm.
+    """
+    axes = path.shape[1]
+    share = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, _SWING)] * axes), axis=-1)
+    share = share.reshape(-1, axes)
+    between = path[:-1, None] + share * (path[1:] - path[:-1])[:, None]  # (W - 1, S, R)
+    heights = top_height(chain, between.reshape(-1, axes), solid, probe)
+    highest: Array = heights.reshape(len(path) - 1, -1).max(axis=1)
+    return highest
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """Looks at touches one by one: what is in the way of ball, stylus, body and spindle.
+
+    Attributes:
+        chain: The machine.
+        standard: What is touched.
+        setup: Where it is believed to stand.
+        probe: In the spindle.
+        table_radius: Of the table's face, mm.
+    """
+
+    chain: Chain
+    standard: Standard
+    setup: Setup
+    probe: Probe
+    table_radius: float
+
+    def gap(self, q: Array) -> tuple[Array, Labels]:
+        """Gap between the probe above its ball and anything solid at readings (N, A).
+
+        Returns:
+            Smallest gap (N,), mm, and the name of what is nearest (N,).
+        """
+        T_table_tool = table_to_tool(self.chain, q)
+        axis = T_table_tool[:, :3, 2]
+        centre = tip(self.chain, q, self.probe.length)
+        T_artefact_table = inverse(self.setup.T_table_artefact)
+        near = self.standard.clearance(
+            apply(T_artefact_table, centre), turn(T_artefact_table, axis), self.probe.shape
+        )
+        place, cover = self.probe.shape.stations()
+        stations = centre[:, None] + place[:, None] * axis[:, None]
+        r = self.table_radius
+        table = Plate((r, r), r, -TABLE_THICKNESS, 0.0)
+        to_table = table.distance(stations.reshape(-1, 3)).reshape(len(q), -1) - cover
+        nearest = np.minimum(to_table.min(axis=1), table.distance(centre) - self.probe.radius)
+        on_table = nearest < near.distance
+        names = np.where(on_table, "the table", near.body.astype(str))
+        return np.where(on_table, nearest, near.distance), names
+
+    def met(self, q: Array, direction: Array, distance: Array, margin: float) -> Labels:
+        """What a ball meets on its way, in words; empty where nothing.
+
+        Args:
+            q: Readings at the start, (N, A).
+            direction: Of the motion, table frame, (N, 3).
+            distance: Length of the way, (N,), mm.
+            margin: Added to the ball's radius, mm.
+        """
+        T_artefact_table = inverse(self.setup.T_table_artefact)
+        hit = self.standard.contact(
+            apply(T_artefact_table, tip(self.chain, q, self.probe.length)),
+            turn(T_artefact_table, direction),
+            self.probe.radius + margin,
+        )
+        words = np.array(
+            [f"{m.value} of {f}" if f else "" for m, f in zip(hit.meeting, hit.feature, strict=True)]
+        )
+        is_met = (hit.meeting != Meeting.NOTHING) & ~(hit.travel > distance)
+        return np.where(is_met, words, "")
