@@ -1,0 +1,60 @@
+"""Report pages: one self-contained HTML file each, nothing loaded from anywhere."""
+
+import base64
+import math
+
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+
+from matstd.versions import versions
+from twin.files.whole import write_whole
+
+
+def write_page(path: str | Path, template: str, **content: object) -> None:
+    """Render a template of `matstd/templates` into one file, written whole or not at all.
+
+    Args:
+        path: The page.
+        template: Name of the template, which extends `page.html`.
+        content: What it shows; a missing name is our own mistake and raises.
+    """
+    environment = Environment(
+        loader=PackageLoader("matstd"),
+        autoescape=select_autoescape(["html"]),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"digits": digits, "percent": percent, "p_value": p_value}
+    environment.globals |= {"picture": picture, "versions": versions}
+    write_whole(path, environment.get_template(template).render(**content))
+
+
+def picture(path: str | Path) -> str:
+    """A PNG or SVG file as a data address, so that the page stands alone."""
+    path = Path(path)
+    kind = {".png": "image/png", ".svg": "image/svg+xml"}[path.suffix]
+    return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+
+
+def digits(value: float, significant: int = 3) -> str:
+    """A number with so many significant digits, without an exponent where it is readable."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    exponent = math.floor(math.log10(abs(value)))
+    if not -4 <= exponent <= 6:
+        return f"{value:.{significant - 1}e}"
+    return f"{value:.{max(0, significant - 1 - exponent)}f}"
+
+
+def percent(value: float) -> str:
+    """A share in percent."""
+    return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"
+
+
+def p_value(value: float) -> str:
+    """A probability; what is beyond all doubt is not given more digits than it has."""
+    return "< 1e-12" if value < 1e-12 else f"{value:.2g}"
