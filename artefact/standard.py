@@ -123,6 +123,12 @@ class Standard:
         surfaces: tuple[Surface, ...] = (*self.patches, *self.spheres, self.plane)
         return {surface.name: surface for surface in surfaces}
 
+    @property
+    def face_names(self) -> tuple[str, ...]:
+        """Names that faces of a solid of this standard carry: features, seat, holes, bores."""
+        holes = [name for hole in self.holes for name in (hole.name, f"{hole.name}_BORE")]
+        return (*self.features, "SEAT", *holes)
+
     @cached_property
     def columns(self) -> dict[str, Column]:
         """The column under each patch, by the patch's name."""

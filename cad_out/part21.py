@@ -1,0 +1,126 @@
+"""Surfaces of a STEP file read from its text alone: the witness that knows no CAD kernel."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from twin.errors import BadFile
+from twin.frames import Array
+
+_ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);\s*(?=#\d+\s*=|ENDSEC)", re.S)
+_FACE = re.compile(r"ADVANCED_FACE\('([^']*)',\(([^)]*)\),#(\d+),\.([TF])\.\)")
+_SPLINE = "B_SPLINE_SURFACE_WITH_KNOTS("
+_REFERENCE = re.compile(r"#(\d+)")
+
+
+@dataclass(frozen=True, eq=False)
+class SplineFace:
+    """A B-spline surface as it stands in the file: degrees, full knot vectors, poles (U, V, 3)."""
+
+    degree: tuple[int, int]
+    knots: tuple[Array, Array]
+    poles: Array
+
+    def points(self, uv: Array) -> Array:
+        """Points at parameters (N, 2) by scipy, (N, 3), mm."""
+        from scipy.interpolate import NdBSpline
+
+        spline = NdBSpline(self.knots, self.poles, k=self.degree)
+        points: Array = spline(uv)
+        return points
+
+
+@dataclass(frozen=True, eq=False)
+class SphereFace:
+    """A sphere as it stands in the file."""
+
+    centre: Array
+    radius: float
+
+
+def read_faces(path: Path) -> dict[str, SplineFace | SphereFace | None]:
+    """Named faces of a STEP file with the surface under each.
+
+    Args:
+        path: ISO 10303-21 text.
+
+    Returns:
+        Spline and sphere faces by name; None for a named face on any other surface.
+
+    Raises:
+        BadFile: No data section, a face that refers to nothing, or two faces of one name.
+    """
+    text = path.read_text(encoding="utf-8")
+    entities = {int(key): re.sub(r"\s*\n\s*", "", value) for key, value in _ENTITY.findall(text)}
+    if not entities:
+        raise BadFile(path, "DATA", "no entities", "a STEP file")
+    faces: dict[str, SplineFace | SphereFace | None] = {}
+    for number, entity in entities.items():
+        match = _FACE.match(entity)
+        if match is None or not match[1]:
+            continue
+        if match[1] in faces:
+            raise BadFile(path, f"#{number}", f"a second face '{match[1]}'", "names used once")
+        surface = entities.get(int(match[3]))
+        if surface is None:
+            raise BadFile(path, f"#{number}", f"a reference to #{match[3]}", "an entity")
+        faces[match[1]] = _surface(entities, surface)
+    return faces
+
+
+def file_unit_is_millimetre(path: Path) -> bool:
+    """Whether the length unit of the shape is the millimetre."""
+    text = path.read_text(encoding="utf-8")
+    units = dict(
+        re.findall(r"#(\d+)\s*=\s*\(\s*LENGTH_UNIT\(\)\s*NAMED_UNIT\(\*\)\s*([^;]*)\);", text)
+    )
+    shape = re.search(r"ADVANCED_BREP_SHAPE_REPRESENTATION\('[^']*',\([^)]*\),#(\d+)\)", text)
+    if shape is None:
+        return False
+    context = re.search(rf"#{shape[1]}\s*=(.*?);", text, re.S)
+    assigned = (
+        re.search(r"GLOBAL_UNIT_ASSIGNED_CONTEXT\(\(([^)]*)\)\)", context[1]) if context else None
+    )
+    lengths = (
+        [units[key] for key in _REFERENCE.findall(assigned[1]) if key in units] if assigned else []
+    )
+    return bool(lengths) and all("SI_UNIT(.MILLI.,.METRE.)" in unit for unit in lengths)
+
+
+def _surface(entities: dict[int, str], text: str) -> SplineFace | SphereFace | None:
+    if text.startswith(_SPLINE):
+        return _spline(entities, text)
+    if text.startswith("SPHERICAL_SURFACE("):
+        _, axis, radius = text[len("SPHERICAL_SURFACE(") : -1].split(",")
+        origin = _REFERENCE.findall(entities[int(axis.lstrip("#"))])[0]
+        return SphereFace(_point(entities[int(origin)]), float(radius))
+    return None
+
+
+def _spline(entities: dict[int, str], text: str) -> SplineFace:
+X
+    fields = _fields(text[len(_SPLINE) : -1])
+    rows = [_REFERENCE.findall(row) for row in fields[3].strip("()").split("),(")]
+    poles = np.array([[_point(entities[int(key)]) for key in row] for row in rows])
+    counts = [np.array(fields[k].strip("()").split(","), dtype=int) for k in (8, 9)]
+    values = [np.array(fields[k].strip("()").split(","), dtype=float) for k in (10, 11)]
+    knots = (np.repeat(values[0], counts[0]), np.repeat(values[1], counts[1]))
+    return SplineFace((int(fields[1]), int(fields[2])), knots, poles)
+
+
+def _fields(text: str) -> list[str]:
+    """Split at the commas outside all parentheses."""
+    fields, depth, begin = [], 0, 0
+    for i, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        if letter == "," and depth == 0:
+            fields.append(text[begin:i])
+            begin = i + 1
+    return [*fields, text[begin:]]
+
+
+def _point(entity: str) -> Array:
+    """``CARTESIAN_POINT('',(x,y,z))``."""
+    return np.array(entity[entity.rindex("(") + 1 :].rstrip(")").split(","), dtype=float)
