@@ -100,7 +100,7 @@ def _surface(entities: dict[int, str], text: str) -> SplineFace | SphereFace | N
 
 
 def _spline(entities: dict[int, str], text: str) -> SplineFace:
-X
+    """Fields: name, ku, kv, ((poles)), form, 3 flags, multiplicities u, v, knots u, v, kind."""
     fields = _fields(text[len(_SPLINE) : -1])
     rows = [_REFERENCE.findall(row) for row in fields[3].strip("()").split("),(")]
     poles = np.array([[_point(entities[int(key)]) for key in row] for row in rows])
