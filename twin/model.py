@@ -51,14 +51,27 @@ class Model:
 
         What moves only the standard or the reading of the probe does not move the tip.
         """
+        return self._displacements(touches, {"twist", "place"})
+
+    def relative_columns(self, touches: Touches) -> Array:
+        """Displacement of the tip relative to the standard per unit of every parameter, (N, 3, P).
+
+        In the table frame: the deviation of the tip minus the shift of the standard.
+        """
+        return self._displacements(touches, {"twist", "place", "shift"})
+
+    def _displacements(self, touches: Touches, parts: set[str]) -> Array:
         out = np.zeros((len(touches), 3, len(self.parameters)))
         start = 0
         for effect in self.effects:
             for term in effect.terms(touches):
-                if term.where.part in ("twist", "place"):
-                    rows = getattr(touches.reach, term.where.part)
-                    per_unit = rows[:, term.where.link, term.where.component]
-                    out[:, :, start + term.parameter] += term.amount[:, None] * per_unit
+                part, link, component = term.where
+                column = out[:, :, start + term.parameter]
+                if part in parts and part == "shift":
+                    column[:, component] -= term.amount
+                elif part in parts:
+                    per_unit = getattr(touches.reach, part)[:, link, component]
+                    column += term.amount[:, None] * per_unit
             start += len(effect.parameters)
         return out
 
@@ -78,16 +91,25 @@ class Model:
         actual = exact_tip(self.chain, touches.q, touches.length, added)
         return actual - tip(self.chain, touches.q, touches.length)
 
+    def relative_deviation(self, touches: Touches, theta: Array) -> Array:
+        """Exact displacement of the ball centre relative to the standard, artefact frame, (N, 3).
+
+        Where the ball really is, as seen from the standard, minus where readings and stated set-up
+        put it, mm.
+        """
+        added = self.contribution(touches, theta)
+        actual = exact_tip(self.chain, touches.q, touches.length, added) - added.shift
+        return apply(inverse(touches.T_table_artefact), actual) - touches.ball_artefact
+
     def deviation(self, touches: Touches, theta: Array) -> Array:
         """Deviation along the normal that a controller would measure, with the exact chain, (N,).
 
         ``dev = -n . (tip deviation - shift of the standard) + bias``. Holds where the surface is
         plane over the deviation; a curved one is met by moving the axes (`probe_paths`).
         """
-        added = self.contribution(touches, theta)
-        actual = exact_tip(self.chain, touches.q, touches.length, added) - added.shift
-        moved = apply(inverse(touches.T_table_artefact), actual) - touches.ball_artefact
-        return -np.einsum("ni,ni->n", touches.normal, moved) + added.bias
+        moved = self.relative_deviation(touches, theta)
+        bias = self.contribution(touches, theta).bias
+        return -np.einsum("ni,ni->n", touches.normal, moved) + bias
 
 
 def columns(effects: Sequence[Effect], touches: Touches) -> Array:
