@@ -1,0 +1,138 @@
+"""Bayesian linear least squares in whitened arrays: one QR, and what follows from it.
+
+The observations are ``y = X phi + noise`` with unit noise and a unit normal prior on ``phi``: both
+are scaled before they come here. The prior is as many rows more, so that weakly determined
+directions are kept by it and nothing is ever singular. With ``[X; 1] = [Q; Q'] R`` the matrix
+``1 - Q Q^T`` is the inverse of the covariance ``1 + X X^T`` that y has before anything is fitted;
+leverages, left-out predictions and tests of further columns all rest on it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+
+from twin.frames import Array
+
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Estimates of scaled parameters, and the projection on what they cannot imitate.
+
+    Attributes:
+        Q: Upper rows of the orthonormal basis of the columns with their prior, (N, P).
+        R: Its triangle, (P, P): covariance ``R^-1 R^-T``.
+        phi: Estimates, (P,), in units of their prior standard deviations.
+        residual: ``y - X phi``, (N,).
+    """
+
+    Q: Array
+    R: Array
+    phi: Array
+    residual: Array
+
+    @cached_property
+    def leverage(self) -> Array:
+        """Share of every row that the fit takes from itself, ``diag(Q Q^T)``, (N,)."""
+        return np.einsum("np,np->n", self.Q, self.Q)
+
+    @property
+    def effective_parameters(self) -> float:
+        """Number of parameters that the data, rather than the prior, decide."""
+        return float(self.leverage.sum())
+
+    @property
+    def dof(self) -> float:
+        """Degrees of freedom left for the noise."""
+        return len(self.residual) - self.effective_parameters
+
+    @property
+    def objective(self) -> float:
+        """``y^T (1 + X X^T)^-1 y``: squared residual plus squared distance from the prior."""
+        return float(self.residual @ self.residual + self.phi @ self.phi)
+
+    @cached_property
+    def root(self) -> Array:
+        """``R^-1``, (P, P): covariance of the scaled parameters is ``root root^T``."""
+        identity = np.eye(len(self.R))
+        return np.asarray(solve_triangular(self.R, identity, check_finite=False))
+
+    @property
+    def covariance(self) -> Array:
+        """Posterior covariance of the scaled parameters, (P, P)."""
+        return self.root @ self.root.T
+
+    def spread(self, X: Array) -> Array:
+        """Root of the covariance of predictions ``X phi``: (M, P), its squared row sums are the
+        variances.
+        """  # noqa: D205
+        return X @ self.root
+
+
+def solve(X: Array, y: Array) -> Solution:
+    """Fit scaled parameters with a unit normal prior to observations of unit noise.
+
+    Args:
+        X: Columns times prior standard deviation over noise, (N, P).
+        y: Observations over noise, (N,).
+    """
+    n, p = X.shape
+    stacked = np.empty((n + p, p), order="F")
+    stacked[:n] = X
+    stacked[n:] = np.eye(p)
+    Q, R = np.linalg.qr(stacked)
+    phi = solve_triangular(R, Q[:n].T @ y, check_finite=False)
+    return Solution(np.ascontiguousarray(Q[:n]), R, phi, y - X @ phi)
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """Prediction of groups of touches by a fit to all the others.
+
+    Attributes:
+        error: Observed minus predicted, whitened, (N,); its own noise is 1.
+        inflation: Standard deviation of `error` if the model is right, at least 1, (N,).
+        surprise: Sum over groups of ``error^T cov^-1 error + log det cov``.
+    """
+
+    error: Array
+    inflation: Array
+    surprise: float
+
+    @property
+    def standardised(self) -> Array:
+        """Errors over their inflation: as large as the noise where the model is right, (N,)."""
+        return self.error / self.inflation
+
+
+def left_out(Q: Array, residual: Array, groups: Sequence[NDArray[np.int64]]) -> LeftOut:
+    """Leave one group out at a time, in closed form.
+
+    With ``M = 1 - Q Q^T`` over the rows of a group, the prediction error of the group by a fit to
+    the other rows is ``M^-1 r`` and has covariance ``M^-1``.
+
+    Args:
+        Q: Basis of the model over all rows, prior rows aside, (N, P).
+        residual: Residuals of the fit to all rows, (N,).
+        groups: Row numbers of every group; together all rows.
+    """
+    error, inflation = np.zeros(len(residual)), np.ones(len(residual))
+    surprise = 0.0
+    for rows in groups:
+        part, here = Q[rows], residual[rows]
+        if len(rows) <= Q.shape[1]:
+            M = np.eye(len(rows)) - part @ part.T
+            C = np.linalg.inv(M)  # the covariance itself is wanted, not the solution of a system
+            error[rows], variance = C @ here, np.diag(C)
+        else:  # the same by the matrix of the other rows, which is the smaller one
+            M = np.eye(Q.shape[1]) - part.T @ part
+            error[rows] = here + part @ np.linalg.solve(M, part.T @ here)
+            variance = 1.0 + np.einsum("np,pn->n", part, np.linalg.solve(M, part.T))
+        inflation[rows] = np.sqrt(np.maximum(variance, 1.0))
+        surprise += float(here @ error[rows]) - float(np.linalg.slogdet(M)[1])
+    return LeftOut(error, inflation, surprise)
