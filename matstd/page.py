@@ -2,7 +2,6 @@
 
 import base64
 import math
-
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
