@@ -23,7 +23,7 @@ class Kind(Enum):
     STRUCTURE = r"\* - (?P<text>.+)"
     STOCK_LOW = rf"BLK FORM 0\.1 Z {_XYZ}"
     STOCK_HIGH = rf"BLK FORM 0\.2 {_XYZ}"
-    TCPM_ON = rf"M128(?: F\d+)?"
+    TCPM_ON = r"M128(?: F\d+)?"
     TCPM_OFF = r"M129"
     SHORTER_WAY = r"M126"
     SHORTER_WAY_OFF = r"M127"

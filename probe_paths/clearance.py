@@ -31,19 +31,18 @@ class Obstacles(NamedTuple):
 def obstacles(standard: Standard, setup: Setup, table_radius: float) -> Obstacles:
     """Corners of base, core and columns, the spheres, and the rim of the table."""
     points = [_box(standard.base.half_size, 0.0, standard.base.thickness)]
-    for name, column in standard.columns.items():
-        patch = standard.features[name]
+    for column in standard.columns.values():
         corners = _box(column.patch.half_size, -column.patch.depth, column.top)
         points.append(apply(column.patch.T_artefact_patch, corners))
-        assert patch is column.patch
     if standard.core is not None:
         points.append(_ring(standard.core.high_radius, standard.core.height))
     solid = np.concatenate(points)
     centres = np.array([s.centre for s in standard.spheres]).reshape(-1, 3)
     on_table = apply(setup.T_table_artefact, np.concatenate([solid, centres]))
     rim = _ring(table_radius, 0.0)
-    radii = [np.zeros(len(solid)), [s.radius for s in standard.spheres], np.zeros(len(rim))]
-    return Obstacles(np.concatenate([on_table, rim]), np.concatenate(radii))
+    radii = np.zeros(len(on_table) + len(rim))
+    radii[len(solid) : len(on_table)] = [s.radius for s in standard.spheres]
+    return Obstacles(np.concatenate([on_table, rim]), radii)
 
 
 def _box(half_size: tuple[float, float], low: float, high: float) -> Array:
@@ -165,7 +164,10 @@ class Room:
             self.probe.radius + margin,
         )
         words = np.array(
-            [f"{m.value} of {f}" if f else "" for m, f in zip(hit.meeting, hit.feature, strict=True)]
+            [
+                f"{m.value} of {f}" if f else ""
+                for m, f in zip(hit.meeting, hit.feature, strict=True)
+            ]
         )
         is_met = (hit.meeting != Meeting.NOTHING) & ~(hit.travel > distance)
         return np.where(is_met, words, "")

@@ -59,7 +59,8 @@ class Heading:
 
 
 def _words(letters: str, values: Array) -> str:
-    return " ".join(f"{a}{v:+.6f}" for a, v in zip(letters, values, strict=True))
+    # + 0.0 turns a negative zero, also one that rounding brings about, into a positive one
+    return " ".join(f"{a}{round(v, 6) + 0.0:+.6f}" for a, v in zip(letters, values, strict=True))
 
 
 def rounded_setup(setup: Setup) -> Setup:

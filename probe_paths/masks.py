@@ -118,12 +118,13 @@ def shared_masks(dialect: Dialect, rotary: Sequence[str]) -> dict[str, str]:
     sides = [Q.SIDE_1, Q.SIDE_2][: len(rotary)]
     places = [Q.ROTARY_1, Q.ROTARY_2][: len(rotary)]
     counters = [("P", Q.TOUCH), ("S", Q.POSE), ("F", Q.FEATURE)]
-    counters += [("U" + a, q) for a, q in zip(rotary, sides, strict=True)]
+    came_from = [("U" + a, q) for a, q in zip(rotary, sides, strict=True)]
     turned = [(a, q) for a, q in zip(rotary, places, strict=True)]
     measured = [("X", Q.RESULT_X), ("Y", Q.RESULT_Y), ("Z", Q.RESULT_Z)]
     clock = ("T%3d:%3d:%3d", ("HOUR", "MIN", "SEC"))
     point = [_fields(counters, "%8.1LF"), _fields(measured, f"%{d + 7}.{d}LF")]
-    point += [_fields(turned, f"%{d + 7}.{d}LF")] if turned else []
+    if turned:
+        point += [_fields(turned, f"%{d + 7}.{d}LF"), _fields(came_from, "%5.1LF")]
     return {
         f"{POINT_MASK}.A": _mask([*point, clock]),
         f"{END_MASK}.A": _mask([("END T%3d:%3d:%3d", clock[1])]),

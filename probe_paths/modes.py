@@ -1,5 +1,7 @@
 """Modes, system data and numbers of cycle 4: what a block may set, read and ask for."""
 
+import numpy as np
+
 from probe_paths.blocks import Block, Kind
 from probe_paths.dialect import SYSTEM_INDEX
 from probe_paths.frame import LINEAR
@@ -52,31 +54,64 @@ def check_cycle(state: State, block: Block, vector: Block, length: float) -> Non
 
 
 def set_mode(block: Block, state: State) -> None:
-    """Blocks that change a mode or set a parameter."""
-    if block.kind is Kind.TCPM_ON:
-        state.is_tcpm_off = False
-    elif block.kind is Kind.TCPM_OFF:
-        state.is_tcpm_off = True
-    elif block.kind in (Kind.SHORTER_WAY, Kind.SHORTER_WAY_OFF):
-        state.is_shorter_way = block.kind is Kind.SHORTER_WAY
-    elif block.kind is Kind.PLANE_OFF:
-        state.is_plane_off = True
-    elif block.kind is Kind.SHIFT:
-        axis = "XYZ"[int(block.word("index")) - 1]
-        if block.word("axis") != axis or block.number("value") != 0.0:
-            raise state.refuse(block, repr(block.text), f"{axis}+0: only the preset may shift")
-        state.shift_off.add(axis)
-    elif block.kind is Kind.PRESET:
-        state.preset = int(block.word("row"))
-    elif block.kind is Kind.TOOL_CALL:
-        if block.words["speed"] is not None:
-            raise state.refuse(block, repr(block.text), "no speed: there is a probe in the spindle")
-        if not state.is_tcpm_off or not state.is_retracted:
-            raise state.refuse(block, repr(block.text), "M129 and a retract with M91 before it")
-        state.tool = int(block.word("tool"))
-    elif block.kind is Kind.WAIT:
-        state.is_synchronous = True
-    elif block.kind is Kind.ASSIGN:
-        state.write(block, int(block.word("q")), block.number("value"))
-    else:
+    """Execute a block that changes a mode or sets a parameter; raises BadFile."""
+    setter = _SETTERS.get(block.kind)
+    if setter is None:
         raise state.refuse(block, repr(block.text), "a subprogram that is called, after M30")
+    setter(block, state)
+
+
+def _tcpm(block: Block, state: State) -> None:
+    state.is_tcpm_off = block.kind is Kind.TCPM_OFF
+
+
+def _shorter_way(block: Block, state: State) -> None:
+    state.is_shorter_way = block.kind is Kind.SHORTER_WAY
+
+
+def _plane_off(block: Block, state: State) -> None:
+    state.is_plane_off = True
+
+
+def _shift(block: Block, state: State) -> None:
+    axis = LINEAR[int(block.word("index")) - 1]
+    if block.word("axis") != axis or block.number("value") != 0.0:
+        raise state.refuse(block, repr(block.text), f"{axis}+0: only the preset may shift")
+    state.shift_off.add(axis)
+
+
+def _preset(block: Block, state: State) -> None:
+    state.preset = int(block.word("row"))
+
+
+def _tool_call(block: Block, state: State) -> None:
+    if block.words["speed"] is not None:
+        raise state.refuse(block, repr(block.text), "no speed: there is a probe in the spindle")
+    if not state.is_tcpm_off or not state.is_retracted:
+        raise state.refuse(block, repr(block.text), "M129 and a retract with M91 before it")
+    state.tool = int(block.word("tool"))
+    # the tool changer leaves the linear axes wherever its builder wanted
+    state.q[state.frame.linear] = np.nan
+    state.is_retracted = False
+
+
+def _wait(block: Block, state: State) -> None:
+    state.is_synchronous = True
+
+
+def _assign(block: Block, state: State) -> None:
+    state.write(block, int(block.word("q")), block.number("value"))
+
+
+_SETTERS = {
+    Kind.TCPM_ON: _tcpm,
+    Kind.TCPM_OFF: _tcpm,
+    Kind.SHORTER_WAY: _shorter_way,
+    Kind.SHORTER_WAY_OFF: _shorter_way,
+    Kind.PLANE_OFF: _plane_off,
+    Kind.SHIFT: _shift,
+    Kind.PRESET: _preset,
+    Kind.TOOL_CALL: _tool_call,
+    Kind.WAIT: _wait,
+    Kind.ASSIGN: _assign,
+}

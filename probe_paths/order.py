@@ -38,9 +38,7 @@ class Visit:
     height: float = 0.0
 
 
-def visits(
-    chain: Chain, rotary: Array, overshoot: float, shortest_visit: int
-) -> list[Visit]:
+def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -> list[Visit]:
     """Visits of all poses: a first round in mixed order, a second one backwards.
 
     Round one takes the poses, sorted by their readings, in the order of ``frac(k golden)``. The
@@ -96,6 +94,19 @@ def waypoints(start: Array, end: Array) -> Array:
     share = np.arange(1, pieces + 1)[:, None] / pieces
     between: Array = start + share * (end - start)
     return between
+
+
+def home_readings(chain: Chain) -> Array:
+    """Rotary readings (R,) where programs begin and end: zero, or as near as the travel allows."""
+    return np.array([np.clip(0.0, *chain.link(name).range) for name in chain.rotary_axes])
+
+
+def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:
+    """Every rotary position (W, R) of a programme of visits, from `start` to `end`."""
+    path = [start[None]]
+    for stop in stops:
+        path += [waypoints(path[-1][-1], stop.before), stop.rotary[None]]
+    return np.concatenate([*path, end[None]])
 
 
 def nearest_neighbours(places: Array, first: Array) -> IntArray:

@@ -9,17 +9,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from artefact.datum import DatumSphere
 from artefact.standard import Standard
-from probe_paths.clearance import Room, swing_height, top_height
-from probe_paths.frame import ProgramFrame
-from probe_paths.heading import rounded_setup
-from probe_paths.order import Visit, nearest_neighbours, visits
+from probe_paths.order import Visit
 from probe_paths.probe import Probe
 from twin.chain import Chain
-from twin.errors import DesignError, NotReachable
-from twin.frames import Array, apply, turn
-from twin.kinematics import inverse_linear, linear_directions, table_to_tool
+from twin.frames import Array
 from twin.touches import IntArray, Labels, Setup
 from twin.units import DEG
 
@@ -80,9 +74,7 @@ class TouchRequests:
         return len(self.point)
 
 
-def requests_at(
-    standard: Standard, feature: str, uv: Array, rotary: Array
-) -> TouchRequests:
+def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> TouchRequests:
     """Touches at parameters (N, 2) of one feature at rotary readings (N, R) or (R,), rad."""
     surface = standard.features[feature]
     rotary = np.broadcast_to(np.asarray(rotary, dtype=float), (len(uv), np.shape(rotary)[-1]))
