@@ -51,6 +51,11 @@ class Proof:
         return _rms(self.after)
 
     @property
+    def rms_u(self) -> float:
+        """Root mean square of the stated standard uncertainty, mm."""
+        return float(np.sqrt(np.mean(self.u**2)))
+
+    @property
     def factor(self) -> float:
         """How many times smaller the unpredicted volumetric error is."""
         return self.rms_before / self.rms_after
@@ -126,7 +131,7 @@ def prove(
 def prediction_uncertainty(fit: Fit, poses: Touches, block: int = 2000) -> Array:
     """Standard uncertainty of predicted displacements: root of the summed variances, (N,), mm."""
     model = Model(poses.chain, fit.effects)
-    root = fit.solution.root * fit.scale[:, None]
+    root = fit.spread
     out = np.empty(len(poses))
     for start in range(0, len(poses), block):
         rows = slice(start, start + block)
