@@ -126,7 +126,7 @@ class Column:
         box = np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
         near = np.flatnonzero(box < 2.0 * (self.top + np.abs(half).max()))
         uv = np.clip(local[near, :2], -half, half)
-        over = (local[near, 2] - patch.jet(uv).h) * self.steepest
+        over = (local[near, 2] - patch.height(uv)) * self.steepest
         box[near] = np.maximum(box[near], over)
         return box
 
@@ -138,7 +138,7 @@ def column(patch: FreeformPatch) -> Column:
     # and hardly steeper: a tenth of a millimetre and two degrees cover designs that check().
     return Column(
         patch=patch,
-        top=float(patch.jet(uv).h.max()) + 0.1,
+        top=float(patch.height(uv).max()) + 0.1,
         steepest=float(np.cos(min(patch.slope(uv).max() + 0.035, 1.5))),
     )
 

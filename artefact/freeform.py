@@ -7,20 +7,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from artefact.newton import ball_contact, foot_points, graph_normal
 from artefact.patch import Hit, Mask, read_only, rows, sphere_entry, unit
-from artefact.spline import Jet, clamped_knots, greville, jet
+from artefact.spline import Jet, clamped_knots, greville, height, jet
 from twin.errors import ShapeMismatch
 from twin.frames import Array, apply, inverse, turn
-from twin.units import NM
 
 OVERHANG = 6.0
 """How far the spline reaches beyond the trimmed rectangle on every side, mm: room for the trim."""
 
-CONTACT_TOLERANCE = 1e-4 * NM
-"""Newton stops when the ball surface is this close to the spline, mm."""
-
 _GRID_PITCH = 2.0  # of the start grid, mm; finer than half the smallest concave radius allowed
-_STEPS = 25
 _BLOCK = 4_000_000  # numbers held at once while a start point is sought
 
 
@@ -105,14 +101,18 @@ class FreeformPatch:
         """Height over the patch's own plane with its derivatives at uv (N, 2)."""
         return jet(self.knots_u, self.knots_v, self.degree, self.heights, rows(uv))
 
+    def height(self, uv: Array) -> Array:
+        """Height alone, at uv (N, 2), (N,), mm: three times as fast as `jet`."""
+        return height(self.knots_u, self.knots_v, self.degree, self.heights, rows(uv))
+
     def point(self, uv: Array) -> Array:
         """Points of the surface, (N, 3), artefact frame, mm."""
         uv = rows(uv)
-        return apply(self.T_artefact_patch, np.column_stack([uv, self.jet(uv).h]))
+        return apply(self.T_artefact_patch, np.column_stack([uv, self.height(uv)]))
 
     def normal(self, uv: Array) -> Array:
         """Outward unit normals, (N, 3), artefact frame."""
-        return turn(self.T_artefact_patch, _graph_normal(self.jet(uv)))
+        return turn(self.T_artefact_patch, graph_normal(self.jet(uv)))
 
     def derivatives(self, uv: Array) -> Derivatives:
         """Derivatives of `point` to the second order, each (N, 3), artefact frame."""
@@ -169,16 +169,7 @@ class FreeformPatch:
             uv, shape (N, 2), mm; nan where no foot point lies on the spline.
         """
         local = apply(self.T_patch_artefact, rows(points))
-        uv = self._nearest_node(local)
-        moved = np.full(len(local), np.inf)
-        for _ in range(_STEPS):
-            step = _foot_step(self.jet(uv), uv, local)
-            new = self._held(uv + _bounded(step, limit=2.0 * _GRID_PITCH))
-            moved = np.abs(new - uv).max(axis=1)
-            uv = new
-            if moved.max(initial=0.0) < CONTACT_TOLERANCE:
-                break
-        return np.where((moved < NM)[:, None] & self._on_spline(uv)[:, None], uv, np.nan)
+        return foot_points(self.jet, self.domain, local, self._nearest_node(local))
 
     def contact(self, start: Array, direction: Array, radius: float) -> Hit:
         """First contact of a moving ball: ``S(u, v) + radius n(u, v) = start + t d``, by Newton.
@@ -203,7 +194,8 @@ class FreeformPatch:
         hit_uv, hit_travel = np.full((len(p), 2), np.nan), np.full(len(p), np.nan)
         aimed = np.flatnonzero(np.isfinite(travel))
         if len(aimed):
-            found = self._contact_newton(p[aimed], d[aimed], radius, uv[aimed], travel[aimed])
+            first = Hit(uv[aimed], travel[aimed])
+            found = ball_contact(self.jet, self.domain, p[aimed], d[aimed], radius, first)
             hit_uv[aimed], hit_travel[aimed] = found
         return Hit(hit_uv, hit_travel)
 
@@ -222,6 +214,12 @@ class FreeformPatch:
             travel[some] = np.take_along_axis(entry, best[some, None], axis=1)[:, 0]
         return Hit(uv[best], travel + fat - radius)
 
+    @property
+    def domain(self) -> tuple[Array, Array]:
+        """Lowest and highest parameters of the spline, overhang included, each (2,), mm."""
+        low = np.array([self.knots_u[0], self.knots_v[0]])
+        return low, np.array([self.knots_u[-1], self.knots_v[-1]])
+
     @cached_property
     def _nodes(self) -> tuple[Array, Array, Array, float]:
         """Start grid: parameters, points, and a sphere round all of them (centre, radius)."""
@@ -231,43 +229,13 @@ class FreeformPatch:
         return uv, points, centre, float(np.linalg.norm(points - centre, axis=1).max())
 
     def _nearest_node(self, local: Array) -> Array:
+        """Parameters of the node nearest to each point of the patch frame, (N, 2)."""
         from scipy.spatial import cKDTree
 
         uv, points, _, _ = self._nodes
         tree = cKDTree(apply(self.T_patch_artefact, points))
         nearest: Array = uv[tree.query(local)[1]]
         return nearest
-
-    def _held(self, uv: Array) -> Array:
-        """Parameters held on the spline; what leaves it stays on its border."""
-        low = np.array([self.knots_u[0], self.knots_v[0]])
-        high = np.array([self.knots_u[-1], self.knots_v[-1]])
-        return np.clip(uv, low, high)
-
-    def _on_spline(self, uv: Array) -> Mask:
-        low = np.array([self.knots_u[0], self.knots_v[0]])
-        high = np.array([self.knots_u[-1], self.knots_v[-1]])
-        strictly: Mask = np.all((uv > low) & (uv < high), axis=1)
-        return strictly
-
-    def _contact_newton(
-        self, p: Array, d: Array, radius: float, uv: Array, travel: Array
-    ) -> tuple[Array, Array]:
-        """Newton in the patch frame on (u, v, t) from a node of the grid."""
-        gap = np.full(len(p), np.inf)
-        for _ in range(_STEPS):
-            j = self.jet(uv)
-            residual = _offset_point(j, uv, radius) - p - travel[:, None] * d
-            gap = np.abs(residual).max(axis=1)
-            if np.all(gap < CONTACT_TOLERANCE):
-                break
-            step = -_solve3(*_offset_tangents(j, radius), -d, residual)
-            uv = self._held(uv + _bounded(step[:, :2], limit=4.0 * _GRID_PITCH))
-            travel = travel + step[:, 2]
-        met = (gap < 0.1 * NM) & self._on_spline(uv)
-        # The way out through the far side solves the same equation: the ball must run against n.
-        met &= np.einsum("ni,ni->n", _graph_normal(self.jet(uv)), d) < 0.0
-        return np.where(met[:, None], uv, np.nan), np.where(met, travel, np.nan)
 
 
 def graph_patch(
@@ -311,61 +279,3 @@ def graph_patch(
         depth=float(depth),
         errors=tuple(errors),
     )
-
-
-def _graph_normal(j: Jet) -> Array:
-    return unit(np.column_stack([-j.hu, -j.hv, np.ones_like(j.h)]))
-
-
-def _offset_point(j: Jet, uv: Array, radius: float) -> Array:
-    """Ball centre that touches at uv, patch frame, (N, 3)."""
-    return np.column_stack([uv, j.h]) + radius * _graph_normal(j)
-
-
-def _offset_tangents(j: Jet, radius: float) -> tuple[Array, Array]:
-    """Derivatives of the touching ball's centre by u and v, patch frame, each (N, 3).
-
-    With ``m = (-hu, -hv, 1)`` and ``n = m / w``: ``n_u = (m_u - n (n . m_u)) / w``.
-    """
-    w = np.sqrt(1.0 + j.hu**2 + j.hv**2)[:, None]
-    n, nil, one = _graph_normal(j), np.zeros_like(j.h), np.ones_like(j.h)
-    tangents = []
-    for S_k, m_k in (
-        (np.column_stack([one, nil, j.hu]), np.column_stack([-j.huu, -j.huv, nil])),
-        (np.column_stack([nil, one, j.hv]), np.column_stack([-j.huv, -j.hvv, nil])),
-    ):
-        n_k = (m_k - n * np.einsum("ni,ni->n", n, m_k)[:, None]) / w
-        tangents.append(S_k + radius * n_k)
-    return tangents[0], tangents[1]
-
-
-def _solve3(a: Array, b: Array, c: Array, right: Array) -> Array:
-    """Solutions x (N, 3) of ``a x0 + b x1 + c x2 = right`` by Cramer's rule; zero if singular."""
-    bc = np.cross(b, c)
-    det = np.einsum("ni,ni->n", a, bc)
-    safe = np.where(np.abs(det) > 1e-12, det, np.inf)
-    rc, br = np.cross(right, c), np.cross(b, right)
-    dots = (
-        np.einsum("ni,ni->n", right, bc),
-        np.einsum("ni,ni->n", a, rc),
-        np.einsum("ni,ni->n", a, br),
-    )
-    return np.column_stack(dots) / safe[:, None]
-
-
-def _bounded(step: Array, limit: float) -> Array:
-    """Steps (N, 2) shortened to at most `limit` mm."""
-    length = np.linalg.norm(step, axis=1, keepdims=True)
-    return step * np.minimum(1.0, limit / np.maximum(length, limit))
-
-
-def _foot_step(j: Jet, uv: Array, local: Array) -> Array:
-    """Newton step of the foot-point search in the patch frame, (N, 2)."""
-    dx, dy, dz = uv[:, 0] - local[:, 0], uv[:, 1] - local[:, 1], j.h - local[:, 2]
-    gu, gv = dx + dz * j.hu, dy + dz * j.hv
-    a0, b0, c0 = 1 + j.hu**2, j.hu * j.hv, 1 + j.hv**2
-    a, b, c = a0 + dz * j.huu, b0 + dz * j.huv, c0 + dz * j.hvv
-    firm = (a > 0.1) & (a * c - b * b > 0.1)
-    a, b, c = np.where(firm, a, a0), np.where(firm, b, b0), np.where(firm, c, c0)
-    det = a * c - b * b
-    return np.column_stack([(b * gv - c * gu) / det, (b * gu - a * gv) / det])

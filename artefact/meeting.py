@@ -216,7 +216,7 @@ def _wall_entry(patch: FreeformPatch, p: Array, d: Array, radius: float) -> Arra
             uv[:, free] = np.clip(end[:, free], -patch.half_size[free], patch.half_size[free])
             on_wall = (np.abs(end[:, free]) <= patch.half_size[free]) & (end[:, 2] >= -patch.depth)
             check = np.flatnonzero(on_wall & np.isfinite(travel))
-            on_wall[check] = end[check, 2] <= patch.jet(uv[check]).h
+            on_wall[check] = end[check, 2] <= patch.height(uv[check])
             travel = np.where(begins, -1.0, travel)
             best = np.where(on_wall, np.minimum(best, travel), best)
     return best
@@ -235,7 +235,7 @@ def _corner_entry(patch: FreeformPatch, p: Array, d: Array, radius: float) -> Ar
             travel = travel / np.where(moving, across, 1.0)
             reached = moving & np.isfinite(travel) & (travel >= 0.0)
             z = p[:, 2] + np.where(reached, travel, 0.0) * d[:, 2]
-            top = patch.jet(np.array([[x, y]])).h[0]
+            top = patch.height(np.array([[x, y]]))[0]
             reached &= (z >= -patch.depth) & (z <= top)
             best = np.where(reached, np.minimum(best, travel), best)
     return best

@@ -31,8 +31,8 @@ def greville(knots: Array, degree: int) -> Array:
     return means
 
 
-def basis(knots: Array, degree: int, x: Array) -> tuple[np.ndarray, Array]:
-    """The degree + 1 B-splines that do not vanish at each x, with two derivatives.
+def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndarray, Array]:
+    """The degree + 1 B-splines that do not vanish at each x, with up to two derivatives.
 
     Cox-de Boor recursion on all x at once; the derivatives come from the two lower degrees,
     ``N'_{i,k} = k (N_{i,k-1} / (t_{i+k} - t_i) - N_{i+1,k-1} / (t_{i+k+1} - t_{i+1}))``.
@@ -42,9 +42,10 @@ def basis(knots: Array, degree: int, x: Array) -> tuple[np.ndarray, Array]:
         knots: Clamped or not, ascending, shape (poles + degree + 1,).
         degree: At least 2.
         x: Shape (N,).
+        orders: 1 for the values alone, 3 for two derivatives as well.
 
     Returns:
-        Index of the first of them, shape (N,); values for the orders 0, 1, 2, (3, N, degree + 1).
+        Index of the first of them, shape (N,); values and derivatives, (orders, N, degree + 1).
 
     Reference:
         Piegl and Tiller, The NURBS Book, algorithms A2.2 and A2.3.
@@ -54,6 +55,8 @@ def basis(knots: Array, degree: int, x: Array) -> tuple[np.ndarray, Array]:
     ladder = [np.ones((len(x), 1))]
     for d in range(1, degree + 1):
         ladder.append(_raised(knots, span, x, ladder[-1], d))
+    if orders == 1:
+        return span - degree, ladder[degree][None]
     first = _derivative(knots, span, ladder[degree - 1], degree)
     second = _derivative(
         knots, span, _derivative(knots, span, ladder[degree - 2], degree - 1), degree
@@ -109,14 +112,35 @@ def jet(knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, u
     Returns:
         Derivatives to the second order.
     """
-    first_u, bu = basis(knots_u, degree[0], uv[:, 0])
-    first_v, bv = basis(knots_v, degree[1], uv[:, 1])
-    i = first_u[:, None, None] + np.arange(degree[0] + 1)[None, :, None]
-    j = first_v[:, None, None] + np.arange(degree[1] + 1)[None, None, :]
-    local = poles[i, j]  # (N, ku + 1, kv + 1)
-    along_u = np.einsum("oni,nij->onj", bu, local)  # (3, N, kv + 1)
+    bu, bv, local = _local(knots_u, knots_v, degree, poles, uv, orders=3)
+    along_u = np.swapaxes(bu, 0, 1) @ local  # (N, 3, kv + 1)
     value = {
-        (a, b): np.einsum("nj,nj->n", along_u[a], bv[b])
+        (a, b): np.einsum("nj,nj->n", along_u[:, a], bv[b])
         for a, b in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
     }
     return Jet(*value.values())
+
+
+def height(
+    knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array
+) -> Array:
+    """Height alone, (N,), of the tensor spline of `jet`; arguments as there."""
+    bu, bv, local = _local(knots_u, knots_v, degree, poles, uv, orders=1)
+    along_u = np.einsum("ni,nij->nj", bu[0], local)
+    values: Array = np.einsum("nj,nj->n", along_u, bv[0])
+    return values
+
+
+def _local(
+    knots_u: Array,
+    knots_v: Array,
+    degree: tuple[int, int],
+    poles: Array,
+    uv: Array,
+    orders: int,
+) -> tuple[Array, Array, Array]:
+    """B-splines in u and v at each point, and the poles they act on, (N, ku + 1, kv + 1)."""
+    first_u, bu = basis(knots_u, degree[0], uv[:, 0], orders)
+    first_v, bv = basis(knots_v, degree[1], uv[:, 1], orders)
+    windows = np.lib.stride_tricks.sliding_window_view(poles, (degree[0] + 1, degree[1] + 1))
+    return bu, bv, windows[first_u, first_v]
