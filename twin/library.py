@@ -12,7 +12,21 @@ from pathlib import Path
 
 from twin.chain import Chain
 from twin.effect import Effect
-from twin.effects import backlash, geometric, location
+from twin.effects import (
+    artefact,
+    artefact_form,
+    backlash,
+    column_bending,
+    coupling,
+    geometric,
+    gravity,
+    location,
+    periodic,
+    probe,
+    stiffness,
+    thermal_expansion,
+    thermal_lag,
+)
 from twin.effects.kind import Kind
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.touches import Touches
@@ -126,5 +140,23 @@ def load_installed_effects() -> tuple[Kind, ...]:
     return tuple(loaded)
 
 
-for _kind in (geometric.KIND, location.KIND, backlash.KIND):
+for _kind in (
+    geometric.KIND,
+    location.KIND,
+    coupling.KIND,
+    backlash.KIND,
+    periodic.KIND,
+    thermal_expansion.KIND,
+    thermal_lag.KIND,
+    column_bending.KIND,
+    gravity.KIND,
+    stiffness.KIND,
+    probe.LOBING,
+    probe.RADIUS,
+    probe.BENDING,
+    artefact.EXPANSION,
+    artefact.SLIP,
+    artefact_form.KIND,
+    artefact.DRIFT,
+):
     register(_kind)

@@ -1,4 +1,4 @@
-"""Reversal of an axis: the reading depends on the side from which it was reached."""
+"""Reversal of an axis: where it stands depends on the side from which it was reached."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.chain import Chain
 from twin.effect import Parameter, Term, Where
-from twin.effects.kind import Kind, counted, moving_axes, refusal
+from twin.effects.kind import Kind, checked_axis, counted, moving_axes, own_component
 from twin.frames import Array
 from twin.touches import Touches
 from twin.units import UM, URAD
@@ -17,19 +17,20 @@ USAGE = "backlash(axis)"
 
 @dataclass(frozen=True)
 class Backlash:
-    """Half the reversal of an axis, with the sign of its last motion.
+    """Reversal error of an axis, with the sign of its last motion.
 
-    ``E = -(b/2) sgn(dq)`` along a linear axis, about a rotary one: an axis driven in the positive
-    direction lags behind its reading. A touch whose last motion is unknown says nothing. One
-    parameter, the reversal b, mm or rad: 0.5 to 2 um with direct scales, 3 to 15 um with motor
-    encoders; rotary 5 to 100 urad.
+    ``E = (B/2) sgn(last motion)`` along a linear axis, about a rotary one; B is what was reached in
+    the positive direction minus what was reached in the negative one. Lost motion behind a motor
+    encoder lags and is negative. A touch whose last motion is unknown is not disturbed. One
+    parameter, B, mm or rad: 0.5 to 2 um with direct scales, 3 to 15 um with motor encoders, on a
+    rotary axis 5 to 100 urad.
 
     Attributes:
         axis: Name of the axis.
         component: Index of the component along or about the axis.
 
     Reference:
-        ISO 230-2 (reversal value B).
+        ISO 230-2 (reversal error B, forward minus backward).
     """
 
     axis: str
@@ -52,24 +53,13 @@ class Backlash:
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
         where = Where("twist", touches.chain.link_index(self.axis), self.component)
-        return (Term(0, where, -0.5 * touches.last_move(self.axis)),)
-
-
-def own_component(chain: Chain, axis: str) -> int:
-    """Index of the component along a linear axis, about a rotary one; for a free direction the
-    letter that it is nearest to decides.
-    """  # noqa: D205
-    link = chain.link(axis)
-    main = int(np.argmax(np.abs(link.direction)))
-    return main if link.kind == "linear" else 3 + main
+        return (Term(0, where, 0.5 * touches.last_move(self.axis)),)
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Backlash:
     """From the axis."""
     counted(USAGE, arguments, 1, 1)
-    axis = arguments[0]
-    if axis not in chain.programmed_axes:
-        raise refusal(USAGE, arguments, f"an axis of {', '.join(chain.programmed_axes)}")
+    axis = checked_axis(USAGE, arguments, arguments[0], chain)
     return Backlash(axis, own_component(chain, axis))
 
 
@@ -87,10 +77,10 @@ def _both_sides(last_move: Array) -> bool:
 KIND = Kind(
     word="backlash",
     arguments="axis",
-    formula="E = -(b/2) sgn(last motion), along a linear axis or about a rotary one",
-    units="b: µm; µrad of a rotary axis",
+    formula="E = (B/2) sgn(last motion), along a linear axis or about a rotary one",
+    units="B: µm; µrad of a rotary axis",
     typical="0.5 to 2 µm (direct scale), 3 to 15 µm (motor encoder); rotary 5 to 100 µrad",
-    source="ISO 230-2",
+    source="ISO 230-2 (forward minus backward)",
     make=make,
     propose=propose,
 )

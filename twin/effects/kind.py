@@ -89,9 +89,36 @@ def sensors(touches: Touches) -> list[str]:
     return [name for name, values in touches.temperature.items() if varies(values)]
 
 
-def is_linear(chain: Chain, axis: str) -> bool:
-    """Whether an axis is a linear one; raises UnknownAxis."""
-    return chain.link(axis).kind == "linear"
+def sensor_record(touches: Touches, sensor: str) -> Array:
+    """Temperatures of one sensor, (N,), degC; raises UnknownEffect where there is none."""
+    if sensor not in touches.temperature:
+        known = ", ".join(touches.temperature) or "none"
+        raise UnknownEffect(f"no temperature sensor '{sensor}' in these touches; there is {known}")
+    return touches.temperature[sensor]
+
+
+def own_component(chain: Chain, axis: str) -> int:
+    """Index of the component along a linear axis, about a rotary one.
+
+    For a free direction the letter that it is nearest to decides.
+    """
+    link = chain.link(axis)
+    main = int(np.argmax(np.abs(link.direction)))
+    return main if link.kind == "linear" else 3 + main
+
+
+def checked_axis(usage: str, arguments: Sequence[str], axis: str, chain: Chain) -> str:
+    """A programmed axis of the machine; raises UnknownEffect."""
+    if axis not in chain.programmed_axes:
+        raise refusal(usage, arguments, f"an axis of {', '.join(chain.programmed_axes)}")
+    return axis
+
+
+def checked_linear(usage: str, arguments: Sequence[str], axis: str, chain: Chain) -> str:
+    """A linear axis of the machine; raises UnknownEffect."""
+    if axis not in chain.linear_axes:
+        raise refusal(usage, arguments, f"a linear axis of {', '.join(chain.linear_axes)}")
+    return axis
 
 
 def base_unit(symbol: Symbol) -> str:

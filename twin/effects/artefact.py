@@ -1,0 +1,208 @@
+"""What the standard and its set-up do: expand, slip and drift."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.chain import Chain
+from twin.effect import Effect, Inner, Parameter, Term, Where
+from twin.effects.kind import Kind, counted, sensor_record, sensors
+from twin.frames import Array
+from twin.touches import Touches
+from twin.units import T_REF, UM, URAD
+
+HOUR = 3600.0
+"""Drift is told per hour, s."""
+
+ON_EACH_SIDE = 8
+"""Fewest touches of a set-up before and after a slip that can be told from noise."""
+INSTANTS = 256
+"""Most instants that are scanned for a slip; between them it is refined."""
+
+
+@dataclass(frozen=True)
+class ArtefactExpansion:
+    """Expansion of the standard with the temperature of a sensor.
+
+    ``shift = alpha (T - 20 degC) p``, p the contact point in the table frame: from the middle of
+    the table, which carries the standard along, in every direction alike. One parameter, alpha,
+    1/K: steel 10 to 12, aluminium 23, Invar 0.6 to 1.6 um/(m K).
+
+    Attributes:
+        sensor: Name of the sensor.
+
+    Reference:
+        ISO 1 (20 degC).
+    """
+
+    sensor: str
+
+    kind = "artefact-expansion"
+
+    @property
+    def name(self) -> str:
+        """`artefact-expansion(artefact)`."""
+        return f"artefact-expansion({self.sensor})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Coefficient of expansion."""
+        return (Parameter("amplitude", "1/K", 20e-6),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A shift of the standard."""
+        warmth = sensor_record(touches, self.sensor) - T_REF
+        p = touches.point_table
+        return tuple(Term(0, Where("shift", 0, i), warmth * p[:, i]) for i in range(3))
+
+
+@dataclass(frozen=True)
+class ArtefactSlip:
+    """The standard slips on the table at an unknown instant, until it is set up again.
+
+    ``shift = e + r x (p - c)`` for the later touches of the set-up in which the instant lies, c the
+    mean contact point of that set-up in the table frame; inner parameter, the instant. Parameters
+    mm and rad: a few um and tens of urad.
+
+    The touches must be the whole run, for c and for the set-up.
+
+    Attributes:
+        instant: s since the start of the run.
+    """
+
+    instant: float = 0.0
+
+    kind = "artefact-slip"
+    name = "artefact-slip"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Displacement and rotation, table frame."""
+        shifts = (Parameter(name, "mm", 10 * UM) for name in "XYZ")
+        turns = (Parameter(name, "rad", 30 * URAD) for name in "ABC")
+        return (*shifts, *turns)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Shifts of the standard."""
+        slipped, arm = self._slipped(touches)
+        later = slipped.astype(float)
+        out = [Term(i, Where("shift", 0, i), later) for i in range(3)]
+        for i in range(3):  # rotation about i moves the two directions across
+            j, k = (i + 1) % 3, (i + 2) % 3
+            out.append(Term(3 + i, Where("shift", 0, k), later * arm[:, j]))
+            out.append(Term(3 + i, Where("shift", 0, j), -later * arm[:, k]))
+        return tuple(out)
+
+    def _slipped(self, touches: Touches) -> tuple[NDArray[np.bool_], Array]:
+        """Which touches came after the slip and in its set-up, (N,); arms p - c, (N, 3), mm."""
+        after = touches.time > self.instant
+        if not np.any(after):
+            return after, np.zeros((len(touches), 3))
+        first = int(np.argmin(np.where(after, touches.time, np.inf)))
+        same = touches.setup == touches.setup[first]
+        return after & same, touches.point_table - touches.point_table[same].mean(axis=0)
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """Instants between two touches of one set-up, with enough touches on either side."""
+        instants = []
+        for s in range(len(touches.setups)):
+            t = np.sort(touches.time[touches.setup == s])
+            middle = 0.5 * (t[1:] + t[:-1])
+            instants.append(middle[ON_EACH_SIDE - 1 : len(middle) - ON_EACH_SIDE + 1])
+        every = np.unique(np.concatenate(instants))
+        step = int(np.ceil(len(every) / INSTANTS)) or 1
+        return (Inner("instant", "s", every[::step]),)
+
+    def tuned(self, *values: float) -> "ArtefactSlip":
+        """With this instant, s."""
+        return replace(self, instant=float(values[0]))
+
+    @property
+    def tuning(self) -> Mapping[str, float]:
+        """The instant, s."""
+        return {"instant": self.instant}
+
+
+@dataclass(frozen=True)
+class Drift:
+    """The set-up creeps at a constant rate.
+
+    ``shift = v t``, t since the start of the run, in the directions of the table frame. Parameters
+    mm/h: 1 to 5 um/h.
+
+    Reference:
+        ISO 230-3 (environmental temperature variation error, drift tests).
+    """
+
+    kind = "drift"
+    name = "drift"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Rates of displacement, table frame."""
+        return tuple(Parameter(name, "mm/h", 5 * UM) for name in "XYZ")
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Shifts of the standard."""
+        hours = touches.time / HOUR
+        return tuple(Term(i, Where("shift", 0, i), hours) for i in range(3))
+
+
+def _make_expansion(chain: Chain, arguments: Sequence[str]) -> Effect:
+    counted("artefact-expansion(sensor)", arguments, 1, 1)
+    return ArtefactExpansion(arguments[0])
+
+
+def _maker(word: str, effect: Effect) -> Callable[[Chain, Sequence[str]], Effect]:
+    def make(chain: Chain, arguments: Sequence[str]) -> Effect:
+        counted(word, arguments, 0, 0)
+        return effect
+
+    return make
+
+
+def _propose_expansion(touches: Touches) -> Iterable[Effect]:
+    return (ArtefactExpansion(sensor) for sensor in sensors(touches))
+
+
+def _propose_slip(touches: Touches) -> Iterable[Effect]:
+    slip = ArtefactSlip()
+    return (slip,) if len(slip.inner(touches)[0].grid) else ()
+
+
+def _propose_drift(touches: Touches) -> Iterable[Effect]:
+    return (Drift(),) if np.ptp(touches.time) > 0.0 else ()
+
+
+EXPANSION = Kind(
+    word="artefact-expansion",
+    arguments="sensor",
+    formula="shift = alpha (T - 20 degC) p, p the contact point in the table frame",
+    units="alpha: µm/(m K)",
+    typical="steel 10 to 12, aluminium 23, Invar 0.6 to 1.6 µm/(m K)",
+    source="ISO 1",
+    make=_make_expansion,
+    propose=_propose_expansion,
+)
+SLIP = Kind(
+    word="artefact-slip",
+    arguments="",
+    formula="shift = e + r x (p - c) after an unknown instant, to the end of the set-up",
+    units="e: µm; r: µrad; instant: s",
+    typical="2 to 20 µm",
+    source="clamping practice; rigid motion",
+    make=_maker("artefact-slip", ArtefactSlip()),
+    propose=_propose_slip,
+)
+DRIFT = Kind(
+    word="drift",
+    arguments="",
+    formula="shift = v t, table frame",
+    units="v: µm/h",
+    typical="1 to 5 µm/h",
+    source="ISO 230-3 (drift tests)",
+    make=_maker("drift", Drift()),
+    propose=_propose_drift,
+)

@@ -1,0 +1,117 @@
+"""Form of the standard that differs from its calibration, patch by patch."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.effect import Parameter, Term, Where
+from twin.effects.kind import Kind, counted
+from twin.frames import Array
+from twin.touches import Touches
+from twin.units import UM
+
+FORM_DEGREE = 5
+"""Of the polynomial over a patch: waves down to the size of the patch."""
+FORM_TOUCHES = 30
+"""Fewest touches on a patch whose form can be told from noise."""
+
+
+@dataclass(frozen=True)
+class ArtefactForm:
+    """Smooth form deviation of one patch from its calibration.
+
+    ``bias = sum_(i+j<=n) a_ij P_i(v) P_j(w)``, P the Legendre polynomials over the touched
+    rectangle, v and w in [-1, 1] along the two longest directions of the touched points, n = 5.
+    Parameters mm: 0.5 to 2 um, expected to fall with the degree.
+
+    The touches must be the whole run: its points on the patch give the rectangle.
+
+    Attributes:
+        patch: Label of the feature in the run file.
+
+    Reference:
+        ISO 25178-2 (form); calibration of freeform standards leaves 0.5 to 2 um.
+    """
+
+    patch: str
+
+    kind = "artefact-form"
+
+    @property
+    def name(self) -> str:
+        """`artefact-form(pad4)`."""
+        return f"artefact-form({self.patch})"
+
+    @property
+    def _degrees(self) -> list[tuple[int, int]]:
+        n = FORM_DEGREE
+        return [(i, total - i) for total in range(n + 1) for i in range(total, -1, -1)]
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Coefficients, by rising degree."""
+        return tuple(
+            Parameter(f"P{i}{j}", "mm", 3 * UM / np.sqrt(1.0 + i + j)) for i, j in self._degrees
+        )
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A bias along the normal on the patch, nothing elsewhere."""
+        rows = np.flatnonzero(touches.feature == self.patch)
+        v, w = _legendre(_local(touches.point[rows]))
+        out = []
+        for k, (i, j) in enumerate(self._degrees):
+            amount = np.zeros(len(touches))
+            amount[rows] = v[i] * w[j]
+            out.append(Term(k, Where("bias"), amount))
+        return tuple(out)
+
+
+def _local(point: Array) -> Array:
+    """Places (M, 2) in [-1, 1] over the rectangle of points (M, 3) along their two longest axes."""
+    if len(point) < 3:
+        return np.zeros((len(point), 2))
+    _, _, axes = np.linalg.svd(point - point.mean(axis=0), full_matrices=False)
+    # the sign of a singular vector is arbitrary: let its largest entry be positive
+    axes = axes[:2] * np.sign(axes[np.arange(2), np.argmax(np.abs(axes[:2]), axis=1)])[:, None]
+    place = point @ axes.T
+    low, high = place.min(axis=0), place.max(axis=0)
+    return (2.0 * place - low - high) / np.maximum(high - low, 1e-9)
+
+
+def _legendre(place: Array) -> tuple[list[Array], list[Array]]:
+    """Legendre polynomials up to `FORM_DEGREE` of both columns of (M, 2)."""
+    out = []
+    for x in (place[:, 0], place[:, 1]):
+        p = [np.ones_like(x), x]
+        for k in range(1, FORM_DEGREE):
+            p.append(((2 * k + 1) * x * p[-1] - k * p[-2]) / (k + 1))
+        out.append(p)
+    return out[0], out[1]
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> ArtefactForm:
+    """From the label of the patch."""
+    counted("artefact-form(patch)", arguments, 1, 1)
+    return ArtefactForm(arguments[0])
+
+
+def propose(touches: Touches) -> Iterable[ArtefactForm]:
+    """Every feature with enough touches."""
+    names, counts = np.unique(touches.feature, return_counts=True)
+    for name, count in zip(names, counts, strict=True):
+        if name and count >= FORM_TOUCHES:
+            yield ArtefactForm(str(name))
+
+
+KIND = Kind(
+    word="artefact-form",
+    arguments="patch",
+    formula="bias = sum a_ij P_i(v) P_j(w) over the touched rectangle of a patch, i + j <= 5",
+    units="a_ij: µm",
+    typical="0.5 to 2 µm, correlated over 20 to 50 mm",
+    source="calibration of freeform standards",
+    make=make,
+    propose=propose,
+)

@@ -1,0 +1,115 @@
+"""Bending of a column that is warmer on one side than on the other."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.effect import Parameter, Term, Where
+from twin.effects.kind import (
+    Kind,
+    checked_linear,
+    counted,
+    moving_axes,
+    own_component,
+    refusal,
+    sensor_record,
+    sensors,
+)
+from twin.touches import Touches
+from twin.units import URAD
+
+USAGE = "column-bending(axis,sensor,sensor)"
+
+
+@dataclass(frozen=True)
+class ColumnBending:
+    """A column bends away from its warm side, more the higher the carriage stands on it.
+
+    With s = (q - q_min)/L along a column of travel L and the gradient ``D = T_1 - T_2``, the
+    carriage turns by ``E_r = a D s`` and moves across by ``E_e = +-a D L s^2/2``, for the bending
+    about either axis across the column. Holds for a linear gradient over the depth h: a = alpha
+    L/h. Parameters rad/K: 2 to 15 urad/K.
+
+    Attributes:
+        axis: Linear axis that travels along the column.
+        warm: Sensor on one side.
+        cold: Sensor on the other.
+        component: Index of the component along the axis.
+
+    Reference:
+        Chen 1995: 12 arcsec of pitch from 4 K; curvature alpha D/h of a bar with a gradient.
+    """
+
+    axis: str
+    warm: str
+    cold: str
+    component: int
+
+    kind = "column-bending"
+
+    @property
+    def name(self) -> str:
+        """`column-bending(Z,columnLeft,columnRight)`."""
+        return f"column-bending({self.axis},{self.warm},{self.cold})"
+
+    @property
+    def _across(self) -> tuple[int, int]:
+        return (self.component + 1) % 3, (self.component + 2) % 3
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Rotation at full height, per kelvin, about the two axes across."""
+        names = ("XYZ"[i] for i in self._across)
+        return tuple(Parameter(f"about {name}", "rad/K", 20 * URAD) for name in names)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Twists of the axis: the rotation r, and its integral along the column, r x d."""
+        i = touches.chain.link_index(self.axis)
+        low, high = touches.chain.links[i].range
+        height = (touches.reading(self.axis) - low) / (high - low)
+        gradient = sensor_record(touches, self.warm) - sensor_record(touches, self.cold)
+        along = np.eye(3)[self.component]
+        out = []
+        for k, about in enumerate(self._across):
+            moved = np.cross(np.eye(3)[about], along)
+            straightness = int(np.argmax(np.abs(moved)))
+            sag = 0.5 * (high - low) * height**2 * moved[straightness]
+            out.append(Term(k, Where("twist", i, 3 + about), gradient * height))
+            out.append(Term(k, Where("twist", i, straightness), gradient * sag))
+        return tuple(out)
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> ColumnBending:
+    """From the linear axis and a sensor on either side of its column."""
+    counted(USAGE, arguments, 3, 3)
+    axis = checked_linear(USAGE, arguments, arguments[0], chain)
+    if arguments[1] == arguments[2]:
+        raise refusal(USAGE, arguments, "two different sensors")
+    return ColumnBending(axis, arguments[1], arguments[2], own_component(chain, axis))
+
+
+def propose(touches: Touches) -> Iterable[ColumnBending]:
+    """Every linear axis that moved, with pairs of sensors that are named for a column.
+
+    A gradient needs two sensors on the same body; only their names tell.
+    """
+    on_column = [s for s in sensors(touches) if s.lower().startswith("column")]
+    for axis in moving_axes(touches):
+        if axis in touches.chain.linear_axes:
+            for warm, cold in combinations(on_column, 2):
+                yield ColumnBending(axis, warm, cold, own_component(touches.chain, axis))
+
+
+KIND = Kind(
+    word="column-bending",
+    arguments="axis,sensor,sensor",
+    formula="E_r = a (T_1 - T_2) s, E_e = a (T_1 - T_2) L s^2/2; s = (q - q_min)/L",
+    units="a: µrad/K",
+    typical="2 to 15 µrad/K; 12 arcsec from 4 K",
+    source="Chen 1995; curvature alpha (T_1 - T_2)/h",
+    make=make,
+    propose=propose,
+)

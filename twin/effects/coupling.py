@@ -1,0 +1,122 @@
+"""Component error of one axis that depends on the reading of another: the non-rigid machine."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.effect import Parameter, Term, Where
+from twin.effects.kind import (
+    Kind,
+    base_unit,
+    checked_axis,
+    component_symbol,
+    counted,
+    moving_axes,
+    refusal,
+)
+from twin.frames import Array
+from twin.shapes import scaled
+from twin.symbols import Family, Symbol
+from twin.touches import Touches
+from twin.units import UM, URAD
+
+USAGE = "coupling(symbol,axis)"
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Lowest joint term of a component error over its own reading and another axis's.
+
+    ``E = a f(q_own) g(q_other)``, f and g each the reading scaled to [-1, 1] on a linear axis and
+    cosine or sine on a rotary one: pitch of X that changes with the height of Z is
+    ``EBX = a u_X u_Z``. The weight of what travels bends the guide it travels on, more in one
+    place of the other axis than in another. Parameters are peak amplitudes, mm or rad: 10 to
+    60 urad, on slender machines more.
+
+    Attributes:
+        symbol: The component error.
+        other: Name of the axis it also depends on.
+
+    Reference:
+        J. S. Chen, Int. J. Mach. Tools Manufact. 35 (1995): pitch of X depends on Z, 58 urad.
+    """
+
+    symbol: Symbol
+    other: str
+
+    kind = "coupling"
+
+    @property
+    def name(self) -> str:
+        """`coupling(EBX,Z)`."""
+        return f"coupling({self.symbol.name},{self.other})"
+
+    @property
+    def _words(self) -> list[str]:
+        """Name of every joint term; an axis whose letter turns gives a cosine and a sine."""
+        own, other = (_factor_names(axis) for axis in (self.symbol.link, self.other))
+        words = [" ".join(w for w in (f, g) if w) for f in own for g in other]
+        return ["amplitude"] if len(words) == 1 else words
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Peak amplitudes."""
+        sd = 100 * URAD if self.symbol.is_angular else 10 * UM
+        return tuple(Parameter(word, base_unit(self.symbol), sd) for word in self._words)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Twists of the axis."""
+        i = touches.chain.link_index(self.symbol.link)
+        where = Where("twist", i, self.symbol.component)
+        own, other = _factors(touches, self.symbol.link), _factors(touches, self.other)
+        products = [f * g for f in own for g in other]
+        return tuple(Term(k, where, product) for k, product in enumerate(products))
+
+
+def _factor_names(axis: str) -> tuple[str, ...]:
+    return ("",) if axis[0] in "XYZUVW" else (f"cos {axis}", f"sin {axis}")
+
+
+def _factors(touches: Touches, axis: str) -> tuple[Array, ...]:
+    """Lowest functions of one reading, each (N,)."""
+    q = touches.reading(axis)
+    link = touches.chain.link(axis)
+    return (scaled(q, link),) if link.kind == "linear" else (np.cos(q), np.sin(q))
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> Coupling:
+    """From the component error and the other axis."""
+    counted(USAGE, arguments, 2, 2)
+    symbol = component_symbol(chain, arguments[0])
+    other = checked_axis(USAGE, arguments, arguments[1], chain)
+    if other == symbol.link:
+        raise refusal(USAGE, arguments, f"another axis than {other} itself")
+    return Coupling(symbol, other)
+
+
+def propose(touches: Touches) -> Iterable[Coupling]:
+    """Every angular component of every axis that moved, with every other axis that moved.
+
+    A bending guide turns what stands on it; its straightness that changes with another axis is
+    seen through the lever of that turn and need not be proposed apart.
+    """
+    axes = moving_axes(touches)
+    for symbol in touches.chain.symbols:
+        if symbol.family is Family.COMPONENT and symbol.is_angular and symbol.link in axes:
+            for other in axes:
+                if other != symbol.link:
+                    yield Coupling(symbol, other)
+
+
+KIND = Kind(
+    word="coupling",
+    arguments="symbol,axis",
+    formula="E = a f(q_own) g(q_other); f, g = u (linear axis), cos q and sin q (rotary axis)",
+    units="a: µrad or µm",
+    typical="10 to 60 µrad over the travel",
+    source="Chen 1995 (pitch of X depends on Z, 12 arcsec)",
+    make=make,
+    propose=propose,
+)

@@ -1,0 +1,189 @@
+"""Sag under the weight of what the axes carry about: rams, heads, cradles, loads off centre."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.effect import Effect, Parameter, Term, Where
+from twin.effects.kind import (
+    Kind,
+    base_unit,
+    checked_axis,
+    component_symbol,
+    counted,
+    moving_axes,
+    own_component,
+    refusal,
+)
+from twin.symbols import Family, Symbol
+from twin.touches import Touches
+from twin.units import UM, URAD
+
+USAGE = "gravity(symbol[,axis])"
+
+
+@dataclass(frozen=True)
+class RamSag:
+    """Sag of a ram or column that travels out of its guide.
+
+    ``E = a s^3``, s = (q_max - q)/(q_max - q_min) the overhang as a share of the travel: a
+    cantilever under a load at its end sags by F L^3/(3 E I). One parameter, the sag at full
+    overhang, mm or rad: 1 to 10 um.
+
+    Attributes:
+        symbol: The component error, across the axis for a sag.
+
+    Reference:
+        Euler-Bernoulli cantilever with end load.
+    """
+
+    symbol: Symbol
+
+    kind = "gravity"
+
+    @property
+    def name(self) -> str:
+        """`gravity(EYZ)`."""
+        return f"gravity({self.symbol.name})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Sag at full overhang."""
+        sd = 100 * URAD if self.symbol.is_angular else 20 * UM
+        return (Parameter("amplitude", base_unit(self.symbol), sd),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A twist of the axis."""
+        i = touches.chain.link_index(self.symbol.link)
+        low, high = touches.chain.links[i].range
+        overhang = (high - touches.reading(self.symbol.link)) / (high - low)
+        return (Term(0, Where("twist", i, self.symbol.component), overhang**3),)
+
+
+@dataclass(frozen=True)
+class TiltSag:
+    """Sag of a head or cradle that tilts its own weight.
+
+    ``E = a sin 2q``. The weight pulls with m g sin q across and m g cos q along the tilted body;
+    the arm that its sag across gives the pull along makes the product of both. What the weight does
+    in the first harmonic, sin q and cos q, cannot be told from `geometric(EBB,1)` and belongs
+    there. One parameter, the peak, mm or rad: 10 to 50 urad at rated load, more on slender heads.
+
+    Attributes:
+        symbol: The component error.
+
+    Reference:
+        Second-order (P-delta) moment of an elastically held weight.
+    """
+
+    symbol: Symbol
+
+    kind = "gravity"
+
+    @property
+    def name(self) -> str:
+        """`gravity(EBB)`."""
+        return f"gravity({self.symbol.name})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Peak of the second harmonic."""
+        sd = 100 * URAD if self.symbol.is_angular else 20 * UM
+        return (Parameter("amplitude", base_unit(self.symbol), sd),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A twist of the axis."""
+        where = Where("twist", touches.chain.link_index(self.symbol.link), self.symbol.component)
+        return (Term(0, where, np.sin(2.0 * touches.reading(self.symbol.link))),)
+
+
+@dataclass(frozen=True)
+class OffCentreLoad:
+    """Tilt of a cradle under a load that lies off the centre of the table it carries.
+
+    ``E = sin(q_tilt) (a cos(q_table) + b sin(q_table))``: the moment m g r sin B cos(C - phi).
+    Parameters mm or rad: 10 urad.
+
+    Attributes:
+        symbol: The component error of the tilting axis.
+        table: Name of the axis that turns the load.
+
+    Reference:
+        Moment of a weight about the tilting axis, over its stiffness.
+    """
+
+    symbol: Symbol
+    table: str
+
+    kind = "gravity"
+
+    @property
+    def name(self) -> str:
+        """`gravity(EBB,C)`."""
+        return f"gravity({self.symbol.name},{self.table})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Components of the off-centre load in phase with the table and a quarter turn on."""
+        unit, sd = base_unit(self.symbol), 30 * URAD if self.symbol.is_angular else 10 * UM
+        return (Parameter("cos", unit, sd), Parameter("sin", unit, sd))
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Twists of the tilting axis."""
+        where = Where("twist", touches.chain.link_index(self.symbol.link), self.symbol.component)
+        tilt, turn = np.sin(touches.reading(self.symbol.link)), touches.reading(self.table)
+        return (Term(0, where, tilt * np.cos(turn)), Term(1, where, tilt * np.sin(turn)))
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> Effect:
+    """From the component error, and the axis of the table for a load off its centre."""
+    counted(USAGE, arguments, 1, 2)
+    symbol = component_symbol(chain, arguments[0])
+    rotary = chain.link(symbol.link).kind == "rotary"
+    if len(arguments) == 1:
+        return TiltSag(symbol) if rotary else RamSag(symbol)
+    table = checked_axis(USAGE, arguments, arguments[1], chain)
+    if not rotary or table not in chain.rotary_axes or table == symbol.link:
+        raise refusal(USAGE, arguments, "a rotary axis that tilts and another that turns the load")
+    return OffCentreLoad(symbol, table)
+
+
+def propose(touches: Touches) -> Iterable[Effect]:
+    """Straightness of linear axes, own rotation of tilting axes, loads on tables that they carry.
+
+    An axis that turns about the vertical of the machine does not tilt what it carries.
+    """
+    chain, axes = touches.chain, moving_axes(touches)
+    for axis in axes:
+        own = own_component(chain, axis)
+        if axis in chain.linear_axes:
+            for component in (i for i in range(3) if i != own):
+                yield RamSag(Symbol(component, axis, Family.COMPONENT))
+        elif abs(chain.link(axis).direction[2]) < 0.9:
+            yield TiltSag(Symbol(own, axis, Family.COMPONENT))
+            for table in _carried_tables(chain, axis):
+                if table in axes:
+                    yield OffCentreLoad(Symbol(own, axis, Family.COMPONENT), table)
+
+
+def _carried_tables(chain: Chain, axis: str) -> list[str]:
+    """Rotary axes between an axis and the workpiece it carries."""
+    if not chain.link(axis).carries_workpiece:
+        return []
+    inner = chain.links[: chain.link_index(axis)]
+    return [link.name for link in inner if link.kind == "rotary"]
+
+
+KIND = Kind(
+    word="gravity",
+    arguments="symbol[,axis]",
+    formula="E = a s^3, s = (q_max - q)/travel (ram); a sin 2q (head, cradle); "
+    "sin B (a cos C + b sin C) (load off centre)",
+    units="a, b: µm or µrad",
+    typical="ram 1 to 10 µm; cradle 10 to 50 µrad at rated load; load off centre 10 µrad",
+    source="cantilever F L^3/(3 E I); moment of a weight over the stiffness that holds it",
+    make=make,
+    propose=propose,
+)

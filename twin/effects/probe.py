@@ -1,0 +1,162 @@
+"""What a touch probe adds of its own: lobes, its effective radius, a stylus that bends."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.effect import Effect, Inner, Parameter, Term, Where
+from twin.effects.kind import Kind, counted
+from twin.frames import Array
+from twin.touches import Touches
+from twin.units import UM
+
+
+def normal_in_tool(touches: Touches) -> Array:
+    """Outward normals in the tool frame, (N, 3); the probe approaches against them."""
+    tool_axes = touches.reach.twist[:, touches.chain.link_index("t"), :3]
+    return np.einsum("nki,ni->nk", tool_axes, touches.normal_table)
+
+
+@dataclass(frozen=True)
+class ProbeLobing:
+    """Pre-travel that varies with the direction in which the stylus is deflected.
+
+    ``bias = sin(theta) (a cos(k phi) + b sin(k phi))``, theta and phi latitude from the tool axis
+    and azimuth of the surface normal in the tool frame; inner parameter k, three for the three
+    seats of a kinematic probe. Parameters mm: 3 to 8 um, strain-gauge probes below 1 um.
+
+    Attributes:
+        lobes: k.
+
+    Reference:
+        Estler et al., Precision Engineering 19 (1996), on pre-travel variation of touch probes.
+    """
+
+    lobes: float = 3.0
+
+    kind = "probe-lobing"
+    name = "probe-lobing"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Cosine and sine."""
+        return (Parameter("cos", "mm", 3 * UM), Parameter("sin", "mm", 3 * UM))
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A bias along the normal."""
+        n = normal_in_tool(touches)
+        sideways = np.hypot(n[:, 0], n[:, 1])
+        phi = np.arctan2(n[:, 1], n[:, 0])
+        waves = (np.cos(self.lobes * phi), np.sin(self.lobes * phi))
+        return tuple(Term(i, Where("bias"), sideways * wave) for i, wave in enumerate(waves))
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """Two to six lobes; one is the offset of the stylus."""
+        return (Inner("lobes", "1", np.arange(2.0, 7.0), continuous=False),)
+
+    def tuned(self, *values: float) -> "ProbeLobing":
+        """With this number of lobes."""
+        return replace(self, lobes=float(values[0]))
+
+    @property
+    def tuning(self) -> Mapping[str, float]:
+        """The number of lobes."""
+        return {"lobes": self.lobes}
+
+
+@dataclass(frozen=True)
+class ProbeRadius:
+    """Effective radius of the ball minus the radius that is stated.
+
+    ``bias = a``: a larger ball meets the surface earlier, by as much along every normal; a
+    pre-travel v t_d that is the same in every direction makes it smaller. One parameter, mm:
+    1 to 5 um.
+
+    Reference:
+        ISO 10360-5 (probing systems: effective size of the stylus tip).
+    """
+
+    kind = "probe-radius"
+    name = "probe-radius"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Excess radius."""
+        return (Parameter("amplitude", "mm", 5 * UM),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A bias along the normal."""
+        return (Term(0, Where("bias"), np.ones(len(touches))),)
+
+
+@dataclass(frozen=True)
+class StylusBending:
+    """Bending of the stylus, which grows with the latitude of the touch.
+
+    ``bias = a sin^2(theta)``, theta the angle between the surface normal and the tool axis: the
+    trigger force bends a stylus of length l by F l^3/(3 E I) times sin(theta), of which sin(theta)
+    lies along the normal. Positive where the surface is seen outside. One parameter, mm: 0.5 to
+    3 um.
+
+    Reference:
+        Euler-Bernoulli cantilever with end load; Estler et al. 1996.
+    """
+
+    kind = "stylus-bending"
+    name = "stylus-bending"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Deviation of a touch square to the stylus."""
+        return (Parameter("amplitude", "mm", 5 * UM),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A bias along the normal."""
+        n = normal_in_tool(touches)
+        return (Term(0, Where("bias"), n[:, 0] ** 2 + n[:, 1] ** 2),)
+
+
+def _maker(word: str, effect: Effect) -> Callable[[Chain, Sequence[str]], Effect]:
+    def make(chain: Chain, arguments: Sequence[str]) -> Effect:
+        counted(word, arguments, 0, 0)
+        return effect
+
+    return make
+
+
+def _always(effect: Effect) -> Callable[[Touches], Iterable[Effect]]:
+    return lambda touches: (effect,)
+
+
+LOBING = Kind(
+    word="probe-lobing",
+    arguments="",
+    formula="bias = sin(theta) (a cos(k phi) + b sin(k phi)), k = 2 to 6 lobes, tool frame",
+    units="a, b: µm; k: 1",
+    typical="3 to 8 µm with three lobes (kinematic), below 1 µm (strain gauge)",
+    source="Estler et al. 1996",
+    make=_maker("probe-lobing", ProbeLobing()),
+    propose=_always(ProbeLobing()),
+)
+RADIUS = Kind(
+    word="probe-radius",
+    arguments="",
+    formula="bias = a, effective minus stated radius",
+    units="a: µm",
+    typical="1 to 5 µm",
+    source="ISO 10360-5",
+    make=_maker("probe-radius", ProbeRadius()),
+    propose=_always(ProbeRadius()),
+)
+BENDING = Kind(
+    word="stylus-bending",
+    arguments="",
+    formula="bias = a sin^2(theta), theta between normal and tool axis",
+    units="a: µm",
+    typical="0.5 to 3 µm",
+    source="cantilever F l^3/(3 E I); Estler et al. 1996",
+    make=_maker("stylus-bending", StylusBending()),
+    propose=_always(StylusBending()),
+)

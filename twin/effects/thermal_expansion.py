@@ -1,0 +1,87 @@
+"""A scale that follows the temperature of a sensor."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from twin.chain import Chain
+from twin.effect import Parameter, Term, Where
+from twin.effects.kind import (
+    Kind,
+    checked_linear,
+    counted,
+    moving_axes,
+    own_component,
+    sensor_record,
+    sensors,
+)
+from twin.touches import Touches
+from twin.units import T_REF
+
+USAGE = "thermal-expansion(axis,sensor)"
+
+
+@dataclass(frozen=True)
+class ThermalExpansion:
+    """Growth of the scale of a linear axis with the temperature of a sensor.
+
+    ``E = alpha (T - 20 degC) q`` along the axis. Holds for a scale that is fixed at reading zero,
+    free elsewhere, and has one temperature over its whole length. One parameter, alpha, 1/K: steel
+    10 to 12, glass 8, aluminium 23 um/(m K); a screw that is warmer than its sensor shows more.
+
+    Attributes:
+        axis: Name of the linear axis.
+        sensor: Name of the sensor.
+        component: Index of the component along the axis.
+
+    Reference:
+        ISO 1 (20 degC); ISO 230-3 (thermal effects).
+    """
+
+    axis: str
+    sensor: str
+    component: int
+
+    kind = "thermal-expansion"
+
+    @property
+    def name(self) -> str:
+        """`thermal-expansion(X,scaleX)`."""
+        return f"thermal-expansion({self.axis},{self.sensor})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Coefficient of expansion."""
+        return (Parameter("amplitude", "1/K", 20e-6),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A twist of the axis."""
+        where = Where("twist", touches.chain.link_index(self.axis), self.component)
+        warmth = sensor_record(touches, self.sensor) - T_REF
+        return (Term(0, where, warmth * touches.reading(self.axis)),)
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> ThermalExpansion:
+    """From the linear axis and the sensor."""
+    counted(USAGE, arguments, 2, 2)
+    axis = checked_linear(USAGE, arguments, arguments[0], chain)
+    return ThermalExpansion(axis, arguments[1], own_component(chain, axis))
+
+
+def propose(touches: Touches) -> Iterable[ThermalExpansion]:
+    """Every linear axis that moved with every sensor that varies."""
+    for axis in moving_axes(touches):
+        if axis in touches.chain.linear_axes:
+            for sensor in sensors(touches):
+                yield ThermalExpansion(axis, sensor, own_component(touches.chain, axis))
+
+
+KIND = Kind(
+    word="thermal-expansion",
+    arguments="axis,sensor",
+    formula="E = alpha (T - 20 degC) q, along the axis",
+    units="alpha: µm/(m K)",
+    typical="steel 10 to 12, glass 8, aluminium 23 µm/(m K)",
+    source="ISO 1; ISO 230-3",
+    make=make,
+    propose=propose,
+)
