@@ -14,6 +14,9 @@ from twin.frames import Array, apply, inverse, turn
 from twin.kinematics import linear_directions, table_to_tool, tip
 from twin.touches import Labels, Setup
 
+TABLE_RADIUS = 160.0
+"""Of the rotary table's face where nobody says otherwise, mm."""
+
 TABLE_THICKNESS = 60.0
 """How much of the table below its face is kept clear, mm."""
 

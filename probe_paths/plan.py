@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from artefact.standard import Standard
+from probe_paths.clearance import TABLE_RADIUS
 from probe_paths.order import Visit
 from probe_paths.probe import Probe
 from twin.chain import Chain
@@ -50,7 +51,7 @@ class PlanOptions:
     anchor: str = ""
     anchor_tilt: float = 40.0 * DEG
     shortest_visit: int = 4
-    table_radius: float = 160.0
+    table_radius: float = TABLE_RADIUS
     tolerated: int = 0
 
 
