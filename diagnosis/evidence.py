@@ -1,0 +1,176 @@
+"""How much a set of further effects explains: objective, evidence, tests, all in one projection."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import cho_factor, solve_triangular
+from scipy.special import betainc
+
+from diagnosis.candidates import Complement, Signatures
+from diagnosis.linear import LeftOut, left_out
+from diagnosis.noise import PRIOR_DOF
+from twin.frames import Array
+
+VISIBLE = 0.25
+"""Squared signature per unit of prior, over the noise, below which a direction of an effect's
+parameters could not be seen even at its expected size; it is not counted as a degree of freedom."""
+
+SMALLEST = 1e-300
+"""Probabilities are not told smaller than this."""
+
+
+def f_probability(drop: Array | float, k: Array | float, rest: Array | float, dof: float) -> Array:
+    """Probability of an F statistic at least as large: drop over k against rest over dof.
+
+    Args:
+        drop: Fall of the squared residual by k further columns.
+        k: Their number.
+        rest: Squared residual with them.
+        dof: Degrees of freedom with them.
+    """
+    rest = np.maximum(rest, 1e-300)
+    k = np.maximum(k, 1e-9)
+    x = rest / (rest + np.maximum(drop, 0.0))
+    p = betainc(0.5 * np.maximum(dof, 1.0), 0.5 * np.asarray(k), x)
+    return np.maximum(p, SMALLEST)
+
+
+@dataclass(frozen=True, eq=False)
+class EffectSet:
+    """A model with a set of further effects in it.
+
+    Attributes:
+        complement: What the model without them leaves.
+        A: Their projected columns, (N + P, K); K may be 0.
+    """
+
+    complement: Complement
+    A: Array
+
+    @cached_property
+    def _factor(self) -> Array:
+        """Lower triangle of ``A^T A + 1``, the unit matrix being the prior of the effects."""
+        G = self.A.T @ self.A + np.eye(self.A.shape[1])
+        return np.tril(cho_factor(G, lower=True)[0])
+
+    def whiten(self, B: Array) -> Array:
+        """``L^-1 A^T B``: (K, M) from columns (N + P, M), whatever their precision."""
+        inside = np.asarray(self.A.T.astype(B.dtype) @ B, dtype=float)
+        if len(inside) == 0:
+            return inside
+        return np.asarray(solve_triangular(self._factor, inside, lower=True, check_finite=False))
+
+    @cached_property
+    def along(self) -> Array:
+        """``L^-1 A^T r``, (K,)."""
+        return self.whiten(self.complement.residual[:, None])[:, 0]
+
+    @cached_property
+    def objective(self) -> float:
+        """Squared residual with the effects in, prior rows included."""
+        r = self.complement.residual
+        return float(r @ r - self.along @ self.along)
+
+    @cached_property
+    def log_det(self) -> float:
+        """Half of it is what the freedom of the effects costs."""
+        return float(2.0 * np.log(np.diag(self._factor)).sum()) if self.A.shape[1] else 0.0
+
+    @cached_property
+    def evidence(self) -> float:
+        """Logarithm of the evidence up to a constant; the size of the noise is integrated out."""
+        return float(log_evidence(self.complement, self.objective, self.log_det))
+
+    @cached_property
+    def dof(self) -> float:
+        """Degrees of freedom left with the effects in."""
+        return self.complement.dof - self.A.shape[1]
+
+    @cached_property
+    def phi(self) -> Array:
+        """Parameters of the effects in units of their prior, (K,)."""
+        if self.A.shape[1] == 0:
+            return np.zeros(0)
+        L = self._factor
+        return np.asarray(solve_triangular(L, self.along, lower=True, trans=1, check_finite=False))
+
+    @cached_property
+    def residual(self) -> Array:
+        """Residual with the effects in, data and prior rows, (N + P,)."""
+        return np.asarray(self.complement.residual - self.A @ self.phi)
+
+    @cached_property
+    def held_out(self) -> LeftOut:
+        """Every table pose predicted by the others, with the effects in; whitened."""
+        n = len(self.complement.u)
+        Q = self.complement.Q[:n]
+        if self.A.shape[1]:
+            # columns of the augmented basis: A L^-T is orthonormal together with its prior rows
+            extra = solve_triangular(self._factor, self.A[:n].T, lower=True, check_finite=False).T
+            Q = np.hstack([Q, extra])
+        return left_out(Q, self.residual[:n], self.complement.groups)
+
+    @cached_property
+    def held_out_rms(self) -> float:
+        """Root mean square of the standardised errors of held-out poses, in units of the noise."""
+        return float(np.sqrt(np.mean(self.held_out.standardised**2)))
+
+
+def log_evidence(complement: Complement, objective: Array | float, log_det: Array | float) -> Array:
+    """Logarithm of the evidence up to a constant, with a scale-free noise.
+
+    ``-(n + nu)/2 log(objective + nu) - log_det/2``: the marginal likelihood of a normal linear
+    model whose noise has an inverse chi-squared prior of nu degrees of freedom.
+    """
+    n = len(complement.u)
+    objective = np.maximum(objective, 1e-9)
+    return -0.5 * (n + PRIOR_DOF) * np.log(objective + PRIOR_DOF) - 0.5 * np.asarray(log_det)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scores:
+    """What every variant would do if it came into a set of effects.
+
+    Attributes:
+        drop: Fall of the objective with the prior in force, (V,).
+        free_drop: Fall of the squared residual over visible directions, prior aside, (V,).
+        freedom: Number of those directions, (V,).
+        evidence: Log evidence of the set with the variant, (V,).
+        p: Probability of such a fall by chance, one variant, no correction, (V,).
+    """
+
+    drop: Array
+    free_drop: Array
+    freedom: Array
+    evidence: Array
+    p: Array
+
+
+def score_all(effects: EffectSet, pool: Signatures) -> Scores:
+    """Score every variant of a pool as an addition to a set of effects.
+
+    One product of the set's columns with all signatures, then small eigenproblems of the width of
+    each variant.
+    """
+    E = effects.whiten(pool.C)
+    g = pool.along - E.T @ effects.along
+    count = len(pool.variants)
+    drop, free, freedom, log_det = (np.zeros(count) for _ in range(4))
+    for k, (which, cols) in pool.by_width.items():
+        own = np.moveaxis(E[:, cols], 0, 1)  # (V_k, K, k)
+        S = pool.gram[k] - np.einsum("vai,vaj->vij", own, own)
+        values, vectors = np.linalg.eigh(S)
+        values = np.maximum(values, 0.0)
+        along = np.einsum("vij,vi->vj", vectors, g[cols]) ** 2
+        drop[which] = (along / (1.0 + values)).sum(axis=1)
+        log_det[which] = np.log1p(values).sum(axis=1)
+        seen = values > VISIBLE
+        free[which] = np.where(seen, along / np.where(seen, values, 1.0), 0.0).sum(axis=1)
+        freedom[which] = seen.sum(axis=1)
+    rest = np.maximum(effects.objective - free, 1e-9)
+    p = np.where(
+        freedom > 0, f_probability(free, freedom, rest, effects.dof - float(freedom.max())), 1.0
+    )
+    total = log_evidence(effects.complement, effects.objective - drop, effects.log_det + log_det)
+    return Scores(drop, free, freedom, total, p)

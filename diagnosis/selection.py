@@ -1,0 +1,266 @@
+"""Choice of the effects that a model lacks: forward with alternatives, swaps, a backward look.
+
+A first step that is merely the best single one may be a compromise between two real effects; so a
+few different sets are carried along, and in each every member is offered for exchange whenever
+another has joined. A set stands only if every member passes three tests with the others in place:
+its probability by chance, corrected for the grid of its inner parameters and for the number of
+candidates; the evidence, which charges it for its freedom; and the error of table poses that were
+left out of the fit.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.candidates import Complement, Progress, Signatures, quiet
+from diagnosis.evidence import EffectSet, Scores, f_probability, score_all
+from twin.effect import Effect
+from twin.frames import Array
+
+CHANCE = 1e-3
+"""Probability, all candidates and grids together, that a run without a hidden effect gets one."""
+
+WORTH = 3.0
+"""Least gain of log evidence by which an effect pays for its freedom: odds of twenty to one."""
+
+ALIKE = 0.95
+"""Correlation of two fitted signatures from which one set need not be carried beside the other."""
+
+CARRIED = 4
+"""Sets that are carried from one size to the next."""
+
+MOST_EFFECTS = 6
+"""Largest number of effects that one run is asked for."""
+
+LISTED = 25
+"""Candidates that are told of, best first."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Member:
+    """An effect in a set, at one point of its grid.
+
+    Attributes:
+        variant: Index into the variants of the pool.
+        candidate: Index into its names.
+        effect: With its inner parameters.
+    """
+
+    variant: int
+    candidate: int
+    effect: Effect
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chosen:
+    """A set of effects with what it explains.
+
+    Attributes:
+        members: In the order in which they joined.
+        effects: The set in the projection.
+    """
+
+    members: tuple[Member, ...]
+    effects: EffectSet
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Verified:
+    """Tests of one member with all the others in place.
+
+    Attributes:
+        member: The effect.
+        p_value: Probability by chance, corrected for grid and number of candidates.
+        evidence: Gain of log evidence by this member.
+        held_out: Held-out error with it over that without it.
+        surprise: Gain of the held-out log predictive density by it.
+    """
+
+    member: Member
+    p_value: float
+    evidence: float
+    held_out: float
+    surprise: float
+
+    @property
+    def stands(self) -> bool:
+        """Whether all tests are passed."""
+        return (
+            self.p_value < CHANCE
+            and self.evidence > WORTH
+            and self.held_out < 1.0
+            and self.surprise > 0.0
+        )
+
+
+def effect_set(
+    complement: Complement, pool: Signatures, members: Sequence[Member], fixed: Array | None = None
+) -> EffectSet:
+    """Set of members of a pool, with further fixed columns beside them."""
+    blocks = [] if fixed is None else [fixed]
+    blocks += [pool.columns_of(m.variant) for m in members]
+    rows = len(complement.residual)
+    return EffectSet(complement, np.hstack(blocks) if blocks else np.zeros((rows, 0)))
+
+
+class Search:
+    """Search among sets of effects of one pool.
+
+    Args:
+        pool: Signatures of all candidates.
+        fixed: Further columns that are in every set, (N + P, K), such as a pattern without a name.
+        progress: Told after every step.
+    """
+
+    def __init__(
+        self, pool: Signatures, fixed: Array | None = None, progress: Progress = quiet
+    ) -> None:
+        self.pool = pool
+        self.complement = pool.complement
+        self.fixed = fixed
+        self.progress = progress
+        self._scores: dict[tuple[int, ...], Scores] = {}
+
+    def chosen(self, members: Iterable[Member]) -> Chosen:
+        """A set in the projection."""
+        members = tuple(members)
+        return Chosen(members, effect_set(self.complement, self.pool, members, self.fixed))
+
+    def member(self, variant: int) -> Member:
+        """A variant as a member of a set."""
+        effect = self.pool.variants[variant]
+        return Member(variant, int(self.pool.owner[variant]), effect)
+
+    def scores(self, chosen: Chosen) -> Scores:
+        """Scores of all variants as additions to a set, computed once."""
+        key = tuple(sorted(m.variant for m in chosen.members))
+        if key not in self._scores:
+            self._scores[key] = score_all(chosen.effects, self.pool)
+        return self._scores[key]
+
+    def ranking(self, chosen: Chosen) -> list[int]:
+        """Best variant of every candidate that is not in a set, most evidence first."""
+        evidence = self.scores(chosen).evidence
+        order = np.argsort(-evidence, kind="stable")
+        taken = {m.candidate for m in chosen.members}
+        _, first = np.unique(self.pool.owner[order], return_index=True)
+        ranked = order[np.sort(first)]
+        return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
+
+    def extensions(self, chosen: Chosen, count: int) -> list[Chosen]:
+        """The best sets of one member more, no two alike in what they explain."""
+        out: list[Chosen] = []
+        directions: list[Array] = []
+        scores = self.scores(chosen)
+        for variant in self.ranking(chosen)[: 12 * count]:
+            if len(out) >= count or scores.evidence[variant] <= chosen.effects.evidence:
+                break
+            direction = self.explained(chosen, variant)
+            if all(abs(direction @ d) < ALIKE for d in directions):
+                directions.append(direction)
+                out.append(self.chosen((*chosen.members, self.member(variant))))
+        return out
+
+    def explained(self, chosen: Chosen, variant: int) -> Array:
+        """Direction of what a variant would explain beyond a set, (N + P,), of length 1."""
+        effects = chosen.effects
+        C = self.pool.columns_of(variant)
+        E = effects.whiten(C)
+        S = C.T @ C - E.T @ E
+        g = self.pool.along[self.pool.start[variant] : self.pool.start[variant + 1]]
+        phi = np.linalg.solve(S + np.eye(len(S)), g - E.T @ effects.along)
+        direction = C @ phi - effects.A @ _coefficients(effects, C @ phi)
+        return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-300))
+
+    def polished(self, chosen: Chosen) -> Chosen:
+        """Exchange members for better ones, one at a time, until none is better."""
+        improved = True
+        while improved and chosen.members:
+            improved = False
+            for i in range(len(chosen.members)):
+                others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
+                best = self.ranking(others)[0]
+                gain = self.scores(others).evidence[best] - chosen.effects.evidence
+                if gain > 1e-6 and best != chosen.members[i].variant:
+                    members = list(chosen.members)
+                    members[i] = self.member(best)
+                    chosen, improved = self.chosen(members), True
+        return chosen
+
+    def verify(self, chosen: Chosen) -> list[Verified]:
+        """Tests of every member of a set with the others in place."""
+        out = []
+        for i, member in enumerate(chosen.members):
+            others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
+            out.append(self.verified(others, chosen, member))
+        return out
+
+    def verified(self, others: Chosen, whole: Chosen, member: Member) -> Verified:
+        """Tests of one member, given the set without it and the set with it."""
+        scores = self.scores(others)
+        without, with_it = others.effects.held_out, whole.effects.held_out
+        ratio = whole.effects.held_out_rms / max(others.effects.held_out_rms, 1e-300)
+        return Verified(
+            member,
+            self.corrected(member.candidate, float(scores.p[member.variant])),
+            float(whole.effects.evidence - others.effects.evidence),
+            ratio,
+            float(without.surprise - with_it.surprise),
+        )
+
+    def corrected(self, candidate: int, p: float) -> float:
+        """Probability with the scan of the grid and the number of candidates paid for."""
+        return float(min(1.0, p * self.pool.grid_points[candidate] * len(self.pool.names)))
+
+    def run(self, start: Sequence[Member] = ()) -> Chosen:
+        """The best set of which every member stands; empty where nothing does.
+
+        Args:
+            start: Members of a set to begin with, as from an earlier round.
+        """
+        best = self.backward(self.polished(self.chosen(start)))
+        carried = [best]
+        for size in range(len(best.members) + 1, MOST_EFFECTS + 1):
+            grown = [s for c in carried for s in self.extensions(c, CARRIED)]
+            carried = self.kept(self.polished(s) for s in grown[: CARRIED * CARRIED])
+            self.progress(size / MOST_EFFECTS, f"sets of {size} effects")
+            standing = [c for c in carried if all(v.stands for v in self.verify(c))]
+            better = [c for c in standing if c.effects.evidence > best.effects.evidence + WORTH]
+            if not better:
+                break
+            best = max(better, key=lambda c: c.effects.evidence)
+        return self.backward(best)
+
+    def kept(self, sets: Iterable[Chosen]) -> list[Chosen]:
+        """The few best of some sets, each once."""
+        unique = {tuple(sorted(m.variant for m in s.members)): s for s in sets}
+        return sorted(unique.values(), key=lambda s: -s.effects.evidence)[:CARRIED]
+
+    def backward(self, chosen: Chosen) -> Chosen:
+        """Take out members that a better one made superfluous, the weakest first."""
+        while chosen.members:
+            verified = self.verify(chosen)
+            fallen = [v for v in verified if not v.stands]
+            if not fallen:
+                break
+            weakest = min(fallen, key=lambda v: v.evidence)
+            chosen = self.polished(
+                self.chosen(m for m in chosen.members if m is not weakest.member)
+            )
+        return chosen
+
+
+def _coefficients(effects: EffectSet, b: Array) -> Array:
+    """Parameters of a set that fit a direction b best, (K,)."""
+    if effects.A.shape[1] == 0:
+        return np.zeros(0)
+    G = effects.A.T @ effects.A + np.eye(effects.A.shape[1])
+    return np.asarray(np.linalg.solve(G, effects.A.T @ b))
+
+
+def joint_probability(effects: EffectSet, without: EffectSet) -> float:
+    """Probability by chance of what the further columns of a set explain, uncorrected."""
+    k = effects.A.shape[1] - without.A.shape[1]
+    drop = without.objective - effects.objective
+    return float(f_probability(drop, k, effects.objective, effects.dof))
