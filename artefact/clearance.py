@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from artefact.standard import Standard
 
 _GROWTH = 1.15  # ratio of neighbouring stations along the tool axis
-_BLOCK = 200_000  # stations looked at together
+_THIN = 4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped
+_COARSE = 0.3  # radius of the wrapping balls, in radii of the cylinder
+_BLOCK = 200_000  # balls looked at together
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,22 +47,75 @@ class ProbeShape:
         return self.cylinders[-1][0]
 
     def stations(self) -> tuple[Array, Array]:
-        """Points along the tool axis whose balls cover all cylinders.
+        """Balls on the tool axis that cover all cylinders, and more before their front faces.
 
         Returns:
-            Distance from the ball centre, and radius of a ball there that covers the cylinder
-            half-way to both neighbours, each of shape (K,), mm.
+            Distance of each from the ball centre, and its radius, each (K,), mm.
         """
-        places, covers = [], []
-        low = 0.0
-        for end, radius in self.cylinders:
-            first = max(low, 0.7 * self.ball_radius)
-            count = max(int(np.ceil(np.log(end / first) / np.log(_GROWTH))), 1)
-            cuts = np.geomspace(first, end, count + 1)
-            places.append(0.5 * (cuts[1:] + cuts[:-1]))
-            covers.append(np.hypot(radius, 0.5 * np.diff(cuts)))
-            low = end
-        return np.concatenate(places), np.concatenate(covers)
+        parts = [_row(low, high, radius, self.ball_radius) for low, high, radius in self._pieces()]
+        return np.concatenate([c for c, _ in parts]), np.concatenate([r for _, r in parts])
+
+    def rough_cover(self) -> tuple[Array, Array]:
+        """The same balls as centres (K, 3) in the frame of the tip, tool axis +z, and radii."""
+        place, radius = self.stations()
+        return _on_axis(place), radius
+
+    def fine_cover(self) -> tuple[Array, Array]:
+        """Balls that cover the surface of all cylinders and stand out by an eighth of a radius.
+
+        Enough for anything that, like the standard, is not small enough to be inside a cylinder.
+
+        Returns:
+            Centres in the frame of the tip, tool axis +z, (K, 3), and radii, (K,), mm.
+        """
+        parts = []
+        for low, high, radius in self._pieces():
+            if radius > _THIN:
+                parts.append(_wrap(low, high, radius))
+            else:
+                place, cover = _row(low, high, radius, self.ball_radius)
+                parts.append((_on_axis(place), cover))
+        return np.concatenate([c for c, _ in parts]), np.concatenate([r for _, r in parts])
+
+    def _pieces(self) -> list[tuple[float, float, float]]:
+        ends = [end for end, _ in self.cylinders]
+        lows = [0.0, *ends[:-1]]
+        return [(low, end, r) for low, (end, r) in zip(lows, self.cylinders, strict=True)]
+
+
+def _row(low: float, high: float, radius: float, ball_radius: float) -> tuple[Array, Array]:
+    """Balls on the axis whose spacing grows with the distance from the tip."""
+    # The stylus inside the ball touches nothing that the ball does not touch.
+    first = max(low, 0.7 * ball_radius)
+    count = max(int(np.ceil(np.log(high / first) / np.log(_GROWTH))), 1)
+    cuts = np.geomspace(first, high, count + 1)
+    return 0.5 * (cuts[1:] + cuts[:-1]), np.hypot(radius, 0.5 * np.diff(cuts))
+
+
+def _on_axis(place: Array) -> Array:
+    """Points (K, 3) on the tool axis at distances (K,) from the tip."""
+    return np.column_stack([np.zeros((len(place), 2)), place])
+
+
+def _wrap(low: float, high: float, radius: float) -> tuple[Array, Array]:
+    """Balls over the front face and the mantle of a cylinder.
+
+    A ball of radius rho that lies ``w = rho / sqrt 3`` below a surface covers a patch of half
+    width w each way: the rings and rows are spaced by 2 w at most.
+    """
+    w = _COARSE * radius / np.sqrt(3.0)
+    rings = [(r, low + w) for r in np.linspace(0.0, radius - w, int(np.ceil(0.5 * radius / w)) + 1)]
+    rows_up = int(np.ceil((high - low) / (2.0 * w)))
+    rings += [(radius - w, low + w + 2.0 * w * k) for k in range(1, rows_up)]
+    balls = []
+    for ring, height in rings:
+        count = max(int(np.ceil(np.pi * min(ring + w, radius) / w)), 1) if ring > 0.0 else 1
+        angle = 2.0 * np.pi * np.arange(count) / count
+        balls.append(
+            np.column_stack([ring * np.cos(angle), ring * np.sin(angle), np.full(count, height)])
+        )
+    centres = np.concatenate(balls)
+    return centres, np.full(len(centres), _COARSE * radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +124,7 @@ class Clearance:
 
     Attributes:
         distance: Of the probe above its ball from the standard, (N,), mm; never too large,
-            negative where they may collide.
+            negative where they may collide, and then not a depth.
         body: Name of the body that is nearest, (N,).
     """
 
@@ -77,37 +132,58 @@ class Clearance:
     body: np.ndarray
 
 
-def clearance(standard: Standard, centre: Array, tool_axis: Array, probe: ProbeShape) -> Clearance:
+def clearance(
+    standard: Standard, centre: Array, tool_axis: Array, probe: ProbeShape, enough: float = 2.0
+) -> Clearance:
     """How near the probe comes to the standard with its ball at each centre; from below.
 
-    The cylinders are covered by balls whose spacing grows with the distance from the tip, and
-    compared with the distance to every body, so the figure errs on the safe side. The ball
-    itself is not looked at: it is meant to touch.
+    The cylinders are covered by balls, which are compared with the distance to every body, so
+    the figure errs on the safe side. Where a cover of few balls leaves less than `enough`, a
+    finer one is tried. The tip's ball itself is not looked at: it is meant to touch.
 
     Args:
         standard: In the artefact frame.
         centre: Ball centres, shape (N, 3), artefact frame, mm.
         tool_axis: From the tip to the spindle, artefact frame, shape (N, 3) or (3,).
         probe: Stylus, stem and body.
+        enough: Room beyond which the exact figure does not matter, mm.
 
     Returns:
         Room and the nearest body.
     """
     centre = rows(centre)
     axis = unit(rows(tool_axis, len(centre)))
-    place, cover = probe.stations()
+    room, nearest = _room(standard, centre, axis, *probe.rough_cover())
+    tight = np.flatnonzero(room < enough)
+    if len(tight):
+        finer, body = _room(standard, centre[tight], axis[tight], *probe.fine_cover())
+        better = finer > room[tight]
+        room[tight[better]], nearest[tight[better]] = finer[better], body[better]
+    return Clearance(room, nearest)
+
+
+def _room(
+    standard: Standard, centre: Array, axis: Array, places: Array, radii: Array
+) -> tuple[Array, np.ndarray]:
+    """Smallest distance of the covering balls from the standard (N,), and the body it is to."""
     room = np.full(len(centre), np.inf)
     nearest = np.zeros(len(centre), dtype=int)
     names = np.array(list(standard.bodies))
-    for some in np.array_split(np.arange(len(centre)), len(centre) * len(place) // _BLOCK + 1):
-        points = centre[some, None] + place[:, None] * axis[some, None]  # (n, K, 3)
-        flat = points.reshape(-1, 3)
-        each = np.stack(
-            [
-                (body.distance(flat).reshape(points.shape[:2]) - cover).min(axis=1)
-                for body in standard.bodies.values()
-            ]
-        )
-        nearest[some] = each.argmin(axis=0)
-        room[some] = each.min(axis=0)
-    return Clearance(room, names[nearest])
+    across = _across(axis)
+    for some in np.array_split(np.arange(len(centre)), len(centre) * len(places) // _BLOCK + 1):
+        points = centre[some, None] + places @ across[some]  # (n, K, 3)
+        flat, shape = points.reshape(-1, 3), points.shape[:2]
+        each = [
+            (body.distance(flat).reshape(shape) - radii).min(axis=1)
+            for body in standard.bodies.values()
+        ]
+        nearest[some] = np.argmin(each, axis=0)
+        room[some] = np.min(each, axis=0)
+    return room, names[nearest]
+
+
+def _across(axis: Array) -> Array:
+    """Right-handed frames whose third row is the axis, (N, 3, 3)."""
+    least = np.eye(3)[np.argmin(np.abs(axis), axis=1)]
+    first = unit(np.cross(least, axis))
+    return np.stack([first, np.cross(axis, first), axis], axis=1)

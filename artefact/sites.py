@@ -178,7 +178,7 @@ def _depth(T_artefact_patch: Array, site: Site, base: Base) -> float:
     to_axis = np.inf
     if sideways > 1e-6:
         to_axis = float(origin[:2] @ up[:2]) / sideways**2
-        if to_axis <= 0.0 or origin[2] - to_axis * up[2] < 0.5 * base.thickness:
+        if to_axis <= _ROOTED or origin[2] - to_axis * up[2] < 0.5 * base.thickness:
             to_axis = np.inf
     depth = min(to_base, to_axis)
     if not np.isfinite(depth):

@@ -1,0 +1,174 @@
+"""Every constraint refuses the standard that breaks it, by name; the demo breaks none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from artefact.constraints import Limits, max_slope, min_concave_radius
+from artefact.freeform import OVERHANG, graph_patch
+from artefact.sites import Fittings, Frame, Site, standard_from_sites
+from artefact.spline import clamped_knots
+from artefact.standard import Base
+from twin.errors import NotBuildable, ShapeMismatch
+from twin.units import DEG
+
+FLAT = np.zeros((8, 8))
+LIMITS = Limits()
+
+
+def bowl(radius, half=18.0, count=8):
+    """Control heights of ``z = (x^2 + y^2) / 2 R`` exactly: the blossom of x^2 at the knots."""
+    knots = clamped_knots(-half - OVERHANG, half + OVERHANG, count, 5)
+    square = np.array(
+        [
+            np.mean(
+                [
+                    knots[i + 1 : i + 6][p] * knots[i + 1 : i + 6][q]
+                    for p in range(5)
+                    for q in range(p)
+                ]
+            )
+            for i in range(count)
+        ]
+    )
+    return (square[:, None] + square[None, :]) / (2.0 * radius)
+
+
+def test_demo_meets_every_constraint(standard):
+    standard.check(LIMITS)
+    assert {c.subject for c in standard.constraints(LIMITS)} >= set(standard.features) - {"DATUM_A"}
+
+
+def test_concave_radius_of_a_bowl_is_its_own():
+    patch = graph_patch("FF1", np.eye(4), (18.0, 18.0), bowl(15.0))
+    assert np.abs(patch.height(patch.grid()) - (patch.grid() ** 2).sum(axis=1) / 30.0).max() < 1e-12
+    # a paraboloid is most curved at its vertex: 1/R
+    assert min_concave_radius(patch) == pytest.approx(15.0, abs=1e-6)
+    assert max_slope(patch) == pytest.approx(np.arctan(18.0 * np.sqrt(2.0) / 15.0), abs=1e-9)
+    assert min_concave_radius(graph_patch("FF1", np.eye(4), (18.0, 18.0), -bowl(15.0))) == np.inf
+
+
+def changed(standard, number, **what):
+    patches = list(standard.patches)
+    patches[number] = replace(patches[number], **what)
+    return replace(standard, patches=tuple(patches))
+
+
+@pytest.mark.parametrize(
+    ("limits", "message"),
+    [
+        (
+            Limits(min_concave_radius=200.0),
+            r"FF\d+: smallest concave radius is .* mm, limit 200.000 mm",
+        ),
+        (Limits(max_slope=5 * DEG), r"FF\d+: slope is .* deg, limit 5.000 deg"),
+        (Limits(max_mass=10.0), r"demo: mass is 28.\d* kg, limit 10.000 kg"),
+        (Limits(gap=40.0), r"room for the ball before"),
+    ],
+)
+def test_a_limit_that_binds_is_named(standard, limits, message):
+    with pytest.raises(NotBuildable, match=message) as caught:
+        standard.check(limits)
+    assert "\n" not in str(caught.value)
+    assert caught.value.facts["constraints"][0].slack < 0.0
+
+
+def test_column_that_ends_in_the_air(standard):
+    short = changed(standard, 7, depth=30.0)
+    with pytest.raises(NotBuildable, match="FF8: depth of the column's end in the body"):
+        short.check(LIMITS)
+
+
+def test_patch_beyond_the_blank(standard):
+    low = replace(standard, blank_height=140.0)
+    with pytest.raises(NotBuildable, match="FF1: height is 15"):
+        low.check(LIMITS)
+    T = standard.patches[5].T_artefact_patch.copy()
+    T[:3, 3] += [60.0, 0.0, 0.0]
+    wide = changed(standard, 5, T_artefact_patch=T)
+    with pytest.raises(NotBuildable, match="FF6: reach beyond the outline of the blank"):
+        wide.check(LIMITS)
+
+
+def test_overlapping_patches(standard):
+    T = standard.patches[1].T_artefact_patch.copy()
+    T[:3, 3] = 0.5 * (T[:3, 3] + standard.patches[0].T_artefact_patch[:3, 3])
+    crowded = changed(standard, 1, T_artefact_patch=T)
+    with pytest.raises(NotBuildable, match=r"FF[12]: room for the ball before FF[12]"):
+        crowded.check(LIMITS)
+
+
+def test_sphere_too_near_a_patch(standard):
+    near = standard.patches[5].point(np.zeros((1, 2)))[0] + 8.0 * standard.patches[5].direction
+    spheres = (replace(standard.spheres[0], centre=near), *standard.spheres[1:])
+    crowded = replace(standard, spheres=spheres)
+    with pytest.raises(NotBuildable, match="SPH1"):
+        crowded.check(LIMITS)
+
+
+def test_hole_under_a_patch(standard):
+    holes = (replace(standard.holes[0], x=100.0, y=0.0), *standard.holes[1:])
+    with pytest.raises(NotBuildable, match="HOLE1: access from above past FF6"):
+        replace(standard, holes=holes).check(LIMITS)
+
+
+def test_names_are_used_once(standard):
+    with pytest.raises(ShapeMismatch, match="two features are named FF3"):
+        changed(standard, 0, name="FF3")
+
+
+def test_volume_estimate_against_closed_form():
+    # base with rounded corners, one upright column with a flat lid, four holes, no core
+    site = Site(0.0, 0.0, 100.0, 0.0, (20.0, 25.0), FLAT)
+    whole = standard_from_sites("one", [site])
+    fit = Fittings()
+    plate = (280.0**2 - (4 - np.pi) * 25.0**2) * 30.0
+    holes = 4 * np.pi * (fit.hole_radius**2 * 19.0 + fit.bore_radius**2 * 11.0)
+    stems = sum(
+        np.pi / 3 * (s.centre[2] - 30.0) * (81.0 + 54.0 + 36.0)
+        + 4 / 3 * np.pi * 12.5**3
+        - _stem_in_ball(s)
+        for s in whole.spheres
+    )
+    exact = plate + 40.0 * 50.0 * 70.0 - holes + stems
+    assert whole.core is None
+    assert whole.volume(2.0) == pytest.approx(exact, rel=2e-3)
+    assert whole.volume() == pytest.approx(exact, rel=1e-2)
+    assert whole.mass() == pytest.approx(whole.volume() * 7.8e-6, rel=1e-12)
+
+
+def _stem_in_ball(sphere):
+    """Volume of the cone inside the ball, by a fine sum over heights."""
+    z = np.linspace(sphere.foot, sphere.centre[2], 200_001)
+    share = (z - sphere.foot) / (sphere.centre[2] - sphere.foot)
+    cone = sphere.foot_radius + share * (sphere.stem_radius - sphere.foot_radius)
+    ball2 = np.maximum(sphere.radius**2 - (z - sphere.centre[2]) ** 2, 0.0)
+    return float(np.trapezoid(np.pi * np.minimum(cone**2, ball2), z))
+
+
+def test_spheres_are_spread_and_free(standard):
+    centres = np.array([s.centre for s in standard.spheres])
+    apart = [np.linalg.norm(centres[i] - centres[j]) for i in range(3) for j in range(i)]
+    assert min(apart) > 180.0
+    assert len({round(c[2]) for c in centres}) == 3
+
+
+def test_core_takes_in_the_columns_that_end_above_the_base(standard):
+    core = standard.bodies["CORE"]
+    for patch in standard.patches:
+        origin, end = patch.T_artefact_patch[:3, 3], None
+        end = origin - patch.depth * patch.direction
+        if end[2] > standard.base.thickness:
+            assert core.distance(end[None])[0] < -2.0
+
+
+def test_refusals_of_the_builder():
+    with pytest.raises(NotBuildable, match="no site for a patch"):
+        standard_from_sites("none", [])
+    level = Site(0.0, 100.0, 80.0, 90 * DEG, (15.0, 15.0), FLAT, lean=90 * DEG)
+    with pytest.raises(NotBuildable, match="column meets neither the base nor the axis"):
+        standard_from_sites("aside", [level])
+    wall = [Site(k * 20 * DEG, 128.0, 70.0, 0.0, (20.0, 20.0), FLAT) for k in range(18)]
+    with pytest.raises(NotBuildable, match="no free place on the rim for SPH1"):
+        standard_from_sites("full", wall, Frame(base=Base((150.0, 150.0), 150.0, 30.0)))

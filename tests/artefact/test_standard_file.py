@@ -1,0 +1,114 @@
+"""`standard.toml`: the same numbers after a round trip, one line for whatever is wrong in it."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from artefact.freeform import ErrorShare
+from artefact.standard_file import read_standard, write_standard
+from twin.errors import BadFile
+
+
+def equal(one, other):
+    """Bit for bit, through tuples, arrays and dataclasses."""
+    if isinstance(one, np.ndarray):
+        return np.array_equal(one, other)
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(equal, one, other))
+    if hasattr(one, "__dataclass_fields__"):
+        return all(equal(getattr(one, f.name), getattr(other, f.name)) for f in fields(one))
+    return one == other
+
+
+def test_round_trip_keeps_every_bit(standard, tmp_path):
+    shares = (ErrorShare("EXX", 1.0 / 3.0), ErrorShare("EC0Y", 0.1 + 0.2))
+    first = replace(standard.patches[0], errors=shares)
+    whole = replace(standard, serial="0001", patches=(first, *standard.patches[1:]))
+    write_standard(tmp_path / "standard.toml", whole)
+    again = read_standard(tmp_path / "standard.toml")
+    assert equal(whole, again)
+    assert not equal(whole, standard)
+    write_standard(tmp_path / "twice.toml", again)
+    assert (tmp_path / "twice.toml").read_bytes() == (tmp_path / "standard.toml").read_bytes()
+
+
+def test_surface_of_the_file_is_the_surface_of_the_design(standard, tmp_path):
+    write_standard(tmp_path / "standard.toml", standard)
+    again = read_standard(tmp_path / "standard.toml")
+    for patch, copy in zip(standard.patches, again.patches, strict=True):
+        assert np.array_equal(patch.point(patch.grid()), copy.point(copy.grid()))
+
+
+def test_file_is_written_whole_or_not_at_all(standard, tmp_path, monkeypatch):
+    path = tmp_path / "standard.toml"
+    write_standard(path, standard)
+    before = path.read_bytes()
+
+    def broken(self, target):
+        raise OSError("disk full")
+
+    monkeypatch.setattr("pathlib.Path.replace", broken)
+    with pytest.raises(OSError, match="disk full"):
+        write_standard(path, replace(standard, name="another"))
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["standard.toml"]
+
+
+def text_of(standard, tmp_path):
+    write_standard(tmp_path / "good.toml", standard)
+    return (tmp_path / "good.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "where"),
+    [
+        (
+            'format = "standard/1"',
+            'format = "standard/2"',
+            r'format: found .*expected "standard/1"',
+        ),
+        ('serial = ""', 'serial = ""\ncolour = "blue"', "colour: found an unknown key"),
+        ("thickness_mm = 30.0", "thickness_mm = -30.0", r"base\.thickness_mm: found -30\.0"),
+        ("thickness_mm = 30.0", "thickness_mm = nan", r"base\.thickness_mm: found nan"),
+        ("thickness_mm = 30.0", 'thickness_mm = "30"', r"base\.thickness_mm: found '30'"),
+        ("thickness_mm = 30.0\n", "", r"base\.thickness_mm: found nothing, expected this key"),
+        (
+            "corner_radius_mm = 25.0",
+            "corner_radius_mm = 150.0",
+            "at most the smaller half side 140",
+        ),
+        ('name = "FF2"', 'name = "FF1"', "two features are named FF1"),
+        ('name = "FF2"', 'name = "FF 2"', r"patch\.1\.name: found 'FF 2'"),
+        ("    5,\n    5,\n", "    4,\n    5,\n", r"patch\[1\]: found FF1: knots_u: shape \(14,\)"),
+        ("radius_mm = 12.5", "radius_mm = 2.5", r"sphere\[1\]: found SPH1: stem radius 6 mm"),
+    ],
+)
+def test_whatever_is_wrong_is_one_line_with_file_and_key(standard, tmp_path, old, new, where):
+    text = text_of(standard, tmp_path)
+    assert old in text
+    path = tmp_path / "bad.toml"
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(BadFile, match=where) as caught:
+        read_standard(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_mirror_is_no_rotation(standard, tmp_path):
+    path = tmp_path / "bad.toml"
+    T = standard.patches[0].T_artefact_patch.copy()
+    T[:3, 0] *= -1.0
+    mirrored = replace(standard.patches[0], T_artefact_patch=T)
+    write_standard(path, replace(standard, patches=(mirrored, *standard.patches[1:])))
+    with pytest.raises(BadFile, match=r"patch\[1\]\.rotation: .*right-handed rotation matrix"):
+        read_standard(path)
+
+
+def test_missing_and_cut_off_files(standard, tmp_path):
+    with pytest.raises(BadFile, match=r"none\.toml: file: found No such file"):
+        read_standard(tmp_path / "none.toml")
+    cut = tmp_path / "cut.toml"
+    cut.write_text(text_of(standard, tmp_path)[:5000])
+    with pytest.raises(BadFile, match="whole, valid TOML file"):
+        read_standard(cut)
