@@ -1,6 +1,7 @@
 """Room for the probe: heights at which nothing stands in the way, and gaps at a touch."""
 
 from dataclasses import dataclass
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ TABLE_RADIUS = 160.0
 TABLE_THICKNESS = 60.0
 """How much of the table below its face is kept clear, mm."""
 
+_ENOUGH = 2.0  # mm: beyond this a finer look at the gap to the table changes nothing
 _SWING = 7
 """Samples of every rotary axis over one move: both axes turn, in no order that is known."""
 
@@ -102,10 +104,9 @@ def swing_height(chain: Chain, path: Array, solid: Obstacles, probe: Probe) -> A
         Of each of the W - 1 moves, mm.
     """
     axes = path.shape[1]
-    share = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, _SWING)] * axes), axis=-1)
-    share = share.reshape(-1, axes)
+    share = np.array(list(product(np.linspace(0.0, 1.0, _SWING), repeat=axes)))
     between = path[:-1, None] + share * (path[1:] - path[:-1])[:, None]  # (W - 1, S, R)
-    heights = top_height(chain, between.reshape(-1, axes), solid, probe)
+    heights = top_height(chain, between.reshape(len(share) * (len(path) - 1), axes), solid, probe)
     highest: Array = heights.reshape(len(path) - 1, -1).max(axis=1)
     return highest
 
@@ -141,15 +142,29 @@ class Room:
         near = self.standard.clearance(
             apply(T_artefact_table, centre), turn(T_artefact_table, axis), self.probe.shape
         )
-        place, cover = self.probe.shape.stations()
-        stations = centre[:, None] + place[:, None] * axis[:, None]
-        r = self.table_radius
-        table = Plate((r, r), r, -TABLE_THICKNESS, 0.0)
-        to_table = table.distance(stations.reshape(-1, 3)).reshape(len(q), -1) - cover
-        nearest = np.minimum(to_table.min(axis=1), table.distance(centre) - self.probe.radius)
+        nearest = np.minimum(
+            self._above_table(T_table_tool, centre),
+            self._table.distance(centre) - self.probe.radius,
+        )
         on_table = nearest < near.distance
         names = np.where(on_table, "the table", near.body.astype(str))
         return np.where(on_table, nearest, near.distance), names
+
+    @property
+    def _table(self) -> Plate:
+        r = self.table_radius
+        return Plate((r, r), r, -TABLE_THICKNESS, 0.0)
+
+    def _above_table(self, T_table_tool: Array, centre: Array) -> Array:
+        """Gap between the probe above its ball and the table, (N,), mm; from below."""
+        gap = np.full(len(centre), -np.inf)
+        for cover in (self.probe.shape.rough_cover(), self.probe.shape.fine_cover()):
+            tight = np.flatnonzero(gap < _ENOUGH)
+            offset = turn(T_table_tool[tight, None], cover[0])
+            balls = (centre[tight, None] + offset).reshape(-1, 3)
+            to_table = self._table.distance(balls).reshape(len(tight), len(cover[1])) - cover[1]
+            gap[tight] = np.maximum(gap[tight], to_table.min(axis=1, initial=np.inf))
+        return gap
 
     def met(self, q: Array, direction: Array, distance: Array, margin: float) -> Labels:
         """What a ball meets on its way, in words; empty where nothing.
@@ -167,10 +182,7 @@ class Room:
             self.probe.radius + margin,
         )
         words = np.array(
-            [
-                f"{m.value} of {f}" if f else ""
-                for m, f in zip(hit.meeting, hit.feature, strict=True)
-            ]
+            [f"{m} of {f}" if f else "" for m, f in zip(hit.meeting, hit.feature, strict=True)]
         )
         is_met = (hit.meeting != Meeting.NOTHING) & ~(hit.travel > distance)
         return np.where(is_met, words, "")

@@ -74,7 +74,7 @@ class Contacts:
         hit = self.standard.contact(centre, self.motion, self.radius)
         self.miss = np.array(
             [
-                "" if m is Meeting.SURFACE else f"the ball {m.value}" + (f" ({f})" if f else "")
+                "" if m == Meeting.SURFACE else f"the ball {m}" + (f" ({f})" if f else "")
                 for m, f in zip(hit.meeting, hit.feature, strict=True)
             ],
             dtype="U200",
@@ -158,7 +158,7 @@ class Contacts:
         for name in dict.fromkeys(self.feature.tolist()):
             if name in self.standard.features:
                 inside = self.standard.features[name].contains(self.uv)
-                words = f"the ball {Meeting.EDGE.value} ({name})"
+                words = f"the ball {Meeting.EDGE} ({name})"
                 reasons.append(((self.feature == name) & ~inside, words))
         for wrong, words in reasons:
             self.miss = np.where((self.miss == "") & wrong, words, self.miss)

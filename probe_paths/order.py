@@ -16,6 +16,9 @@ GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 LONGEST_TURN = 170.0 * DEG
 """A rotary move is cut into pieces below half a turn, so that M126 cannot change its way."""
 
+_ROUNDING = 1e-9
+"""A reading at the very end of the travel is inside, whatever its last digit, rad."""
+
 
 @dataclass(frozen=True, eq=False)
 class Visit:
@@ -74,6 +77,7 @@ def _visit(
     side = side.copy()
     for i, name in enumerate(chain.rotary_axes):
         low, high = chain.link(name).range
+        low, high = low - _ROUNDING, high + _ROUNDING
         if not low <= rotary[i] <= high:
             raise NotReachable(
                 f"pose {name}{rotary[i] / DEG:+.4f}: outside the travel of {name}, "

@@ -1,0 +1,64 @@
+"""The small standard, its plan and its programs, as the golden files have them."""
+
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from probe_paths.contacts import VirtualMachine
+from probe_paths.interpreter import interpret
+from probe_paths.plan import TouchPlan
+from probe_paths.program import ProgramSet
+from probe_paths.steps import ReadProgram
+
+GOLDEN = Path(__file__).parents[1] / "golden"
+
+
+@pytest.fixture(scope="session")
+def golden() -> ModuleType:
+    """The module that makes the golden programs."""
+    spec = importlib.util.spec_from_file_location("make_programs", GOLDEN / "make_programs.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="session")
+def golden_folder() -> Path:
+    return GOLDEN / "programs"
+
+
+@pytest.fixture(scope="session")
+def chain(golden):
+    return golden.machine()
+
+
+@pytest.fixture(scope="session")
+def small(golden):
+    return golden.standard()
+
+
+@pytest.fixture(scope="session")
+def plan(golden) -> TouchPlan:
+    return golden.plan()
+
+
+@pytest.fixture(scope="session")
+def programs(golden) -> ProgramSet:
+    return golden.programs()
+
+
+@pytest.fixture(scope="session")
+def read(programs, chain) -> list[ReadProgram]:
+    """Every golden program, read from its text."""
+    return [
+        interpret(p.text.encode("ascii"), Path(f"{p.name}.H"), programs.masks.get, chain)
+        for p in programs.programs
+    ]
+
+
+@pytest.fixture(scope="session")
+def perfect(chain) -> VirtualMachine:
+    """A machine without errors and noise."""
+    return VirtualMachine(chain)

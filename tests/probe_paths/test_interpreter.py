@@ -1,0 +1,301 @@
+"""The interpreter accepts what we emit, and finds every error that is seeded into it."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from probe_paths.interpreter import interpret, read_program, stated_probe
+from probe_paths.probe import Probe
+from probe_paths.steps import Halt, Move, Print, Probing
+from twin.errors import BadFile
+from twin.frames import apply, turn
+from twin.kinematics import linear_directions, tip
+from twin.units import DEG
+
+ROUNDING = 1e-4
+"""Four decimals of three coordinates, mm, with room for the fourth of the vector."""
+
+Change = Callable[[list[str]], list[str]]
+
+
+def renumbered(lines: list[str]) -> bytes:
+    """Blocks with consecutive numbers, CRLF; continuation lines have none."""
+    out, count = [], 0
+    for line in lines:
+        if line.startswith("    "):
+            out.append(line)
+            continue
+        out.append(f"{count} {line}")
+        count += 1
+    return ("\r\n".join(out) + "\r\n").encode("latin-1")
+
+
+def bare(text: str) -> list[str]:
+    """Blocks without their numbers."""
+    return [re.sub(r"^\d+ ", "", line) for line in text.splitlines()]
+
+
+def swap(old: str, new: str, nth: int = 0) -> Change:
+    """Replace text in the nth line that has it."""
+
+    def change(lines: list[str]) -> list[str]:
+        at = [i for i, line in enumerate(lines) if old in line][nth]
+        return [*lines[:at], lines[at].replace(old, new, 1), *lines[at + 1 :]]
+
+    return change
+
+
+def drop(old: str, nth: int = 0) -> Change:
+    """Delete the nth line that has some text."""
+
+    def change(lines: list[str]) -> list[str]:
+        at = [i for i, line in enumerate(lines) if old in line][nth]
+        return [*lines[:at], *lines[at + 1 :]]
+
+    return change
+
+
+def insert(new: str, before: str, nth: int = 0) -> Change:
+    """A further block before the nth line that has some text."""
+
+    def change(lines: list[str]) -> list[str]:
+        at = [i for i, line in enumerate(lines) if before in line][nth]
+        return [*lines[:at], new, *lines[at:]]
+
+    return change
+
+
+def edit(pattern: str, new: str, nth: int = 0) -> Change:
+    """Replace a pattern in the nth line that matches it."""
+
+    def change(lines: list[str]) -> list[str]:
+        at = [i for i, line in enumerate(lines) if re.search(pattern, line)][nth]
+        return [*lines[:at], re.sub(pattern, new, lines[at], count=1), *lines[at + 1 :]]
+
+    return change
+
+
+RETRACT = "L Z-1.0000 R0 FMAX M91"
+FIRST_DOWN = r"^(L Z[+]\d+\.\d+ R0) F2000"
+SEEDED: dict[str, tuple[Change, str]] = {
+    # words and numbers
+    "misspelt rapid": (swap("FMAX", "FMAXX", 3), "L <axis><signed number>"),
+    "decimal comma": (edit(r"(L X[+-]\d+)\.", r"\1,"), "L <axis><signed number>"),
+    "letter O in a number": (edit(r"Z\+(\d+)\.(\d)", r"Z+\1.O", 4), "L <axis><signed number>"),
+    "double sign": (swap("L X+", "L X++"), "L <axis><signed number>"),
+    "no sign": (edit(r"^L X[+-]", "L X"), "L <axis><signed number>"),
+    "lost continuation": (swap(" ~", ""), "CYCL DEF 7 with zeros or 247"),
+    "comparison of another language": (swap("LT +0", "< 0"), "FN 0, 12, 14, 16, 18 or 20"),
+    "words run together": (swap("TOOL CALL", "TOOLCALL"), "block of the closed list"),
+    "another cycle": (swap("4.0 MEASURING IN 3D", "3.0 MEASURING"), "the only cycle"),
+    "spindle start": (insert("M3", "TCH PROBE 4.0"), "no spindle start"),
+    "spindle speed": (swap("TOOL CALL 30 Z", "TOOL CALL 30 Z S500"), "no speed"),
+    "tilted plane": (
+        insert("PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY", "TCH PROBE 4.0"),
+        "PLANE RESET STAY",
+    ),
+    "unknown axis": (swap("L X+", "L U+"), "an axis of the machine: X, Y, Z"),
+    "axis twice": (edit(r"^(L X[+-]\d+\.\d+) Y", r"\1 X"), "every axis once"),
+    "byte of another code page": (swap("RESET", "R\xdcCKSETZEN"), "ASCII"),
+    # frame and labels
+    "no END PGM": (drop("END PGM"), "END PGM: cut off"),
+    "other name at the end": (swap("END PGM MS_A_1", "END PGM MS_A_2"), "MS_A_1 as in BEGIN PGM"),
+    "inches": (swap("BEGIN PGM MS_A_1 MM", "BEGIN PGM MS_A_1 INCH"), "found INCH, expected MM"),
+    "two programs in a file": (insert("BEGIN PGM X MM", "* - END"), "one frame per file"),
+    "undefined label": (swap("CALL LBL 90", "CALL LBL 92", 2), "available: 90, 91"),
+    "jump to nowhere": (swap("GOTO LBL 91", "GOTO LBL 19"), "available: 90, 91"),
+    "label twice": (swap("LBL 91 ;", "LBL 90 ;"), "every label once"),
+    "no M30": (drop("M30"), "M30 at the end"),
+    "no LBL 0": (drop("LBL 0"), "a subprogram that is called"),
+    "no head": (drop(";STANDARD"), "the program's head"),
+    "head mended by hand": (swap(";ORIGIN X+", ";ORIGIN X"), "ORIGIN X.. Y.. Z.."),
+    "feature unknown": (drop(";FEATURE 3 IS"), "a number of the head's list"),
+    "feature twice": (swap(";FEATURE 2 IS", ";FEATURE 1 IS"), "every feature number once"),
+    # modes
+    "tool point control left on": (insert("M128 F1000", "TCH PROBE 4.0"), "M129 before it"),
+    "tool point control on a retract": (insert("M128", RETRACT, 2), "M129 before M91"),
+    "tool point control not reset": (drop("M129"), "M129 before M91"),
+    "plane not reset": (drop("PLANE RESET"), "PLANE RESET STAY before it"),
+    "a shift left over": (swap("7.2 Y+0", "7.2 Y+5"), "only the preset may shift"),
+    "shift of one axis not reset": (drop("CYCL DEF 7.3"), "zeros in X, Y and Z before it"),
+    "no tool": (drop("TOOL CALL"), "TOOL CALL before it"),
+    "no radius compensation word": (swap(" R0 FMAX M91", " FMAX M91"), "R0 on the first move"),
+    "foreign M function": (swap("M91", "M92"), "M91 or M126 and no other"),
+    "machine coordinates of a rotary system": (
+        swap("REFERENCE SYSTEM:0", "REFERENCE SYSTEM:1"),
+        "REFERENCE SYSTEM:0",
+    ),
+    # motion
+    "rotary move near the standard": (drop(RETRACT, 3), "a retract .* before it"),
+    "half a retract": (swap("L Z-1.0000", "L Z-101.0000", 3), "at least Z-20"),
+    "rotary with linear axes": (edit(r"^L B", "L X+0.0000 B"), "a block of their own"),
+    "more than half a turn": (edit(r"C\S+ R0 FMAX M126", "C-359.0 R0 FMAX M126", 1), "at most 180"),
+    "rapid down to the standard": (edit(FIRST_DOWN, r"\1 FMAX"), "no rapid move below"),
+    "not up before going sideways": (edit(r"^L Z\+\S+ R0 FMAX$", ";", 1), "no rapid move below"),
+    "not back before going up": (edit(r"^L X\S+ Y\S+ Z\S+ R0 F2000", ";"), "back to the start"),
+    "back to somewhere else": (edit(r"^L X\S+( Y\S+ Z)", r"L X+1.0000\1"), "back to the start"),
+    "no move down": (edit(FIRST_DOWN, ";"), "back to the start"),
+    "feed forgotten": (edit(r"^(L B\S+ C\S+ R0) F1000", r"\1"), "a feed above zero"),
+    "beyond the travel": (edit(r"^L X[+-]\d+", "L X+901"), "the travel of X"),
+    "rotary beyond the travel": (edit(r"^L B[+-]\d+", "L B-130"), "the travel of B"),
+    "no retract at the end": (drop(RETRACT, -1), "a retract .* before it"),
+    # touches
+    "vector not of length one": (edit(r"(4\.2 IX)\S+", r"\1+0.9999"), "a vector of length"),
+    "vector lost": (drop("TCH PROBE 4.2"), "TCH PROBE 4.2 in its place"),
+    "cycle interrupted": (insert("CALL LBL 90", "TCH PROBE 4.1"), "TCH PROBE 4.1 in its place"),
+    "probing too fast": (swap("F250", "F2500"), "F1 to F1000"),
+    "retract beyond the start": (swap("MB+5.0000", "MB+9.0000"), "MB between zero and the path"),
+    "status not looked at": (drop("CALL LBL 90"), "FN 12 on the status"),
+    "status of another parameter": (swap("Q1613 LT", "Q1612 LT"), "the status"),
+    "result elsewhere": (swap("4.1 Q1610", "4.1 Q1620"), "a parameter set by this program"),
+    "result in the builder's range": (swap("4.1 Q1610", "4.1 Q1410"), "a free parameter"),
+    "parameter left over": (drop("FN 0: Q1606"), "a parameter set by this program"),
+    "touch number forgotten": (drop("FN 0: Q1620", 1), "a number of its own"),
+    "stated side wrong": (edit(r"Q1623 = \+1", "Q1623 = -1"), "as it last moved"),
+    "no pre-move": (edit(r"^L B\S+ C\S+ R0 FMAX M126", ";", 0), "as it last moved"),
+    "printed ahead": (drop("FN 20", 1), "FN 20: WAIT FOR SYNC before it"),
+    "mask missing": (swap("MSPOINT.A", "MSPOINTS.A"), "a mask file beside the program"),
+    "no log line": (drop("FN 16: F-PRINT TNC:\\MATSTD\\MSPOINT.A"), "FN 16 with its results"),
+    "miss without retract": (drop("M140"), "M140 MB MAX, and no other move"),
+    "miss goes on": (drop("FN 14"), "M30 or LBL 0 before it"),
+    "system datum unknown": (swap("ID350 NR12", "ID350 NR52"), "ID20 NR1, ID240 NR1"),
+    "loop without end": (insert("CALL LBL 90", "FN 12: IF"), "nested calls, expected at most 8"),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def first(programs):
+    return programs.programs[0]
+
+
+@pytest.mark.parametrize("name", SEEDED)
+def test_every_seeded_error_is_found(name, first, programs, chain):
+    change, expected = SEEDED[name]
+    lines = bare(first.text)
+    assert renumbered(lines) == first.text.encode("ascii")
+    broken = change(lines)
+    assert broken != lines, "the seeded error changed nothing"
+    with pytest.raises(BadFile, match=expected) as caught:
+        interpret(renumbered(broken), Path("MS_A_1.H"), programs.masks.get, chain)
+    assert re.match(r"MS_A_1\.H: (line \d+|head|file): found .*, expected ", str(caught.value))
+
+
+def test_raw_faults_of_the_file_are_found(first, programs, chain):
+    text = first.text.encode("ascii")
+    faults = {
+        b"": "a program that begins with BEGIN PGM",
+        text[: len(text) // 2]: "cut off",
+        text[:-2]: "cut off",
+        text.replace(b"\r\n", b"\n", 3): "CRLF",
+        text.replace(b"\r\n7 ", b"\r\n8 ", 1): "block number 8, expected 7",
+        text.replace(b"\r\n7 ", b"\r\n", 1): "everywhere or nowhere",
+        text[: text.index(b"~\r\n") + 3]: "a further line after the tilde",
+    }
+    for data, expected in faults.items():
+        with pytest.raises(BadFile, match=expected):
+            interpret(data, Path("MS_A_1.H"), programs.masks.get, chain)
+
+
+def test_a_file_of_another_name_is_refused(first, programs, chain):
+    with pytest.raises(BadFile, match="program name MS_A_1"):
+        interpret(first.text.encode("ascii"), Path("COPY.H"), programs.masks.get, chain)
+
+
+@pytest.mark.parametrize(
+    ("mask", "expected"),
+    [
+        ('"P%8.1LF S%8.1LF",Q1620;', "one format such as"),
+        ('"P%8.1LF",Q1620', "quotes and semicolon"),
+        ('"P%8.1LF",WEEK;', "a Q parameter or one of DAY"),
+        ("", "at least one line"),
+        ('"P%8.1lf",Q1620;', "one format such as"),
+    ],
+)
+def test_broken_masks_are_found(mask, expected, first, programs, chain):
+    masks = {**programs.masks, "MSPOINT.A": mask}
+    with pytest.raises(BadFile, match=expected):
+        interpret(first.text.encode("ascii"), Path("MS_A_1.H"), masks.get, chain)
+
+
+def test_the_probe_in_the_spindle_must_be_the_planned_one(first, programs, chain):
+    with pytest.raises(BadFile, match="a probe of radius 3 mm, expected 2 mm"):
+        interpret(
+            first.text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain, Probe(2.0)
+        )
+
+
+def test_what_a_user_states_of_the_probe_completes_the_head(golden_folder):
+    path = golden_folder / "MS_A_1.H"
+    assert stated_probe(path, None, None) is None
+    assert stated_probe(path, 2.0, None) == Probe(2.0, 160.0)
+    assert stated_probe(path, None, 150.0) == Probe(3.0, 150.0)
+
+
+def test_text_and_plan_mean_the_same_touches(plan, read, chain):
+    touches = [touch for program in read for touch in program.touches]
+    assert len(touches) == len(plan)
+    start = np.array([t.q for t in touches])
+    planned = plan.start.copy()
+    linear = [chain.axis_index(a) for a in "XYZ"]
+    assert np.abs(start - planned)[:, linear].max() < ROUNDING
+    rotary = [chain.axis_index(a) for a in "BC"]
+    assert np.abs(start - planned)[:, rotary].max() < 1e-12
+    direction = np.array([t.direction for t in touches])[:, linear]
+    assert np.abs(direction - plan.direction).max() < ROUNDING
+    names = [program.features[t.feature] for program in read for t in program.touches]
+    assert names == plan.feature.tolist()
+    assert [t.number for t in touches] == list(range(1, len(plan) + 1))
+    sides = np.array([t.side for t in touches])[:, rotary]
+    planned_sides = np.array([plan.visits[v].side for v in plan.visit])
+    # chain order is C, B
+    assert np.array_equal(sides, planned_sides[:, ::-1])
+
+
+def test_touches_start_off_the_surface_and_run_against_its_normal(plan, read, chain):
+    """By plain kinematics from the readings in the text: start = p + (R + standoff) n."""
+    touches = [touch for program in read for touch in program.touches]
+    q = np.array([t.q for t in touches])
+    T_table_artefact = plan.setup.T_table_artefact
+    p, n = apply(T_table_artefact, plan.point), turn(T_table_artefact, plan.normal)
+    expected = p + (plan.probe.radius + plan.options.standoff) * n
+    assert np.abs(tip(chain, q, plan.probe.length) - expected).max() < ROUNDING
+    D = linear_directions(chain, q)
+    columns = [chain.axis_index(a) for a in chain.linear_axes]
+    motion = np.einsum("nij,nj->ni", D, np.array([t.direction for t in touches])[:, columns])
+    assert np.abs(motion + n).max() < ROUNDING
+
+
+def test_what_happens_without_contact_is_read_too(read):
+    for touch in read[0].touches:
+        up, line, halt = touch.miss
+        assert isinstance(up, Move)
+        assert up.feed is None
+        assert isinstance(line, Print)
+        assert line.lines[0].text.startswith("NOCONTACT")
+        assert isinstance(halt, Halt)
+
+
+def test_rotary_axes_turn_only_at_the_top_and_from_the_stated_side(read, chain):
+    z = chain.axis_index("Z")
+    rotary = [chain.axis_index(a) for a in "BC"]
+    for program in read:
+        here = None
+        for step in program.steps:
+            if isinstance(step, Probing):
+                here = step.q
+            elif isinstance(step, Move):
+                if here is not None and np.any(np.abs(step.q - here)[rotary] > 0.0):
+                    assert step.q[z] == -1.0
+                    assert np.abs(step.q - here)[rotary].max() < 180.0 * DEG
+                here = np.where(np.isnan(step.q), 0.0, step.q)
+
+
+def test_golden_files_are_read_from_disk(golden_folder, chain, read):
+    for program in read:
+        again = read_program(golden_folder / f"{program.name}.H", chain)
+        assert len(again.steps) == len(program.steps)
+    with pytest.raises(BadFile, match="No such file"):
+        read_program(golden_folder / "NONE.H", chain)

@@ -1,0 +1,114 @@
+import numpy as np
+import pytest
+
+from probe_paths import klartext as k
+from probe_paths.blocks import Kind, read_blocks
+from probe_paths.dialect import Dialect
+from probe_paths.heading import Heading, parse_heading, rounded_setup
+from twin.errors import DesignError
+from twin.frames import pose, rotation
+from twin.touches import Setup
+
+ROUNDING = 1e-6
+"""Six decimals of millimetres and degrees in a heading."""
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(1.0, "+1.0000"), (-0.00001, "+0.0000"), (-12.34567, "-12.3457"), (0.0, "+0.0000")],
+)
+def test_numbers_carry_sign_and_four_decimals(value, text):
+    assert k.signed(value) == text
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e5, -123456.0])
+def test_numbers_beyond_the_control_are_refused(value):
+    with pytest.raises(DesignError, match="beyond the control's range"):
+        k.signed(value)
+
+
+@pytest.mark.parametrize("name", ["ms_1", "1MS", "M-1", "A" * 17, ""])
+def test_program_names_that_old_software_cannot_show_are_refused(name):
+    with pytest.raises(DesignError, match="at most 16 characters"):
+        k.begin(name)
+
+
+@pytest.mark.parametrize("block", ["M3", "M03", "L Z+1.0000 R0 FMAX M13", "TOOL CALL 5 Z S1000"])
+def test_a_spindle_start_is_never_listed(block):
+    with pytest.raises(DesignError, match="would start the spindle"):
+        k.Listing().add(block)
+
+
+@pytest.mark.parametrize(
+    "block", ["M30", "M126", "L Z-1.0000 R0 FMAX M91", "TOOL CALL 3 Z", "M140 MB MAX"]
+)
+def test_other_m_functions_are_no_spindle_start(block):
+    listing = k.Listing()
+    listing.add(block)
+    assert listing.text == f"0 {block}\r\n"
+
+
+def test_long_and_foreign_lines_are_refused():
+    with pytest.raises(DesignError, match="at most 72"):
+        k.Listing().add(k.comment("X" * 80))
+    with pytest.raises(DesignError, match="outside ASCII"):
+        k.Listing().add(k.comment("20 \N{DEGREE SIGN}"))
+    with pytest.raises(DesignError, match="ends in ~"):
+        k.comment("to be continued ~")
+
+
+def test_every_block_of_the_vocabulary_is_one_that_the_parser_knows():
+    listing = k.Listing()
+    listing.add(
+        k.begin("ALL"), k.comment("TEXT"), k.structure("HEAD"), *k.stock([0, 0, 0], [1, 2, 3]),
+        k.TCPM_OFF, k.PLANE_OFF, *k.datum_shift_off(), k.tool_call(7), k.preset(3), k.WAIT,
+        k.line({"Z": -1.0}, words="M91"), k.line({"B": -30.0, "C": 5.0}, 1000, k.SHORTER_WAY),
+        k.SHORTER_WAY, k.SHORTER_WAY_OFF, k.assign(1601, 2), k.assign(1601, -2.5),
+        k.system_read(1601, 350, 14, 1), k.system_read(1601, 350, 11), k.call(90),
+        *k.probe_vector(k.ProbeWords(), 1610, [0.0, 0.6, -0.8], 8.0, 250.0, 5.0),
+        k.print_masked("TNC:\\A\\M.A", "TNC:\\A\\L.TXT"), k.PROGRAM_STOP, k.label(90, "WHY"),
+        k.jump_if_negative(1613, 91), k.LABEL_END, k.label(91), k.RETRACT_MAX, k.OPERATOR_STOP,
+        k.stop_with_error(1014), k.end("ALL"),
+    )  # fmt: skip
+    blocks = read_blocks(listing.text.encode("ascii"), "ALL.H")
+    assert {b.kind for b in blocks} == set(Kind) - {Kind.TCPM_ON}
+
+
+def test_the_form_in_which_a_control_saves_is_read_alike():
+    ours = b"0 BEGIN PGM A MM\r\n1 L X+1.0000 Y-2.5000 R0 FMAX\r\n2 END PGM A MM\r\n"
+    saved = b"0  BEGIN PGM A MM \r\n1  L  X+1.0000  Y-2.5000 R0 FMAX\r\n2  END PGM A MM \r\n"
+    without_numbers = b"BEGIN PGM A MM\nL X+1.0000 Y-2.5000 R0 FMAX\nEND PGM A MM\n"
+    words = [[b.words for b in read_blocks(t, "A.H")] for t in (ours, saved, without_numbers)]
+    assert words[0] == words[1] == words[2]
+
+
+@pytest.mark.parametrize("word", k.DISTANCE_WORDS)
+@pytest.mark.parametrize("name", k.CYCLE_NAMES)
+def test_every_dialect_of_cycle_4_is_read_back(word, name):
+    blocks = k.probe_vector(k.ProbeWords(name, word), 1610, [0.0, 0.0, -1.0], 8.0, 250.0, 5.0)
+    listing = k.Listing()
+    listing.add(*blocks)
+    path = read_blocks(listing.text.encode("ascii"), "A.H")[3]
+    assert (path.number("distance"), path.number("feed"), path.number("back")) == (8.0, 250.0, 5.0)
+
+
+def test_unknown_dialect_words_are_refused():
+    with pytest.raises(DesignError, match="expected one of SET UP, ABST, DIST"):
+        k.ProbeWords(distance_word="SETUP")
+    assert Dialect(folder="TNC:\\P").on_control("A.H") == "TNC:\\P\\A.H"
+
+
+def test_a_heading_survives_its_lines():
+    T_table_artefact = pose(rotation(np.array([0.1, -0.2, 3.0])), np.array([1.23456789, -2.0, 3.0]))
+    setup = rounded_setup(Setup("b", T_table_artefact))
+    head = Heading("FFS-600U", setup, 2.998765, 160.25)
+    back = parse_heading(list(enumerate(head.lines, start=5)), "A.H")
+    assert (back.standard, back.setup.name) == ("FFS-600U", "b")
+    np.testing.assert_allclose(back.setup.T_table_artefact, setup.T_table_artefact, atol=1e-12)
+    assert abs(back.radius - head.radius) < ROUNDING
+    assert np.abs(setup.T_table_artefact - T_table_artefact).max() < ROUNDING
+
+
+def test_a_name_with_blanks_cannot_stand_in_a_heading():
+    with pytest.raises(DesignError, match="1 to 24 letters"):
+        _ = Heading("my standard", Setup("a"), 3.0, 160.0).lines

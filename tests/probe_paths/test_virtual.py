@@ -1,0 +1,297 @@
+"""Virtual probing: contacts against a second, slow search; errors against deviations by hand."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.interpolate import BSpline
+from scipy.optimize import brentq, minimize
+
+from probe_paths.contacts import VirtualMachine
+from probe_paths.interpreter import interpret
+from probe_paths.plan import PlanOptions, requests_at
+from probe_paths.planner import plan_touches
+from probe_paths.probe import Probe
+from probe_paths.program import make_programs
+from probe_paths.virtual import Outcome, run_program, run_programs
+from twin.effect import Contribution, contribution
+from twin.effects.geometric import ComponentError
+from twin.effects.location import LocationError
+from twin.errors import DesignError
+from twin.frames import apply, inverse, pose, rotation, turn
+from twin.kinematics import exact_tip, tip
+from twin.model import Model
+from twin.touches import Setup, Touches, at_poses
+from twin.units import DEG, NM, UM, URAD
+
+SECOND_ORDER = 0.02 * UM
+"""Product of an error of 10 µm or 20 µrad with the change of a normal or an arm over it."""
+
+
+def deviations(run, standard, chain):
+    """By the definition, foot points on the standard at its believed place, one by one."""
+    heading = run.program.heading
+    T_artefact_table = inverse(heading.setup.T_table_artefact)
+    centre = apply(T_artefact_table, tip(chain, run.q, heading.length))
+    out = np.empty(len(centre))
+    for i, name in enumerate(run.feature):
+        surface = standard.features[name]
+        uv = surface.project(centre[i : i + 1])
+        n, p = surface.normal(uv)[0], surface.point(uv)[0]
+        out[i] = n @ (centre[i] - p) - heading.radius
+    return out
+
+
+def test_a_perfect_machine_measures_nothing(read, small, perfect, chain):
+    for program in read:
+        run = run_program(program, small, perfect, np.random.default_rng(0))
+        assert run.outcome is Outcome.DONE
+        dev = deviations(run, small, chain)
+        assert np.abs(dev).max() < NM
+
+
+def spline_surface(patch):
+    """The patch's surface point by scipy's B-splines, in the artefact frame."""
+
+    def point(uv):
+        ku, kv = patch.degree
+        rows = BSpline(patch.knots_u, patch.heights, ku)(uv[0])
+        height = BSpline(patch.knots_v, rows, kv)(uv[1])
+        return apply(patch.T_artefact_patch, np.array([uv[0], uv[1], float(height)]))
+
+    return point
+
+
+def distance_to(surface, centre, near):
+    """Distance of a point from a surface by a search without derivatives."""
+    found = minimize(
+        lambda uv: np.linalg.norm(surface(uv) - centre),
+        near,
+        method="Nelder-Mead",
+        options={"xatol": 1e-9, "fatol": 1e-13, "maxiter": 2000},
+    )
+    return found.fun
+
+
+def test_contacts_against_bisection_of_the_distance(read, small, chain):
+    """The true ball runs along the vector; where its distance equals the radius it triggers.
+
+    Neither the surface (scipy's B-splines), nor the distance (a search without derivatives), nor
+    the travel (bisection) shares code with the contact search.
+    """
+    errors = some_errors(chain)
+    believed = read[0].heading.setup.T_table_artefact
+    stands = pose(rotation(np.array([2e-4, -1e-4, 3e-4])), np.array([0.03, -0.02, 0.04]))
+    machine = VirtualMachine(chain, lambda t: contribution(errors, t), setup_error=stands)
+    run = run_program(read[0], small, machine, np.random.default_rng(0))
+    T_artefact_table = inverse(believed @ stands)
+    rows = [i for i, name in enumerate(run.feature) if name.startswith("FF")][::3]
+    assert len(rows) >= 3
+    for i in rows:
+        touch = read[0].touches[i]
+        patch = small.features[run.feature[i]]
+        surface = spline_surface(patch)
+
+        def gap(t, touch=touch, surface=surface, patch=patch):
+            q = (touch.q + t * touch.direction)[None]
+            added = contribution(errors, at_poses(chain, q, run.program.heading.length))
+            centre = apply(T_artefact_table, exact_tip(chain, q, 160.0, added)[0])
+            near = apply(inverse(patch.T_artefact_patch), centre)[:2]
+            return distance_to(surface, centre, near) - 3.0
+
+        travel = brentq(gap, 3.0, 7.0, xtol=1e-9)
+        found = (run.q[i] - touch.q) @ touch.direction
+        assert abs(travel - found) < NM
+
+
+def some_errors(chain):
+    """All parameters of the machine, linear or constant, 10 µm and 20 µrad."""
+    rng = np.random.default_rng(11)
+    out = []
+    for symbol in chain.symbols:
+        size = np.array([rng.normal() * (20.0 * URAD if symbol.is_angular else 10.0 * UM)])
+        is_component = symbol.family.name == "COMPONENT"
+        effect = ComponentError(symbol, "linear") if is_component else LocationError(symbol)
+        out.append((effect, size))
+    return out
+
+
+def test_all_errors_at_once_against_the_linear_model(read, small, chain, plan):
+    """The model's deviation holds for plane surfaces; a curved one differs in the second order."""
+    errors = some_errors(chain)
+    machine = VirtualMachine(chain, lambda t: contribution(errors, t))
+    model = Model(chain, tuple(effect for effect, _ in errors))
+    theta = np.concatenate([size for _, size in errors])
+    for program in read:
+        run = run_program(program, small, machine, np.random.default_rng(0))
+        measured = deviations(run, small, chain)
+        rows = [t.number - 1 for t in program.touches]
+        n = len(rows)
+        touches = Touches(
+            chain, run.q, np.full(n, 160.0), np.full(n, 3.0), plan.point[rows], plan.normal[rows],
+            (plan.setup,), np.zeros(n, dtype=np.int64), run.time, np.zeros(run.q.shape),
+        )  # fmt: skip
+        expected = model.deviation(touches, theta)
+        assert np.abs(expected).max() > 20.0 * UM
+        assert np.abs(measured - expected).max() < 10.0 * SECOND_ORDER
+
+
+HAND = [
+    # sphere's centre, feature's azimuth and elevation, B, C, error, size, deviation by hand in µm
+    # EXX: the tool is 1 µm further in +x, met 1 µm early from +x: the surface seems further out
+    ((0.0, 0.0, 100.0), (0.0, 0.0), (0, 0), "EXX", UM, -1.0),
+    ((0.0, 0.0, 100.0), (np.pi, 0.0), (0, 0), "EXX", UM, +1.0),
+    ((0.0, 0.0, 100.0), (0.0, np.pi / 2), (0, 0), "EZZ", UM, -1.0),
+    # the worked examples of the conventions: tool point 100, 50, 140 at readings 100, 50, -200
+    ((100.0, 50.0, 127.0), (0.0, np.pi / 2), (0, 0), "EBX", 10 * URAD, +1.0),
+    ((87.0, 50.0, 140.0), (0.0, 0.0), (0, 0), "EBX", 10 * URAD, +3.6),
+    ((87.0, 50.0, 140.0), (0.0, 0.0), (0, 0), "EC0Y", 10 * URAD, +0.5),
+    ((100.0, 37.0, 140.0), (np.pi / 2, 0.0), (0, 0), "EC0X", 10 * URAD, -1.0),
+    ((-50.0, 87.0, 140.0), (np.pi / 2, 0.0), (0, 90), "EXC", UM, -1.0),
+    ((-50.0, 100.0, 127.0), (0.0, np.pi / 2), (0, 90), "EAC", 10 * URAD, -0.5),
+    ((-47.0, 50.0, 180.0), (np.pi, 0.0), (-90, 0), "EX0B", UM, +1.0),
+    ((-47.0, 50.0, 180.0), (np.pi, 0.0), (-90, 0), "EBB", 10 * URAD, +1.0),
+]
+
+
+@pytest.mark.parametrize(("centre", "uv", "b_c", "name", "size", "by_hand"), HAND)
+def test_one_error_gives_the_deviation_worked_out_by_hand(
+    golden, chain, centre, uv, b_c, name, size, by_hand
+):
+    sphere = golden.DatumSphere("SPH1", np.array(centre), 10.0, 2.0, 2.0, 20.0)
+    other = golden.sphere("SPH2", -75.0, -75.0, 40.0)
+    of = golden.standard((sphere, other))
+    rotary = np.array(b_c[::-1], dtype=float) * DEG
+    wanted = requests_at(of, "SPH1", np.array([uv]), rotary)
+    slim = Probe(body_radius=5.0, nose_radius=6.0, stylus_length=100.0, stylus_radius=1.0)
+    options = PlanOptions(standoff=4.0, room=0.1, table_radius=20.0, anchor="SPH2", tolerated=1)
+    setup = Setup("a")
+    plan = plan_touches(of, chain, slim, setup, wanted, options)
+    program = make_programs(plan).programs[0]
+    masks = make_programs(plan).masks
+    read = interpret(program.text.encode("ascii"), Path("MS_A_1.H"), masks.get, chain)
+    row = int(np.flatnonzero(plan.request == 0)[0])
+    symbol = chain.symbol(name)
+    is_component = symbol.family.name == "COMPONENT"
+    effect = ComponentError(symbol, "constant") if is_component else LocationError(symbol)
+    machine = VirtualMachine(chain, lambda t: contribution([(effect, np.array([size]))], t))
+    run = run_program(read, of, machine, np.random.default_rng(0))
+    dev = deviations(run, of, chain)[row]
+    assert abs(dev - by_hand * UM) < 1e-3 * UM
+
+
+def test_shift_of_the_standard_and_bias_of_the_probe_count_outwards(read, small, chain, plan):
+    def disturbance(touches):
+        added = Contribution.zeros(len(touches), len(chain.links))
+        added.shift[:] = [2.0 * UM, -1.0 * UM, 3.0 * UM]
+        added.bias[:] = 0.7 * UM
+        return added
+
+    run = run_program(read[0], small, VirtualMachine(chain, disturbance), np.random.default_rng(0))
+    rows = [t.number - 1 for t in read[0].touches]
+    normal = turn(plan.setup.T_table_artefact, plan.normal[rows])
+    expected = normal @ np.array([2.0, -1.0, 3.0]) * UM + 0.7 * UM
+    measured = deviations(run, small, chain)
+    assert np.abs(measured - expected).max() < 0.1 * SECOND_ORDER
+
+
+def test_noise_is_that_of_the_trigger_and_of_the_seed(read, small, chain):
+    machine = VirtualMachine(chain, noise=2.0 * UM)
+    runs = [run_program(read[0], small, machine, np.random.default_rng(s)) for s in (4, 4, 5)]
+    dev = [deviations(run, small, chain) for run in runs]
+    drawn = np.random.default_rng(4).normal(0.0, 1.0, len(dev[0])) * 2.0 * UM
+    assert np.abs(dev[0] - drawn).max() < 0.1 * SECOND_ORDER
+    assert np.array_equal(dev[0], dev[1])
+    assert np.abs(dev[0] - dev[2]).max() > UM
+
+
+def changed(program, chain, masks, old, new):
+    """The program with one change in its text, read again."""
+    assert old in program.text
+    text = program.text.replace(old, new, 1)
+    return interpret(text.encode("ascii"), Path(f"{program.name}.H"), masks.get, chain)
+
+
+def test_a_vector_the_wrong_way_meets_nothing_and_the_program_stops(
+    programs, chain, small, perfect, read
+):
+    first = programs.programs[0]
+    third = first.text.split("TCH PROBE 4.2 ")[3].split("\r\n")[0]
+    turned = third.translate(str.maketrans("+-", "-+"))
+    broken = changed(first, chain, programs.masks, third, turned)
+    run = run_program(broken, small, perfect, np.random.default_rng(0))
+    assert run.outcome is Outcome.STOPPED
+    assert run.reached == 3
+    assert "touch 3 on" in run.why
+    assert "meets nothing" in run.why
+    log = run.log["MS_A_1.TXT"].splitlines()
+    assert [line.split()[0] for line in log if line.startswith(("P ", "NOC", "END"))] == [
+        "P", "P", "NOCONTACT",
+    ]  # fmt: skip
+    # nothing runs after a stop
+    assert len(run_programs([broken, read[1]], small, perfect, np.random.default_rng(0))) == 1
+
+
+@pytest.mark.parametrize(
+    ("stands", "reason"),
+    [
+        ((0.0, 0.0, 6.0), "starts in the material|before it starts"),
+        ((0.0, 0.0, -9.0), "meets nothing within the travel"),
+        ((25.0, 0.0, 0.0), "edge|side|nothing"),
+    ],
+)
+def test_a_standard_that_stands_elsewhere_stops_the_program(read, small, chain, stands, reason):
+    machine = VirtualMachine(chain, setup_error=pose(t=np.array(stands)))
+    run = run_program(read[0], small, machine, np.random.default_rng(0))
+    assert run.outcome is Outcome.STOPPED
+    assert any(word in run.why for word in reason.split("|"))
+    assert np.isnan(run.q[run.reached - 1]).all()
+
+
+def test_a_touch_beside_the_trimmed_face_is_no_contact(golden, chain, perfect):
+    """The spline runs on beyond the face, the metal does not."""
+    of = golden.standard()
+    wanted = requests_at(of, "FF1", np.array([[0.0, 0.0]]), np.zeros(2))
+    plan = plan_touches(of, chain, Probe(), Setup("a"), wanted)
+    made = make_programs(plan)
+    row = int(np.flatnonzero(plan.request == 0)[0])
+    x, y = (f"{axis}{plan.start[row, chain.axis_index(axis)]:+.4f}" for axis in "XY")
+    text = made.programs[0].text
+    assert text.count(f"{x} {y}") == 2
+    for beside, reason in ((15.5, "edge"), (17.0, "edge"), (30.0, "")):
+        moved = text.replace(f"{x} {y}", f"X+{beside:.4f} {y}")
+        read = interpret(moved.encode("ascii"), Path("MS_A_1.H"), made.masks.get, chain)
+        run = run_program(read, of, perfect, np.random.default_rng(0))
+        assert run.outcome is Outcome.STOPPED
+        assert reason in run.why
+
+
+def test_a_program_for_another_standard_is_refused(read, golden, perfect):
+    other = golden.standard((golden.sphere("BALL", 0.0, 0.0),))
+    with pytest.raises(DesignError, match="FF1 in the program; standard 'SMALL-1' has 1 BALL"):
+        run_program(read[0], other, perfect, np.random.default_rng(0))
+
+
+def test_time_runs_on_from_program_to_program(read, small, perfect):
+    runs = run_programs(read, small, perfect, np.random.default_rng(0))
+    times = np.concatenate([run.time for run in runs])
+    assert np.all(np.diff(times) > 0.0)
+    assert runs[1].time[0] > runs[0].end
+    # a touch: approach, search, cycle and retract; nobody does it under two seconds
+    assert np.median(np.diff(times)) > 2.0
+
+
+def test_directions_of_approach_are_those_of_the_moves(read, small, chain):
+    seen = []
+
+    def disturbance(touches):
+        seen.append(touches)
+        return Contribution.zeros(len(touches), len(chain.links))
+
+    run_program(read[0], small, VirtualMachine(chain, disturbance), np.random.default_rng(0))
+    touches = seen[-1]
+    assert np.array_equal(touches.approach[:, :2], np.array([t.side[:2] for t in read[0].touches]))
+    columns = [chain.axis_index(a) for a in "XYZ"]
+    direction = np.array([t.direction for t in read[0].touches])[:, columns]
+    moving = direction != 0.0
+    assert np.array_equal(touches.approach[:, columns][moving], np.sign(direction[moving]))
