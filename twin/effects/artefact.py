@@ -185,6 +185,7 @@ EXPANSION = Kind(
     source="ISO 1",
     make=_make_expansion,
     propose=_propose_expansion,
+    classes=(ArtefactExpansion,),
 )
 SLIP = Kind(
     word="artefact-slip",
@@ -195,6 +196,7 @@ SLIP = Kind(
     source="clamping practice; rigid motion",
     make=_maker("artefact-slip", ArtefactSlip()),
     propose=_propose_slip,
+    classes=(ArtefactSlip,),
 )
 DRIFT = Kind(
     word="drift",
@@ -205,4 +207,5 @@ DRIFT = Kind(
     source="ISO 230-3 (drift tests)",
     make=_maker("drift", Drift()),
     propose=_propose_drift,
+    classes=(Drift,),
 )

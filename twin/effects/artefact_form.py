@@ -114,4 +114,5 @@ KIND = Kind(
     source="calibration of freeform standards",
     make=make,
     propose=propose,
+    classes=(ArtefactForm,),
 )

@@ -83,4 +83,5 @@ KIND = Kind(
     source="ISO 230-2 (forward minus backward)",
     make=make,
     propose=propose,
+    classes=(Backlash,),
 )

@@ -112,4 +112,5 @@ KIND = Kind(
     source="Chen 1995; curvature alpha (T_1 - T_2)/h",
     make=make,
     propose=propose,
+    classes=(ColumnBending,),
 )

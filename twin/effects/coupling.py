@@ -119,4 +119,5 @@ KIND = Kind(
     source="Chen 1995 (pitch of X depends on Z, 12 arcsec)",
     make=make,
     propose=propose,
+    classes=(Coupling,),
 )

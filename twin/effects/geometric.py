@@ -171,4 +171,6 @@ KIND = Kind(
     source="ISO 230-1:2012; ISO 230-7",
     make=make,
     propose=propose,
+    classes=(ComponentError, HigherOrder),
+    about="Component error of an axis over its own reading, to some degree or in one distribution.",
 )

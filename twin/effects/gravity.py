@@ -186,4 +186,6 @@ KIND = Kind(
     source="cantilever F L^3/(3 E I); moment of a weight over the stiffness that holds it",
     make=make,
     propose=propose,
+    classes=(RamSag, TiltSag, OffCentreLoad),
+    about="Sag under the weight that the axes carry about.",
 )

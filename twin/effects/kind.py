@@ -1,5 +1,6 @@
 """`Kind`: one word of the library of effects, with all that a user is told about it."""
 
+import inspect
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -26,6 +27,8 @@ class Kind:
         source: Where the formula and the size are from.
         make: Effect from the arguments of its name; raises a child of DesignError.
         propose: Every effect of the kind that makes sense for some touches.
+        classes: Classes of its effects, whose docstrings tell the whole story.
+        about: What the family is, in one line; empty for the first line of its first class.
     """
 
     word: str
@@ -36,11 +39,19 @@ class Kind:
     source: str
     make: Callable[[Chain, Sequence[str]], Effect]
     propose: Callable[[Touches], Iterable[Effect]]
+    classes: tuple[type, ...] = ()
+    about: str = ""
 
     @property
     def usage(self) -> str:
         """`backlash(axis)`."""
         return f"{self.word}({self.arguments})" if self.arguments else self.word
+
+    @property
+    def summary(self) -> str:
+        """What the effects of the kind are, in one line."""
+        text = inspect.getdoc(self.classes[0]) if self.classes and not self.about else None
+        return text.partition("\n")[0] if text else self.about
 
 
 def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:

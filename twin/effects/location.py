@@ -78,4 +78,5 @@ KIND = Kind(
     source="ISO 230-1:2012; ISO 230-7",
     make=make,
     propose=propose,
+    classes=(LocationError,),
 )

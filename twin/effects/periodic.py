@@ -171,4 +171,6 @@ KIND = Kind(
     source="ISO 230-2; ISO 230-7",
     make=make,
     propose=propose,
+    classes=(Periodic, Harmonic),
+    about="Error that repeats: pitch of a screw or scale, higher harmonics of a rotary axis.",
 )

@@ -139,6 +139,7 @@ LOBING = Kind(
     source="Estler et al. 1996",
     make=_maker("probe-lobing", ProbeLobing()),
     propose=_always(ProbeLobing()),
+    classes=(ProbeLobing,),
 )
 RADIUS = Kind(
     word="probe-radius",
@@ -149,6 +150,7 @@ RADIUS = Kind(
     source="ISO 10360-5",
     make=_maker("probe-radius", ProbeRadius()),
     propose=_always(ProbeRadius()),
+    classes=(ProbeRadius,),
 )
 BENDING = Kind(
     word="stylus-bending",
@@ -159,4 +161,5 @@ BENDING = Kind(
     source="cantilever F l^3/(3 E I); Estler et al. 1996",
     make=_maker("stylus-bending", StylusBending()),
     propose=_always(StylusBending()),
+    classes=(StylusBending,),
 )

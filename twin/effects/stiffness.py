@@ -101,4 +101,5 @@ KIND = Kind(
     source="static compliance under a loaded ball bar",
     make=make,
     propose=propose,
+    classes=(Stiffness,),
 )

@@ -84,4 +84,5 @@ KIND = Kind(
     source="ISO 1; ISO 230-3",
     make=make,
     propose=propose,
+    classes=(ThermalExpansion,),
 )

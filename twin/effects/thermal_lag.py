@@ -188,4 +188,5 @@ KIND = Kind(
     source="ISO 230-3; Chen 1995",
     make=make,
     propose=propose,
+    classes=(ThermalLag,),
 )
