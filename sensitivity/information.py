@@ -58,7 +58,7 @@ class Posterior:
 
     @cached_property
     def _factor(self) -> Array:
-        return np.linalg.cholesky(self.information)
+        return np.asarray(np.linalg.cholesky(self.information), dtype=np.float64)
 
     @cached_property
     def covariance(self) -> Array:
@@ -114,7 +114,8 @@ class Posterior:
 def prior_sd_of_tip(G: Array, prior_sd: Array) -> Array:
     """Root mean square of the tool point's deviation before any measurement, (M,), mm."""
     scaled = G * prior_sd
-    return np.sqrt(np.einsum("mip,mip->m", scaled, scaled))
+    size: Array = np.sqrt(np.einsum("mip,mip->m", scaled, scaled))
+    return size
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,191 @@
+"""Patches that could be made: smooth random shapes on sites all over a blank."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from artefact.constraints import Limits
+from artefact.freeform import graph_patch
+from artefact.sites import Frame, Site
+from artefact.spline import Jet
+from twin.frames import Array
+from twin.units import DEG
+
+CONTROL = 8
+"""Control heights of a patch each way: enough for one wave, too few for ripples."""
+
+_MARGIN = 1.15
+"""Shapes stay this far from the limits of curvature and slope, which are measured on grids."""
+
+_STEEPEST = 35.0 * DEG  # within a patch: beyond it a three-axis finishing cut leaves ridges
+TALLEST = 7.0
+"""What the shape of a patch may rise above its plane, mm, for the room that neighbours keep."""
+
+_PITCH = 2.5  # mm, of the grid on which shapes are scaled
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    """A zone of the standard in which sites are tried, each value drawn evenly.
+
+    Attributes:
+        share: Part of all sites that are tried here.
+        radius: From the axis, mm.
+        height: Above the seat, mm.
+        tilt: Of the patch's own direction from the vertical, rad.
+        half_size: Half sides, mm.
+    """
+
+    share: float
+    radius: tuple[float, float]
+    height: tuple[float, float]
+    tilt: tuple[float, float]
+    half_size: tuple[float, float]
+
+
+RINGS = (
+    Ring(0.06, (0.0, 6.0), (130.0, 160.0), (0.0, 15.0 * DEG), (17.0, 24.0)),
+    Ring(0.38, (54.0, 76.0), (95.0, 140.0), (18.0 * DEG, 42.0 * DEG), (15.0, 22.0)),
+    Ring(0.56, (92.0, 122.0), (64.0, 104.0), (40.0 * DEG, 66.0 * DEG), (15.0, 22.0)),
+)
+"""Top, shoulder and flank of a blank of 280 mm; scaled to other blanks by their size.
+
+All sites look outwards, straight away from the axis, so that their columns meet in the middle.
+"""
+
+
+def smooth_heights(
+    half_size: tuple[float, float],
+    limits: Limits,
+    rng: np.random.Generator,
+    tallest: float = TALLEST,
+) -> Array:
+    """Control heights of a random smooth shape, as strong as the limits allow.
+
+    A random bowl, dome or saddle with a random wave of one to two times the patch's length on it.
+    The whole is scaled until its slope or its smallest concave radius is a seventh from the limit,
+    so that the normals of a patch differ as much as a cutter and a probe can follow.
+
+    Args:
+        half_size: Half sides of the face, mm.
+        limits: Of slope and concave radius.
+        rng: Source of the random numbers.
+        tallest: What a shape may rise above its plane or sink below it, mm.
+
+    Returns:
+        Shape (`CONTROL`, `CONTROL`), mm, with mean zero.
+    """
+    x = np.linspace(-1.0, 1.0, CONTROL)
+    u, v = np.meshgrid(half_size[0] * x, half_size[1] * x, indexing="ij")
+    size = float(np.mean(half_size))
+    bend = rng.uniform(-1.0, 0.6, 2)  # more domes than bowls: every normal of a dome is in the open
+    h = 0.5 * (bend[0] * u**2 + bend[1] * v**2 + rng.uniform(-0.7, 0.7) * u * v) / size
+    direction, phase = rng.uniform(0.0, 2.0 * np.pi, 2)
+    wave = 2.0 * size * rng.uniform(1.0, 2.0)
+    across = np.cos(direction) * u + np.sin(direction) * v
+    k = 2.0 * np.pi / wave
+    h += rng.uniform(0.3, 0.9) / k * np.sin(k * across + phase)
+    h -= h.mean()
+    return h * _strength(half_size, h, limits, tallest)
+
+
+def _strength(
+    half_size: tuple[float, float], heights: Array, limits: Limits, tallest: float
+) -> float:
+    """Factor that brings a shape to its limits; derivatives grow in proportion, curvature does not.
+
+    With ``w^2 = 1 + |grad h|^2`` the curvatures are the eigenvalues of ``I^-1 II``, so the factor
+    is bisected on a grid of derivatives that is evaluated once.
+    """
+    patch = graph_patch("trial", np.eye(4), half_size, heights)
+    j = patch.jet(patch.grid(_PITCH))
+    steepest = np.tan(min(limits.max_slope, _STEEPEST) / _MARGIN)
+    high = float(min(steepest / np.hypot(j.hu, j.hv).max(), tallest / np.abs(j.h).max()))
+    low = 0.0
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        if _largest_curvature(j, middle) * _MARGIN * limits.min_concave_radius > 1.0:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+def _largest_curvature(j: Jet, factor: float) -> float:
+    """Largest principal curvature of a height field scaled by a factor, positive = concave."""
+    hu, hv, huu, huv, hvv = (factor * d for d in (j.hu, j.hv, j.huu, j.huv, j.hvv))
+    w2 = 1.0 + hu**2 + hv**2
+    mean = ((1 + hv**2) * huu - 2 * hu * hv * huv + (1 + hu**2) * hvv) / (2.0 * w2**1.5)
+    gauss = (huu * hvv - huv**2) / w2**2
+    return float((mean + np.sqrt(np.maximum(mean**2 - gauss, 0.0))).max())
+
+
+def random_sites(frame: Frame, count: int, rng: np.random.Generator) -> list[Site]:
+    """Sites all over a blank, each with a random shape.
+
+    Args:
+        frame: Base, blank height and limits.
+        count: Number of sites, shared out over the rings.
+        rng: Source of the random numbers.
+    """
+    wide = min(frame.base.half_size) / 140.0
+    tall = frame.blank_height / 220.0
+    sites = []
+    for ring in RINGS:
+        n = max(1, round(ring.share * count))
+        azimuth = 2.0 * np.pi * (rng.permutation(n) + rng.random(n)) / n
+        for a in azimuth:
+            half = rng.uniform(*ring.half_size, 2) * min(wide, 1.0)
+            half_size = (float(half[0]), float(half[1]))
+            sites.append(
+                Site(
+                    azimuth=float(a),
+                    radius=float(rng.uniform(*ring.radius)) * wide,
+                    height=float(rng.uniform(*ring.height)) * tall,
+                    tilt=float(rng.uniform(*ring.tilt)),
+                    half_size=half_size,
+                    heights=np.round(smooth_heights(half_size, frame.limits, rng), 6),
+                )
+            )
+    return sites
+
+
+def neighbours_fit(sites: list[Site], limits: Limits, depth: float = 60.0) -> NDArray[np.bool_]:
+    """Which sites can stand beside each other, (S, S).
+
+    The ball must have room over every face before the other column, taken as a box as tall as the
+    tallest shape. Columns may grow together behind the faces. The finished standard is measured on
+    its exact bodies afterwards.
+
+    Args:
+        sites: S sites.
+        limits: Ball radius and gap.
+        depth: Of the columns as far as it matters here, mm.
+    """
+    needed = 2.0 * limits.ball_radius + limits.gap + 2.0
+    faces = np.stack([_face(site, limits.ball_radius) for site in sites])  # (S, K, 3)
+    out = np.ones((len(sites), len(sites)), dtype=bool)
+    for j, site in enumerate(sites):
+        T = site.T_artefact_patch
+        local = (faces - T[:3, 3]) @ T[:3, :3]
+        top = float(site.heights.max())
+        middle = np.array([0.0, 0.0, 0.5 * (top - depth)])
+        half = np.array([*site.half_size, 0.5 * (top + depth)])
+        beyond = np.abs(local - middle) - half
+        outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
+        gap = (outside + np.minimum(beyond.max(axis=-1), 0.0)).min(axis=1)
+        fits = gap >= needed
+        out[:, j] &= fits
+        out[j, :] &= fits
+    np.fill_diagonal(out, val=False)
+    return out
+
+
+def _face(site: Site, radius: float) -> Array:
+    """Ball centres over a coarse grid of the face at the mean height, artefact frame, (25, 3)."""
+    grid = np.linspace(-1.0, 1.0, 5)
+    u, v = np.meshgrid(site.half_size[0] * grid, site.half_size[1] * grid, indexing="ij")
+    local = np.stack([u.ravel(), v.ravel(), np.full(u.size, radius)], axis=-1)
+    T = site.T_artefact_patch
+    return local @ T[:3, :3].T + T[:3, 3]

@@ -1,0 +1,286 @@
+"""Choosing touches: which rows, of all that could be measured, tell most.
+
+The criterion is Bayesian and, by default, I-optimal: the mean predicted variance of the tool point
+over the poses that the user cares about,
+
+    value = trace(K M^-1),   M = 1 + sum over the chosen rows of w w^T,   K = mean of G^T G,
+
+for parameters in units of their prior. With K the unit matrix it is A-optimality. A greedy choice
+is mended by exchanges until no exchange helps; that is a local optimum and is called nothing else.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.errors import DesignError
+from twin.frames import Array
+from twin.touches import IntArray
+
+_REFRESH = 40  # updates after which rounding is swept out
+
+
+@dataclass(frozen=True, eq=False)
+class Purpose:
+    """What touches are chosen for: the directions of parameter space that matter, and their weight.
+
+    Attributes:
+        directions: Orthonormal columns, (P, R): everything that a tool point or a touch can feel.
+        K: Mean square of the tool point's deviation as a form in these directions, (R, R), mm^2.
+    """
+
+    directions: Array
+    K: Array
+
+    def rows(self, W: Array) -> Array:
+        """Whitened rows (N, P) in the directions that matter, (N, R)."""
+        reduced: Array = W @ self.directions
+        return reduced
+
+    def value(self, information: Array) -> float:
+        """Mean predicted variance of the tool point, mm^2, for W^T W (R, R) of some rows."""
+        M = np.eye(len(self.K)) + information
+        return float(np.trace(np.linalg.solve(M, self.K)))
+
+
+def purpose(G: Array, W: Array, prior_sd: Array) -> Purpose:
+    """Purpose: to predict the tool point at M poses.
+
+    Directions that neither move the tool point at any pose nor show in any row stay at their prior
+    whatever is measured; they are left out, which is exact and a third of the work.
+
+    Args:
+        G: Deviation of the tip per unit of every parameter at the poses, (M, 3, P), mm.
+        W: Some whitened rows that span what can be measured, (N, P).
+        prior_sd: Expected standard deviation of every parameter, (P,).
+    """
+    scaled = (G * prior_sd).reshape(-1, len(prior_sd))
+    K = scaled.T @ scaled / len(G)
+    seen = W.T @ W
+    both = K / np.trace(K) + seen / max(float(np.trace(seen)), 1e-300)
+    values, vectors = np.linalg.eigh(both)
+    V = vectors[:, values > 1e-13 * values[-1]]
+    return Purpose(V, V.T @ K @ V)
+
+
+class Selection:
+    """Rows chosen so far, with what every other row would add; updated row by row.
+
+    Attributes:
+        chosen: Which rows are in, (N,).
+        value: Mean predicted variance of the tool point, mm^2.
+    """
+
+    def __init__(self, aim: Purpose, W: Array, chosen: NDArray[np.bool_] | None = None) -> None:
+        self.aim, self.W = aim, W
+        self.chosen = np.zeros(len(W), dtype=bool) if chosen is None else chosen.copy()
+        self._refresh()
+
+    def _refresh(self) -> None:
+        """M^-1, leverages h = w M^-1 w and gains g = w M^-1 K M^-1 w of all rows, from scratch."""
+        kept = self.W[self.chosen]
+        self._inverse = np.linalg.solve(
+            np.eye(self.W.shape[1]) + kept.T @ kept, np.eye(self.W.shape[1])
+        )
+        self.value = float(np.sum(self._inverse * self.aim.K))
+        reach = self.W @ self._inverse
+        self._leverage = np.einsum("nr,nr->n", reach, self.W)
+        self._gain = np.einsum("nr,rs,ns->n", reach, self.aim.K, reach, optimize=True)
+        self._updates = 0
+
+    @property
+    def gains(self) -> Array:
+        """How much less the value is with each row in, (N,); for a row that is in: once more."""
+        return self._gain / (1.0 + self._leverage)
+
+    @property
+    def losses(self) -> Array:
+        """How much more the value is with each chosen row out, (N,); inf for rows not chosen."""
+        out = np.full(len(self.W), np.inf)
+        i = self.chosen
+        out[i] = self._gain[i] / np.maximum(1.0 - self._leverage[i], 1e-12)
+        return out
+
+    def add(self, row: int) -> None:
+        """Choose a row."""
+        self._update(row, 1.0)
+        self.chosen[row] = True
+
+    def drop(self, row: int) -> None:
+        """Leave a row out again."""
+        self._update(row, -1.0)
+        self.chosen[row] = False
+
+    def _update(self, row: int, sign: float) -> None:
+        """Rank-one update of everything (Sherman and Morrison), sign 1 in and -1 out."""
+        if self._updates >= _REFRESH:
+            self._refresh()
+        self._updates += 1
+        a = self._inverse @ self.W[row]
+        c = sign / (1.0 + sign * self._leverage[row])
+        b = self._inverse @ (self.aim.K @ a)
+        kappa = float(a @ self.aim.K @ a)
+        along_a, along_b = self.W @ a, self.W @ b
+        self._inverse -= c * np.outer(a, a)
+        self._leverage -= c * along_a**2
+        self._gain += c * c * kappa * along_a**2 - 2.0 * c * along_a * along_b
+        self.value -= c * kappa
+
+
+@dataclass(frozen=True, eq=False)
+class Quota:
+    """How many rows of a kind may be chosen.
+
+    Attributes:
+        kind: Of every row, (N,), from 0.
+        most: Of each kind.
+    """
+
+    kind: IntArray
+    most: IntArray
+
+    def open(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Rows whose kind has room left, (N,)."""
+        count = np.bincount(self.kind[chosen], minlength=len(self.most))
+        room: NDArray[np.bool_] = (count < self.most)[self.kind]
+        return room
+
+
+def _open(quotas: tuple[Quota, ...], chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    free = ~chosen
+    for quota in quotas:
+        free &= quota.open(chosen)
+    return free
+
+
+def fill(selection: Selection, count: int, quotas: tuple[Quota, ...] = ()) -> None:
+    """Choose rows greedily, the one that helps most first, until `count` are in.
+
+    Raises:
+        DesignError: The quotas leave fewer rows than asked for.
+    """
+    while (chosen := int(selection.chosen.sum())) < count:
+        free = _open(quotas, selection.chosen)
+        if not free.any():
+            raise DesignError(f"{chosen} of {count} touches chosen, and no other may be taken")
+        selection.add(int(np.argmax(np.where(free, selection.gains, -np.inf))))
+
+
+def exchange(
+    selection: Selection,
+    quotas: tuple[Quota, ...] = (),
+    kept: NDArray[np.bool_] | None = None,
+    most: int = 200,
+) -> int:
+    """Exchange chosen rows for better ones: the least useful out, the most useful in.
+
+    Args:
+        selection: Is changed.
+        quotas: Hold after every exchange.
+        kept: Rows that stay in, (N,).
+        most: Largest number of exchanges.
+
+    Returns:
+        Number of exchanges made; fewer than `most` means that no such exchange helps any more.
+
+    Reference:
+        Fedorov, Theory of Optimal Experiments (1972); Cook and Nachtsheim (1980).
+    """
+    stays = np.zeros(len(selection.W), dtype=bool) if kept is None else kept
+    for made in range(most):
+        losses = np.where(stays, np.inf, selection.losses)
+        worst = int(np.argmin(losses))
+        if not np.isfinite(losses[worst]):
+            return made
+        before = selection.value
+        selection.drop(worst)
+        free = _open(quotas, selection.chosen)
+        best = int(np.argmax(np.where(free, selection.gains, -np.inf)))
+        selection.add(best)
+        if best == worst or selection.value > before * (1.0 - 1e-6):
+            selection.drop(best)
+            selection.add(worst)
+            return made
+    return most
+
+
+def best_groups(
+    aim: Purpose,
+    W: Array,
+    group: IntArray,
+    count: int,
+    take: int,
+    start: Array | None = None,
+    apart: NDArray[np.bool_] | None = None,
+) -> list[int]:
+    """Choose groups of rows that belong together (the touches of a patch, of a table pose).
+
+    A group is worth what its `take` most useful rows bring, useful as seen from the groups chosen
+    before it; greedy, then every chosen group is once weighed against all that are left out.
+
+    Args:
+        aim: What for.
+        W: Rows in the directions that matter, (N, R).
+        group: Of every row, (N,), from 0.
+        count: Number of groups.
+        take: Rows that a group will contribute.
+        start: W^T W of what is measured anyway, (R, R).
+        apart: Which groups may stand beside each other, (groups, groups); None for all.
+
+    Returns:
+        The chosen groups, in the order of choice; fewer than `count` where no other fits.
+    """
+    board = _Groups(aim, W, group, take, np.zeros_like(aim.K) if start is None else start)
+    fits = np.ones((board.count, board.count), dtype=bool) if apart is None else apart
+    chosen: list[int] = []
+    while len(chosen) < count:
+        best = board.best(chosen, fits)
+        if best is None:
+            break
+        chosen.append(best)
+    for i in range(len(chosen)):
+        others = chosen[:i] + chosen[i + 1 :]
+        better = board.best(others, fits)
+        assert better is not None  # the one that was taken out fits again
+        chosen[i] = better
+    return chosen
+
+
+class _Groups:
+    """Information that groups of rows bring."""
+
+    def __init__(self, aim: Purpose, W: Array, group: IntArray, take: int, start: Array) -> None:
+        self.aim, self.take, self.start = aim, take, start
+        order = np.argsort(group, kind="stable")
+        self.W = W[order]
+        self.count = int(group.max(initial=-1)) + 1
+        self.edges = np.searchsorted(group[order], np.arange(self.count + 1))
+        self.brought: dict[int, Array] = {}
+
+    def best(self, chosen: list[int], fits: NDArray[np.bool_]) -> int | None:
+        """The group that helps most beside those chosen, and whose rows are then remembered."""
+        M: Array = np.eye(len(self.aim.K)) + self.start
+        for k in chosen:
+            M = M + self.brought[k]
+        reach = np.asarray(np.linalg.solve(M, self.W.T).T, dtype=np.float64)
+        gain = np.einsum("nr,rs,ns->n", reach, self.aim.K, reach, optimize=True)
+        gain /= 1.0 + np.einsum("nr,nr->n", reach, self.W)
+        free = np.all(fits[chosen], axis=0) if chosen else np.ones(self.count, dtype=bool)
+        free[chosen] = False
+        best: int | None = None
+        most, brought = -np.inf, self.start
+        for k in np.flatnonzero(free & (np.diff(self.edges) > 0)).tolist():
+            rows = np.arange(self.edges[k], self.edges[k + 1])
+            top = rows[np.argsort(-gain[rows], kind="stable")[: self.take]]
+            drop = self._drop(reach[top], self.W[top])
+            if drop > most:
+                best, most, brought = k, drop, self.W[top].T @ self.W[top]
+        if best is not None:
+            self.brought[best] = brought
+        return best
+
+    def _drop(self, reach: Array, w: Array) -> float:
+        """``trace(K M^-1) - trace(K (M + w^T w)^-1)`` by Woodbury, with reach = w M^-1."""
+        inner = np.eye(len(w)) + reach @ w.T
+        return float(np.trace(np.linalg.solve(inner, reach @ self.aim.K @ reach.T)))
