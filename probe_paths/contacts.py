@@ -82,6 +82,7 @@ class Contacts:
         self.feature = hit.feature.astype(str)
         met = self.miss == ""
         self.travel = np.where(met, hit.travel, self.distance)
+        self.gap = np.zeros(len(hit.travel))  # left between ball and surface, mm
         self.uv = np.where(met[:, None], hit.uv, 0.0)
         self.point = np.where(met[:, None], hit.point, 0.0)
         self.normal = np.where(met[:, None], hit.normal, -self.motion)
@@ -113,8 +114,9 @@ class Contacts:
             n = self.normal[met]
             gap = np.einsum("ni,ni->n", n, centre - self.point[met]) - radius
             slope = np.einsum("ni,ni->n", n, self.motion[met])
+            self.gap[met] = gap
             self.travel[met] -= np.where(np.isfinite(gap), gap, 0.0) / slope
-            if np.nanmax(np.abs(gap), initial=0.0) < CONTACT_TOLERANCE:
+            if np.all(np.abs(gap) < CONTACT_TOLERANCE):
                 break
 
     def _true_balls(self, rows: IntArray, time: Array) -> tuple[Array, Array]:
@@ -151,7 +153,7 @@ class Contacts:
     def judge(self) -> None:
         """Contacts that the control would not report, in words."""
         reasons = [
-            (~np.isfinite(self.travel), "the contact search did not converge"),
+            (~(np.abs(self.gap) < 1e3 * CONTACT_TOLERANCE), str(Meeting.UNRESOLVED)),
             (self.travel < 0.0, "the ball touches before it starts"),
             (self.travel > self.distance, "the ball meets nothing within the travel"),
         ]

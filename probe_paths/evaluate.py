@@ -17,8 +17,11 @@ from twin.run import Run
 from twin.touches import IntArray, Labels, Setup, Touches, linear_approach
 from twin.units import DEG, NM
 
+BESIDE = 10.0
+"""Farthest that a ball can be from the surface it touched while the set-up is only believed, mm."""
+
 ABSURD = 3.0
-"""A ball this far from the surface it is said to touch (mm) has touched something else."""
+"""A ball still this far from its surface (mm) once the set-up is fitted touched something else."""
 
 _ROUNDS = 10
 _ARM = 100.0  # mm; scales rotations of the standard to lengths
@@ -58,37 +61,46 @@ def evaluate(
     feature = np.concatenate([_features(part, standard) for part in parts])
     setups, setup = _setups(parts)
     ball_table = tip(chain, q, length)
-    point, normal = np.zeros(q[:, :3].shape), np.zeros(q[:, :3].shape)
-    for i in range(len(setups)):
+    point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius)
+    _check_near(parts, gap, BESIDE)
+    for i, believed in enumerate(setups):
         rows = np.flatnonzero(setup == i)
-        setups[i] = _fitted(setups[i], standard, feature[rows], ball_table[rows], radius)
-        ball = apply(inverse(setups[i].T_table_artefact), ball_table[rows])
-        point[rows], normal[rows] = foot_points(standard, feature[rows], ball)
-    _check_near(parts, standard, setups, setup, ball_table, point, normal, radius)
+        setups[i] = _fitted(believed, standard, feature[rows], ball_table[rows], radius)
+    point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius)
+    _check_near(parts, gap, ABSURD)
     touches = _touches(parts, chain, q, (radius, length), setups, setup, feature, point, normal)
-    offset = touches.ball_artefact - point
-    deviation = np.einsum("ni,ni->n", normal, offset) - radius
-    return Run(touches, deviation, np.full(len(q), u))
+    return Run(touches, gap, np.full(len(q), u))
 
 
 def foot_points(standard: Standard, feature: Labels, ball: Array) -> tuple[Array, Array]:
     """Foot points (N, 3) of balls (N, 3) on their features, and outward normals, artefact frame.
 
-    Raises:
-        NotEnoughData: A ball that is too far away to have a foot point.
+    nan where a ball is so far off that its surface has no foot point for it.
     """
-    point, normal = np.empty(ball.shape), np.empty(ball.shape)
+    point, normal = np.full(ball.shape, np.nan), np.full(ball.shape, np.nan)
     for name in dict.fromkeys(feature.tolist()):
         rows = np.flatnonzero(feature == name)
         surface = standard.features[name]
         uv = surface.project(ball[rows])
-        if not np.all(np.isfinite(uv)):
-            raise NotEnoughData(
-                f"a touch on {name} lies beside it: the standard stands elsewhere than believed, "
-                "or the probe is another one"
-            )
-        point[rows], normal[rows] = surface.point(uv), surface.normal(uv)
+        there = np.all(np.isfinite(uv), axis=1)
+        point[rows[there]] = surface.point(uv[there])
+        normal[rows[there]] = surface.normal(uv[there])
     return point, normal
+
+
+def _gaps(
+    standard: Standard,
+    setups: Sequence[Setup],
+    setup: IntArray,
+    feature: Labels,
+    ball_table: Array,
+    radius: float,
+) -> tuple[Array, Array, Array]:
+    """Foot points and normals in the artefact frame, and gaps between balls and surfaces, mm."""
+    T_artefact_table = inverse(np.stack([s.T_table_artefact for s in setups])[setup])
+    ball = apply(T_artefact_table, ball_table)
+    point, normal = foot_points(standard, feature, ball)
+    return point, normal, np.einsum("ni,ni->n", normal, ball - point) - radius
 
 
 def _probe(parts: Sequence[LogPart]) -> tuple[float, float]:
@@ -161,6 +173,8 @@ def _fitted(
     for _ in range(_ROUNDS):
         ball = apply(inverse(T_table_artefact), ball_table)
         point, normal = foot_points(standard, feature, ball)
+        if not np.all(np.isfinite(point)):
+            break
         deviation = np.einsum("ni,ni->n", normal, ball - point) - radius
         rows = np.concatenate([normal, np.cross(ball, normal) / _ARM], axis=1)
         step = np.linalg.lstsq(rows, deviation, rcond=1e-6)[0]
@@ -171,31 +185,22 @@ def _fitted(
     return Setup(setup.name, T_table_artefact)
 
 
-def _check_near(
-    parts: Sequence[LogPart],
-    standard: Standard,
-    setups: Sequence[Setup],
-    setup: IntArray,
-    ball_table: Array,
-    point: Array,
-    normal: Array,
-    radius: float,
-) -> None:
+def _check_near(parts: Sequence[LogPart], gap: Array, limit: float) -> None:
     """Every ball is near the surface that it is said to touch; raises BadFile."""
-    T_artefact_table = inverse(np.stack([s.T_table_artefact for s in setups])[setup])
-    offset = apply(T_artefact_table, ball_table) - point
-    gap = np.einsum("ni,ni->n", normal, offset) - radius
-    wrong = np.abs(gap) > ABSURD
+    wrong = ~(np.abs(gap) < limit)
     if not np.any(wrong):
         return
     row, first = int(np.argmax(wrong)), 0
     for part in parts:
         if row < first + len(part.number):
+            i = row - first
+            found = f"{gap[row]:.3f} mm" if np.isfinite(gap[row]) else "no way"
             raise BadFile(
-                part.path, f"line {part.line[row - first]}",
-                f"touch {part.number[row - first]} with {gap[row]:.3f} mm between ball and surface",
-                f"at most {ABSURD:g} mm: another feature, set-up, probe or meaning of Z",
-            )  # fmt: skip
+                part.path,
+                f"line {part.line[i]}",
+                f"touch {part.number[i]} with {found} between ball and surface",
+                f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z",
+            )
         first += len(part.number)
 
 

@@ -1,0 +1,125 @@
+"""Changes of a number that no grammar sees: the move itself shows them, or the log does."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from probe_paths.clearance import Room
+from probe_paths.collisions import SMALLEST_GAP, check_moves
+from probe_paths.evaluate import evaluate
+from probe_paths.interpreter import interpret
+from probe_paths.log import read_log
+from probe_paths.probe import Probe
+from probe_paths.steps import Move
+from probe_paths.virtual import run_program
+from twin.errors import BadFile
+from twin.frames import apply, inverse
+from twin.kinematics import tip
+from twin.touches import Setup
+from twin.units import UM
+
+TENTH = 0.1
+"""A gap by hand, mm; covers of a cylinder stand out by an eighth of a stylus of 2 mm at most."""
+
+
+def test_programs_as_made_are_free(read, small, chain):
+    for program in read:
+        check_moves(program, small, chain)
+
+
+def read_again(text, programs, chain):
+    return interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+
+
+def sideways(program, chain, up, q_to):
+    """The program with a rapid move to the side, `up` above the start of its first touch."""
+    touch = program.touches[0]
+    above = touch.q.copy()
+    above[chain.axis_index("Z")] += up
+    there = above.copy()
+    there[[chain.axis_index("X"), chain.axis_index("Y")]] += q_to
+    steps = [Move(901, above, None), Move(902, there, None)]
+    place = program.steps.index(touch)
+    return replace(program, steps=(*program.steps[:place], *steps)), above, there
+
+
+def test_a_move_through_the_standard_is_found_where_the_gap_closes(read, small, chain):
+    """Against the smallest distance at 4001 places along the move."""
+    T_artefact_table = inverse(read[0].heading.setup.T_table_artefact)
+    found = []
+    for up in (0.0, 10.0, 20.0, 30.0, 45.0, 60.0):
+        program, above, there = sideways(read[0], chain, up, (150.0, -60.0))
+        share = np.linspace(0.0, 1.0, 4001)[:, None]
+        centre = tip(chain, above + share * (there - above), 160.0)
+        gap = small.distance(apply(T_artefact_table, centre)).min() - 3.0
+        try:
+            check_moves(program, small, chain)
+            found.append(False)
+        except BadFile as error:
+            found.append("line 902: found a gap of" in str(error))
+        assert found[-1] or gap >= SMALLEST_GAP
+    assert found[0]
+    assert not found[-1]
+
+
+def test_a_touch_begun_at_the_wrong_place_is_found(programs, chain, small):
+    """X of a touch with its sign lost, at the clearance height and back to it alike."""
+    first = programs.programs[0].text
+    touches = re.findall(r"L (X([+-])(\S+)) Y\S+ R0 FMAX", first)
+    found = []
+    for word, sign, value in touches[:8]:
+        other = f"X{'-' if sign == '+' else '+'}{value}"
+        text = first.replace(f"{word} ", f"{other} ")
+        read = read_again(text, programs, chain)
+        try:
+            check_moves(read, small, chain)
+        except BadFile as error:
+            found.append(str(error))
+    assert len(found) >= 2
+    assert all("a gap of" in line for line in found)
+
+
+def test_a_start_inside_the_standard_is_found(programs, chain, small):
+    """Twelve millimetres too deep: standoff 5, ball 3."""
+    first = programs.programs[0].text
+    word = re.search(r"L (Z\+(\S+)) R0 F2000", first)
+    deeper = f"Z{float(word[2]) - 12.0:+.4f}"
+    text = first.replace(word[1], deeper)
+    read = read_again(text, programs, chain)
+    with pytest.raises(BadFile, match="a gap of"):
+        check_moves(read, small, chain)
+
+
+def test_a_feature_number_mixed_up_is_found_when_the_log_is_evaluated(
+    programs, chain, small, perfect
+):
+    first = programs.programs[0].text
+    numbers = re.findall(r"Q1622 = \+(\d)", first)
+    other = next(n for n in numbers if n != numbers[3])
+    lines = first.split("\r\n")
+    at = [i for i, line in enumerate(lines) if "Q1622" in line][3]
+    lines[at] = lines[at].replace(f"+{numbers[3]}", f"+{other}")
+    read = read_again("\r\n".join(lines), programs, chain)
+    run = run_program(read, small, perfect, np.random.default_rng(0))
+    part = read_log("MS_A_1.TXT", chain.rotary_axes, run.log["MS_A_1.TXT"])[0]
+    with pytest.raises(BadFile, match="touch 4 with"):
+        evaluate([part], small, chain, UM)
+
+
+def test_gaps_to_the_table_by_hand(chain, small):
+    """At B = C = 0 the body hangs over the table: its lower face is its distance above it."""
+    room = Room(chain, small, Setup("a"), Probe(stylus_length=60.0, body_radius=20.0), 160.0)
+    # ball centre at x 120, y 120 and 5 mm above the table, beside the base of 80 x 80
+    q = np.zeros((1, len(chain.axes)))
+    q[0, [chain.axis_index(a) for a in "XYZ"]] = [110.0, 110.0, 160.0 - 500.0 + 5.0]
+    gap, nearest = room.gap(q)
+    assert nearest[0] == "the table"
+    assert abs(gap[0] - 2.0) < TENTH
+    # 50 mm beside a column wall of FF1, on the height of its middle; the body is 20 mm thick
+    q[0, [chain.axis_index(a) for a in "XYZ"]] = [-65.0, 0.0, 160.0 - 500.0 + 35.0]
+    gap, nearest = room.gap(q)
+    assert nearest[0] in ("BASE", "FF1")
+    assert gap[0] > 10.0

@@ -1,0 +1,242 @@
+"""Logs: written through the masks as the control would, read back, evaluated."""
+
+from dataclasses import replace
+from datetime import datetime
+
+import numpy as np
+import pytest
+
+from probe_paths.contacts import VirtualMachine
+from probe_paths.dialect import Dialect
+from probe_paths.evaluate import evaluate
+from probe_paths.log import read_log
+from probe_paths.masks import MaskLine, parse_mask
+from probe_paths.virtual import FIRST_MORNING, run_programs
+from twin.effect import contribution
+from twin.effects.geometric import ComponentError
+from twin.errors import BadFile, DesignError, NotEnoughData
+from twin.files.run_file import read_run
+from twin.files.run_writer import write_run
+from twin.frames import pose, rotation
+from twin.touches import computed_deviation
+from twin.units import NM, UM, URAD
+
+PRINTED = 1e-6
+"""Six decimals of a log, mm; a deviation adds three of them and those of a foot point."""
+
+U = 1.0 * UM
+
+
+@pytest.fixture(scope="module")
+def runs(read, small, chain):
+    """The golden programs on a machine with noise that stands beside its place."""
+    stands = pose(rotation(np.array([1e-4, -2e-4, 5e-4])), np.array([0.08, -0.05, 0.03]))
+    machine = VirtualMachine(chain, setup_error=stands, noise=0.5 * UM)
+    return run_programs(read, small, machine, np.random.default_rng(2))
+
+
+@pytest.fixture(scope="module")
+def parts(runs, chain):
+    return [
+        part
+        for run in runs
+        for name, text in run.log.items()
+        for part in read_log(name, chain.rotary_axes, text)
+    ]
+
+
+def test_a_mask_is_filled_in_as_the_control_does():
+    line = MaskLine("P%6.1LF X%11.4LF N%3d T%3d:%3d", (1620, 1610, 1621, "HOUR", "YEAR4"))
+    values = {1620: 7.0, 1610: -12.34567, 1621: 3.0}
+    filled = line.filled(values, datetime(2031, 5, 6, 7, 8, 9))
+    assert filled == "P   7.0 X   -12.3457 N  3 T  7:2031"
+    assert parse_mask('"A%3d",Q1;\r\n"B";\r\n', "M.A") == (
+        MaskLine("A%3d", (1,)),
+        MaskLine("B", ()),
+    )
+
+
+def test_logs_hold_what_the_machine_did(runs, parts, read, chain):
+    for run, part, program in zip(runs, parts, read, strict=True):
+        assert part.is_complete
+        assert part.program == program.name
+        assert part.number.tolist() == [t.number for t in program.touches]
+        assert part.pose.tolist() == [t.pose for t in program.touches]
+        assert part.feature.tolist() == [t.feature for t in program.touches]
+        assert (part.radius, part.tool_length) == (3.0, 163.0)
+        x = part.xyz[:, 0]
+        assert np.abs(x - run.q[:, chain.axis_index("X")]).max() < PRINTED
+        b = np.radians(part.rotary["B"])
+        assert np.abs(b - run.q[:, chain.axis_index("B")]).max() < 1e-9
+        clock = (part.begin - FIRST_MORNING).total_seconds() + part.time
+        assert np.all(np.floor(run.time) == clock)
+
+
+def test_z_is_that_of_the_gauge_point_and_x_y_those_of_the_ball(parts, runs, chain):
+    """Machine convention: table origin at Z = -500 and the probe's length not taken off."""
+    z = runs[0].q[:, chain.axis_index("Z")] + 500.0
+    assert np.abs(parts[0].xyz[:, 2] - z).max() < PRINTED
+
+
+def test_the_other_meaning_of_z_is_a_dialect(read, small, chain, runs):
+    machine = VirtualMachine(
+        chain,
+        setup_error=pose(rotation(np.array([1e-4, -2e-4, 5e-4])), np.array([0.08, -0.05, 0.03])),
+        noise=0.5 * UM,
+        dialect=Dialect(result_height="tip"),
+    )
+    run = run_programs(read[:1], small, machine, np.random.default_rng(2))[0]
+    part = read_log("L", chain.rotary_axes, run.log["MS_A_1.TXT"])[0]
+    gauge = read_log("L", chain.rotary_axes, runs[0].log["MS_A_1.TXT"])[0]
+    assert np.abs(gauge.xyz[:, 2] - part.xyz[:, 2] - 163.0).max() < 2.0 * PRINTED
+    good = evaluate([part], small, chain, U, Dialect(result_height="tip"))
+    assert np.abs(good.deviation).max() < 3.0 * UM
+    with pytest.raises(DesignError, match="meaning of Z"):
+        evaluate([part], small, chain, U)
+
+
+def test_the_set_up_is_found_and_deviations_are_the_noise(parts, small, chain, runs, read):
+    run = evaluate(parts, small, chain, U)
+    stands = pose(rotation(np.array([1e-4, -2e-4, 5e-4])), np.array([0.08, -0.05, 0.03]))
+    true = read[0].heading.setup.T_table_artefact @ stands
+    found = run.touches.setups[0].T_table_artefact
+    assert np.abs(found - true)[:3, 3].max() < 1.5 * UM
+    assert np.abs(found - true)[:3, :3].max() < 30.0 * URAD
+    drawn = np.random.default_rng(2)
+    noise = np.concatenate([drawn.normal(0.0, 1.0, len(p.touches)) for p in read]) * 0.5 * UM
+    # six parameters of the set-up take up some of the noise, the rest is left as drawn
+    left = run.deviation - noise
+    assert np.sqrt(np.mean(left**2)) < 0.5 * UM * np.sqrt(10.0 / len(run))
+    assert np.abs(np.linalg.norm(run.touches.normal, axis=1) - 1.0).max() < 1e-12
+
+
+def test_without_errors_nothing_is_left_but_the_digits_of_the_log(read, small, chain, perfect):
+    runs = run_programs(read, small, perfect, np.random.default_rng(0))
+    parts = [p for r in runs for p in read_log("L", chain.rotary_axes, *r.log.values())]
+    run = evaluate(parts, small, chain, U)
+    assert np.abs(run.deviation).max() < 1.0 * NM
+    assert np.abs(run.deviation - computed_deviation(run.touches)).max() < 1e-3 * NM
+
+
+def test_a_log_read_back_through_a_run_file_is_the_same_run(parts, small, chain, tmp_path):
+    run = evaluate(parts, small, chain, U)
+    write_run(tmp_path / "run.csv", run, "machine.toml")
+    back = read_run(tmp_path / "run.csv", chain)
+    assert back.remarks == ()
+    assert np.abs(back.deviation - run.deviation).max() < 2.0 * NM
+    assert np.abs(computed_deviation(back.touches) - run.deviation).max() < 3.0 * NM
+    assert back.touches.feature.tolist() == run.touches.feature.tolist()
+    assert np.array_equal(back.touches.approach, run.touches.approach)
+    assert np.array_equal(back.touches.pose, run.touches.pose)
+    assert np.abs(back.touches.time - run.touches.time).max() < 1e-9
+    again = evaluate(parts[::-1], small, chain, U)
+    assert np.array_equal(again.deviation, run.deviation)
+
+
+def test_a_tangential_offset_of_the_set_up_is_not_taken_for_a_deviation(read, small, chain):
+    """Half a millimetre beside its place the curved faces would deviate by many µm."""
+    beside = pose(t=np.array([0.5, -0.4, 0.3]))
+    machine = VirtualMachine(chain, setup_error=beside)
+    runs = run_programs(read, small, machine, np.random.default_rng(0))
+    parts = [p for r in runs for p in read_log("L", chain.rotary_axes, *r.log.values())]
+    run = evaluate(parts, small, chain, U)
+    assert np.abs(run.deviation).max() < 2.0 * NM
+
+
+def test_too_few_touches_for_a_set_up_leave_it_where_it_was_believed(parts, small, chain):
+    rows = np.arange(3)
+    fields = ("line", "number", "pose", "feature", "xyz", "time")
+    short = replace(
+        parts[0],
+        **{k: getattr(parts[0], k)[rows] for k in fields},
+        rotary={a: v[rows] for a, v in parts[0].rotary.items()},
+        side={a: v[rows] for a, v in parts[0].side.items()},
+    )  # fmt: skip
+    run = evaluate([short], small, chain, U)
+    moved = run.touches.setups[0].T_table_artefact - parts[0].heading.setup.T_table_artefact
+    assert np.abs(moved[:3, 3]).max() < 0.5
+    assert np.abs(run.deviation).max() < 0.1 * UM
+
+
+def test_a_log_with_two_runs_is_two_parts(runs, chain):
+    text = runs[0].log["MS_A_1.TXT"]
+    assert len(read_log("L", chain.rotary_axes, text + text)) == 2
+
+
+def test_the_clock_passes_midnight(runs, chain):
+    text = runs[0].log["MS_A_1.TXT"].replace("T  8:  ", "T 23: 5").replace("T 23: 5", "T 23: 5", 1)
+    lines = text.splitlines()
+    late = [i for i, line in enumerate(lines) if line.startswith("T 23")]
+    for i in late[len(late) // 2 :]:
+        lines[i] = "T  0:  7:  1"
+    lines[-1] = "END T  0:  8:  0"
+    part = read_log("L", chain.rotary_axes, "\n".join(lines) + "\n")[0]
+    assert np.all(np.diff(part.time) >= 0.0)
+    assert 400.0 < part.time[-1] < 3600.0
+
+
+def faults(text):
+    lines = text.splitlines(keepends=True)
+    x = next(i for i, line in enumerate(lines) if line.startswith("X "))
+    return {
+        "nothing": ("", "found nothing"),
+        "cut off in a line": (text[:-5], "a line cut off"),
+        "cut off between lines": ("".join(lines[:-1]), "the end of the file"),
+        "a line missing": ("".join(lines[:x] + lines[x + 1 :]), "X <number> Y <number>"),
+        "a decimal comma": (
+            text.replace(".", ",", 1).replace("R     3.0", "R     3,0"),
+            "expected",
+        ),
+        "another head": (text.replace("LOG 1", "LOG 2"), "MATSTD LOG 1"),
+        "no date": (text.replace("DATE 2000", "DATE 20"), "DATE <y>"),
+        "month 13": (text.replace("2000-  1", "2000- 13"), "a date"),
+        "hour 25": (text.replace("T  8:", "T 25:", 1), "a time of day"),
+        "words run together": (text.replace("Y ", "Y-", 1).replace("X ", "XX ", 1), "expected"),
+    }
+
+
+@pytest.mark.parametrize("name", faults("X \n" * 3))
+def test_every_fault_of_a_log_gets_one_line(name, runs, chain):
+    text, expected = faults(runs[0].log["MS_A_1.TXT"])[name]
+    with pytest.raises(BadFile, match=expected) as caught:
+        read_log("MS_A_1.TXT", chain.rotary_axes, text)
+    assert "MS_A_1.TXT: line " in str(caught.value)
+
+
+def test_a_file_that_is_not_there_gets_one_line(chain, tmp_path):
+    with pytest.raises(BadFile, match="a log in ASCII"):
+        read_log(tmp_path / "NONE.TXT", chain.rotary_axes)
+
+
+def test_touches_that_cannot_be_evaluated_are_named(parts, small, golden, chain):
+    wrong = replace(parts[0], feature=np.full(len(parts[0].feature), 9))
+    with pytest.raises(BadFile, match="feature 9, expected 1 to 6"):
+        evaluate([wrong], small, chain, U)
+    swapped = parts[0].feature.copy()
+    swapped[4] = 3 if swapped[4] != 3 else 4
+    with pytest.raises(DesignError, match=r"touch 5 with .* between ball"):
+        evaluate([replace(parts[0], feature=swapped)], small, chain, U)
+    other_probe = replace(parts[1], radius=2.0)
+    with pytest.raises(BadFile, match="one run file a probe"):
+        evaluate([parts[0], other_probe], small, chain, U)
+    elsewhere = replace(
+        parts[1], heading=replace(parts[1].heading, setup=replace(
+            parts[1].heading.setup, T_table_artefact=np.eye(4)))
+    )  # fmt: skip
+    with pytest.raises(BadFile, match="one place for each set-up name"):
+        evaluate([parts[0], elsewhere], small, chain, U)
+    other = golden.standard((golden.sphere("SPH9", 0.0, 0.0),))
+    with pytest.raises(BadFile, match="expected 1 to 2, a feature of SMALL-1"):
+        evaluate(parts, other, chain, U)
+    with pytest.raises(NotEnoughData, match="no touch"):
+        evaluate([], small, chain, U)
+
+
+def test_an_error_of_the_machine_stays_in_the_deviations(read, small, chain):
+    """EXX linear, 100 µm over 400 mm: far more than a set-up can hide."""
+    effect = ComponentError(chain.symbol("EXX"), "linear")
+    machine = VirtualMachine(chain, lambda t: contribution([(effect, np.array([0.1]))], t))
+    runs = run_programs(read, small, machine, np.random.default_rng(0))
+    parts = [p for r in runs for p in read_log("L", chain.rotary_axes, *r.log.values())]
+    run = evaluate(parts, small, chain, U)
+    assert np.sqrt(np.mean(run.deviation**2)) > 2.0 * UM

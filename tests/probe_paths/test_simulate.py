@@ -1,0 +1,122 @@
+"""`matstd simulate`: the thin command round it all."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.standard_file import write_standard
+from matstd.cli import main
+from twin.files.run_file import read_run
+from twin.units import NM, UM
+
+MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
+"""The golden programs' machine has the same travels and pivots."""
+
+
+@pytest.fixture
+def folder(tmp_path, programs, small):
+    """Programs, standard and machine as a design run leaves them."""
+    (tmp_path / "programs").mkdir()
+    programs.write(tmp_path / "programs")
+    write_standard(tmp_path / "standard.toml", small)
+    shutil.copy(MACHINE, tmp_path / "machine.toml")
+    return tmp_path
+
+
+def command(folder, *more, programs=("MS_A_1", "MS_A_2", "MS_A_3")):
+    files = [str(folder / "programs" / f"{name}.H") for name in programs]
+    places = [
+        "--standard",
+        str(folder / "standard.toml"),
+        "--machine",
+        str(folder / "machine.toml"),
+    ]
+    return main(["simulate", *files, *places, "-o", str(folder / "out" / "run.csv"), *more])
+
+
+def test_a_run_file_of_all_programs(folder, plan, capsys):
+    assert command(folder, "--noise-um", "0", "--logs", str(folder / "logs")) == 0
+    assert f"{len(plan)} touches" in capsys.readouterr().out
+    run = read_run(folder / "out" / "run.csv")
+    assert len(run) == len(plan)
+    assert np.abs(run.deviation).max() < NM
+    assert run.touches.feature.tolist() == plan.feature.tolist()
+    assert {p.name for p in (folder / "logs").iterdir()} == {f"MS_A_{i}.TXT" for i in (1, 2, 3)}
+    assert not list((folder / "out").glob(".*"))
+
+
+def test_errors_of_a_file_and_drawn_ones(folder):
+    (folder / "errors.toml").write_text(
+        'format = "errors/1"\n[EXX]\nshape = "linear"\namplitude = 100.0\n', encoding="utf-8"
+    )
+    assert command(folder, "--errors", str(folder / "errors.toml"), "--noise-um", "0") == 0
+    one = read_run(folder / "out" / "run.csv")
+    assert 1.0 * UM < np.sqrt(np.mean(one.deviation**2)) < 100.0 * UM
+    texts = []
+    for seed in ("3", "3", "4"):
+        assert command(folder, "--random-errors", "--seed", seed, "--force") == 0
+        texts.append((folder / "out" / "run.csv").read_text(encoding="utf-8"))
+    assert texts[0] == texts[1]
+    assert texts[0] != texts[2]
+
+
+def test_an_existing_run_file_is_not_overwritten(folder, capsys):
+    (folder / "out").mkdir()
+    (folder / "out" / "run.csv").write_text("a year of measurements", encoding="utf-8")
+    assert command(folder) == 2
+    message = capsys.readouterr().err
+    assert "is there already" in message
+    assert message.count("\n") == 1
+    kept = (folder / "out" / "run.csv").read_text(encoding="utf-8")
+    assert kept == "a year of measurements"
+    assert command(folder, "--force") == 0
+
+
+@pytest.mark.parametrize(
+    ("more", "expected"),
+    [
+        (("--noise-um", "-1"), "expected noise from 0"),
+        (("--noise-um", "nan"), "expected noise from 0"),
+        (("--seed", "-1"), "a seed from 0 up"),
+        (("--probe-length", "150"), "a probe of length 160 mm, expected 150 mm"),
+        (("--probe-radius", "200"), "expected 0 < radius < length"),
+        (("--errors", "none.toml"), "none.toml"),
+    ],
+)
+def test_bad_input_gets_one_line_and_no_file(folder, capsys, more, expected):
+    assert command(folder, *more) == 2
+    message = capsys.readouterr().err
+    assert expected in message
+    assert message.count("\n") == 1
+    assert not (folder / "out" / "run.csv").exists()
+
+
+def test_a_program_that_stops_leaves_no_run_file(folder, capsys):
+    path = folder / "programs" / "MS_A_1.H"
+    data = path.read_bytes()
+    vector = data.split(b"TCH PROBE 4.2 ")[2].split(b"\r\n")[0]
+    path.write_bytes(data.replace(vector, vector.translate(bytes.maketrans(b"+-", b"-+"))))
+    assert command(folder) == 2
+    message = capsys.readouterr().err
+    assert "touch 2 on" in message
+    assert "has no contact: the ball meets nothing" in message
+    assert message.count("\n") == 1
+    assert not (folder / "out" / "run.csv").exists()
+
+
+def test_a_missing_mask_is_named(folder, capsys):
+    (folder / "programs" / "MSPOINT.A").unlink()
+    assert command(folder) == 2
+    assert (
+        "found mask MSPOINT.A, expected a mask file beside the program" in capsys.readouterr().err
+    )
+
+
+def test_another_standard_is_refused(folder, small, capsys):
+    (folder / "standard.toml").unlink()
+    write_standard(folder / "standard.toml", replace(small, patches=small.patches[::-1]))
+    assert command(folder) == 2
+    assert "feature 1 is FF1 in the program" in capsys.readouterr().err
