@@ -35,13 +35,16 @@ def foot_points(surface: Surface, domain: Domain, points: Array, uv: Array) -> A
     Returns:
         Shape (N, 2), mm; nan where no foot point lies inside the domain.
     """
+    uv = uv.copy()
     moved = np.full(len(points), np.inf)
+    open_ = np.arange(len(points))
     for _ in range(_STEPS):
-        step = _foot_step(surface(uv), uv, points)
-        new = np.clip(uv + _bounded(step), *domain)
-        moved = np.abs(new - uv).max(axis=1)
-        uv = new
-        if moved.max(initial=0.0) < CONTACT_TOLERANCE:
+        step = _foot_step(surface(uv[open_]), uv[open_], points[open_])
+        new = np.clip(uv[open_] + _bounded(step), *domain)
+        moved[open_] = np.abs(new - uv[open_]).max(axis=1)
+        uv[open_] = new
+        open_ = open_[moved[open_] > CONTACT_TOLERANCE]
+        if not len(open_):
             break
     found = (moved < NM) & _inside(uv, domain)
     return np.where(found[:, None], uv, np.nan)
@@ -64,22 +67,25 @@ def ball_contact(
         Parameters and travel; nan where Newton does not converge inside the domain, or only on
         a contact that the ball leaves instead of meeting.
     """
-    uv, travel = first
+    uv, travel = first.uv.copy(), first.travel.copy()
+    open_ = np.arange(len(p))
     for _ in range(_STEPS):
-        j = surface(uv)
-        residual = _offset_point(j, uv, radius) - p - travel[:, None] * d
-        if np.abs(residual).max(initial=0.0) < CONTACT_TOLERANCE:
+        j = surface(uv[open_])
+        centre = p[open_] + travel[open_, None] * d[open_]
+        residual = _offset_point(j, uv[open_], radius) - centre
+        far = np.abs(residual).max(axis=1) > CONTACT_TOLERANCE
+        open_ = open_[far]
+        if not len(open_):
             break
-        step = -_solve3(*_offset_tangents(j, radius), -d, residual)
-        bounded = _bounded(step[:, :2])
+        along_u, along_v = _offset_tangents(j, radius)
+        step = -_solve3(along_u[far], along_v[far], -d[open_], residual[far])
+        held = np.clip(uv[open_] + _bounded(step[:, :2]), *domain)
+        short = open_[np.any(held != uv[open_] + step[:, :2], axis=1)]
+        uv[open_] = held
+        travel[open_] += step[:, 2]
         # A step held back sideways must not keep its full travel: that is solved for again.
-        held = np.clip(uv + bounded, *domain)
-        short = np.abs(held - uv - step[:, :2]).max(axis=1) > 0.0
-        uv = held
-        travel = travel + step[:, 2]
-        if short.any():
-            centre = _offset_point(surface(uv[short]), uv[short], radius)
-            travel[short] = np.einsum("ni,ni->n", centre - p[short], d[short])
+        centre = _offset_point(surface(uv[short]), uv[short], radius)
+        travel[short] = np.einsum("ni,ni->n", centre - p[short], d[short])
     j = surface(uv)
     gap = np.abs(_offset_point(j, uv, radius) - p - travel[:, None] * d).max(axis=1)
     met = (gap < _SETTLED) & _inside(uv, domain)

@@ -14,6 +14,9 @@ from twin.frames import Array, apply
 WELD = 1e-6
 """Corners nearer than this are one corner, mm."""
 
+_ON_SURFACE = 0.1  # mm, coarser than any mesh made here
+_ALIKE = 0.9  # cosine between a triangle's and a surface's normal
+
 # Where the distance of a triangle from its surface is measured: corners of a lattice of order 4
 # without the triangle's own corners, which the kernel puts on the surface.
 _LATTICE = (
@@ -147,6 +150,38 @@ def face_areas(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> dict
     a, b, c = (corners[triangles[:, k]] for k in range(3))
     area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return {str(name): float(area[owner == name].sum()) for name in np.unique(owner) if name}
+
+
+def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndarray:
+    """Feature of every triangle of a mesh that has lost its faces, as one from an STL file.
+
+    A triangle belongs to a patch or a sphere if its middle lies on the surface and it looks the
+    same way.
+
+    Args:
+        standard: With the exact surfaces.
+        corners: Shape (V, 3), mm.
+        triangles: Shape (F, 3).
+
+    Returns:
+        Names, (F,); empty for the rest of the body.
+    """
+    a, b, c = (corners[triangles[:, k]] for k in range(3))
+    middle, across = (a + b + c) / 3.0, np.cross(b - a, c - a)
+    facing = across / np.maximum(np.linalg.norm(across, axis=1), 1e-300)[:, None]
+    owner = np.full(len(triangles), "", dtype="<U32")
+    surfaces: tuple[FreeformPatch | DatumSphere, ...] = (*standard.patches, *standard.spheres)
+    for surface in surfaces:
+        near = np.flatnonzero(np.abs(_distance(surface, middle)) < _ON_SURFACE)
+        if isinstance(surface, FreeformPatch):
+            # So near the face the foot point is next to the point straight below.
+            uv = apply(surface.T_patch_artefact, middle[near])[:, :2]
+            near, uv = near[surface.contains(uv)], uv[surface.contains(uv)]
+        else:
+            uv = surface.project(middle[near])
+        alike = np.einsum("ni,ni->n", facing[near], surface.normal(uv)) > _ALIKE
+        owner[near[alike]] = surface.name
+    return owner
 
 
 def _distance(surface: FreeformPatch | DatumSphere, points: Array) -> Array:

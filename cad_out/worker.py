@@ -1,21 +1,24 @@
 """What runs in the kernel's own process: a crash there ends this process and nothing else."""
 
+from __future__ import annotations
+
 import json
+from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from artefact.standard import Standard
 from artefact.standard_file import read_standard
 from cad_out.mesh import Mesh, chord_errors, welded
+from cad_out.process import note_refusal
 from twin.errors import DesignError, NotBuildable
 
-STANDARD, STEP, MESH, FACTS, REFUSAL = (
-    "standard.toml",
-    "standard.step",
-    "mesh.npz",
-    "facts.json",
-    "refusal.txt",
-)
+if TYPE_CHECKING:
+    from cad_out.solid import Solid
+
+STANDARD, STEP, MESH, FACTS = "standard.toml", "standard.step", "mesh.npz", "facts.json"
 """Names of the files through which the two processes speak."""
 
 _ROUNDS = 5  # of refinement before the mesh is refused
@@ -29,19 +32,22 @@ def build(folder: str, chord: float) -> None:
         folder: Holds standard.toml; takes the results, or the reason of a refusal.
         chord: Largest distance of the mesh from the exact faces, mm.
     """
-    _answered(Path(folder), lambda place: _build(place, chord))
+    try:
+        _build(Path(folder), chord)
+    except DesignError as refusal:
+        note_refusal(Path(folder), refusal)
 
 
 def reread(folder: str) -> None:
     """Read the STEP file of a folder anew and write down what the kernel finds in it."""
-    _answered(Path(folder), _reread)
+    from cad_out.exchange import read_step
 
-
-def _answered(place: Path, task) -> None:  # type: ignore[no-untyped-def]
+    place = Path(folder)
     try:
-        task(place)
+        facts = asdict(read_step(place / STEP))
+        (place / FACTS).write_text(json.dumps(facts), encoding="utf-8")
     except DesignError as refusal:
-        (place / REFUSAL).write_text(str(refusal), encoding="utf-8")
+        note_refusal(place, refusal)
 
 
 def _build(place: Path, chord: float) -> None:
@@ -56,7 +62,7 @@ def _build(place: Path, chord: float) -> None:
     (place / FACTS).write_text(json.dumps({"volume": solid.volume}), encoding="utf-8")
 
 
-def _mesh(standard, solid, chord: float) -> Mesh:  # type: ignore[no-untyped-def]
+def _mesh(standard: Standard, solid: Solid, chord: float) -> Mesh:
     """Mesh with the chord error kept, which the kernel takes for a wish: measured and refined."""
     from cad_out.exchange import face_numbers, tessellate
 
@@ -74,12 +80,3 @@ def _mesh(standard, solid, chord: float) -> Mesh:  # type: ignore[no-untyped-def
     raise NotBuildable(
         f"the mesh stays {worst * 1e3:.1f} µm from the surface, asked were {chord * 1e3:.1f} µm"
     )
-
-
-def _reread(place: Path) -> None:
-    from dataclasses import asdict
-
-    from cad_out.exchange import read_step
-
-    facts = asdict(read_step(place / STEP))
-    (place / FACTS).write_text(json.dumps(facts), encoding="utf-8")

@@ -1,0 +1,92 @@
+"""Work in a process of its own, for libraries whose faults end the process they run in."""
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from twin.errors import DesignError
+
+REFUSAL = "refusal.txt"
+"""File in the shared folder that holds the reason of a refusal."""
+
+_ROOT = Path(__file__).resolve().parent.parent
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a task in another process ended.
+
+    Attributes:
+        code: Exit code; negative for a signal, None for a task that was stopped.
+        refusal: What the task itself refused, in one line; empty if nothing.
+        last_line: Last line of what it complained about.
+    """
+
+    code: int | None
+    refusal: str
+    last_line: str
+
+    @property
+    def is_good(self) -> bool:
+        """Whether the task ran to its end and refused nothing."""
+        return self.code == 0 and not self.refusal
+
+    def __str__(self) -> str:
+        if self.refusal:
+            return self.refusal
+        if self.code is None:
+            return "did not finish in time and was stopped"
+        words = f"failed (exit code {self.code})"
+        if self.code < 0:
+            words = f"crashed ({signal.Signals(-self.code).name}, exit code {self.code})"
+        return f"{words}: {self.last_line}" if self.last_line else words
+
+
+def run_apart(
+    module: str,
+    task: str,
+    folder: Path,
+    *arguments: float | str,
+    timeout: float = 150.0,
+    environment: dict[str, str] | None = None,
+) -> Ending:
+    """Run ``module.task(folder, *arguments)`` in a new process of this interpreter.
+
+    Args:
+        module: Where the task is defined.
+        task: A function that takes the folder and the arguments.
+        folder: Through which the two processes speak.
+        arguments: Further arguments.
+        timeout: After which the process is stopped, s.
+        environment: Variables to be set on top of this process's.
+
+    Returns:
+        How it ended; nothing is raised.
+    """
+    call = f"import {module}; {module}.{task}({str(folder)!r}, *{arguments!r})"
+    path = os.pathsep.join(filter(None, [str(_ROOT), os.environ.get("PYTHONPATH")]))
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", call],
+            env={**os.environ, "PYTHONPATH": path, **(environment or {})},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=timeout,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return Ending(None, "", "")
+    refusal = folder / REFUSAL
+    reason = refusal.read_text(encoding="utf-8") if refusal.exists() else ""
+    lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
+    return Ending(done.returncode, reason, lines[-1] if lines else "")
+
+
+def note_refusal(folder: Path, refusal: DesignError) -> None:
+    """Leave the reason of a refusal for the process that asked."""
+    (folder / REFUSAL).write_text(str(refusal), encoding="utf-8")
