@@ -1,6 +1,7 @@
 """Every example runs, and one number of each is what a hand calculation or a paper says it is."""
 
-import importlib.util
+import importlib
+import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -17,14 +18,11 @@ ROUNDING = 1e-9
 
 
 def load(number: int) -> ModuleType:
-    """An example as a module, by its number."""
+    """An example as a module, by its number; examples may import earlier ones."""
     (path,) = (ROOT / "examples").glob(f"ex{number:02d}_*.py")
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    if str(path.parent) not in sys.path:
+        sys.path.append(str(path.parent))
+    return importlib.import_module(path.stem)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda p: p.stem)
@@ -70,3 +68,58 @@ def test_03_sensitivities_are_one_or_an_arm_and_the_papers_errors_add_up() -> No
     assert result["from X, µm"][-1] == pytest.approx(np.sqrt(18125.0), abs=NM_IN_UM)
     # Two radial errors of 10 um, both sin C, at right angles: 10 sqrt(2) um at C = 90 deg.
     assert result["from C, µm"].max() == pytest.approx(10.0 * np.sqrt(2.0), abs=NM_IN_UM)
+
+
+def test_04_nine_control_heights_are_a_saddle_of_the_stated_radii() -> None:
+    result = load(4).main()
+    # h = u^2/120 - v^2/180 has h_uu = 1/60 and h_vv = -1/90, and no slope in the middle.
+    np.testing.assert_allclose(
+        result["principal radii in the middle, mm"], [60.0, -90.0], atol=ROUNDING * 1e3
+    )
+    # Its slope at u = 24 mm is u/60 = 0.4, an angle of 21.801 degrees.
+    assert result["slope at u = 24 mm, deg"] == pytest.approx(np.degrees(np.arctan(0.4)))
+    # Tilted by 40 degrees about y, z becomes (sin 40, 0, cos 40).
+    tilt = np.radians(40.0)
+    np.testing.assert_allclose(
+        result["normal in the middle"], [np.sin(tilt), 0.0, np.cos(tilt)], atol=ROUNDING
+    )
+    # A ball that starts 10 mm above the surface and comes down along its normal travels 10 mm.
+    assert result["travel of the ball, mm"] == pytest.approx(10.0, abs=ROUNDING)
+
+
+def test_07_the_program_goes_where_two_rotations_by_hand_say() -> None:
+    result = load(7).main()
+    # The middle of FF3 stands at radius 85, azimuth 120, height 95. The table turns by -C = 60
+    # degrees: azimuth 180, so (-85, 0, 95); the line of B is 80 above the table: (-85, 0, 15) from
+    # it, and the cradle turns by -B = 50 degrees about y:
+    #   x = -85 cos 50 + 15 sin 50 = -43.1463,  z = 80 + 85 sin 50 + 15 cos 50 = 154.7556.
+    # The face, tilted by 50 degrees, then looks straight up: the lowest point of the ball starts
+    # 5 mm above it.
+    assert "L X-43.1463 Y+0.0000 R0 FMAX\n" in _unnumbered(result["text"])
+    assert "L Z+159.7556 R0 F2000\nTCH PROBE 4.0" in _unnumbered(result["text"])
+    assert "TCH PROBE 4.2 IX+0.0000 IY+0.0000 IZ-1.0000\n" in _unnumbered(result["text"])
+    # Five touches for each of five entries; four different poses, each visited twice, and on every
+    # visit one touch on the anchor sphere.
+    assert len(result["feature"]) == 5 * 5 + 4 * 2
+
+
+def _unnumbered(text: str) -> str:
+    """A program without its block numbers."""
+    return "\n".join(line.partition(" ")[2] for line in text.splitlines())
+
+
+def test_06_the_step_file_holds_one_solid_with_every_face_named(tmp_path: Path) -> None:
+    result = load(6).main(tmp_path)
+    assert result["solids"] == 1
+    assert result["watertight"]
+    # 4 faces, 3 spheres, datum plane and seat, 4 holes with a counterbore each.
+    assert len(result["named faces"]) == 4 + 3 + 2 + 4 * 2
+    # Nothing is fitted on the way to the file: poles and knots are the design's own digits, written
+    # with 15 places, so the faces agree to the rounding of coordinates of some 100 mm.
+    assert result["largest deviation of a face, µm"] < 1e-6
+    # The kernel's volume against a sum over 4 mm cells of the signed distance, which knows no CAD:
+    # half a cell over a surface of 0.3 m2 is 600 cm3, and averages out to better than 1 in 1000.
+    assert result["volume, mm3"] == pytest.approx(
+        result["volume by signed distances, mm3"], rel=1e-3
+    )
+    assert {p.name for p in tmp_path.iterdir()} == {"standard.step", "standard.stl"}
