@@ -44,7 +44,11 @@ class Kind(Enum):
         rf"MB(?P<back>{_NUM}) REFERENCE SYSTEM: ?(?P<system>[01])"
     )
     ASSIGN = rf"FN ?0: Q(?P<q>\d+) = (?P<value>{_NUM})"
-    JUMP = r"FN ?12: IF \+?Q(?P<q>\d+) LT (?P<limit>[+-]\d+) GOTO LBL (?P<label>\d+)"
+    SUBTRACT = rf"FN ?2: Q(?P<q>\d+) = \+?Q(?P<from>\d+) - (?P<value>{_NUM})"
+    JUMP = (
+        r"FN ?1(?:2: IF \+?Q(?P<q>\d+) LT|1: IF \+?Q(?P<q_greater>\d+) GT) "
+        r"(?P<limit>[+-]\d+) GOTO LBL (?P<label>\d+)"
+    )
     ERROR = r"FN ?14: ERROR ?= ?(?P<number>\d+)"
     PRINT = rf"FN ?16: F-PRINT (?P<mask>{_PATH}) ?/ ?(?P<target>{_PATH})"
     READ = (
@@ -74,7 +78,7 @@ _KNOWN_OTHERS = (
     ),
     (r"TCH PROBE", "TCH PROBE 4 (vector probing), the only cycle of our programs"),
     (r"L\b", "L <axis><signed number> ... R0 F<whole>|FMAX, words in this order"),
-    (r"FN", "FN 0, 12, 14, 16, 18 or 20 in the form that our programs use"),
+    (r"FN", "FN 0, 2, 11, 12, 14, 16, 18 or 20 in the form that our programs use"),
     (r"CYCL DEF", "CYCL DEF 7 with zeros or 247 with Q339"),
     (r"TOOL CALL", "TOOL CALL <number> Z"),
     (r"LBL|CALL", "LBL <number> or CALL LBL <number>"),

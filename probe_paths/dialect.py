@@ -16,6 +16,7 @@ class Q(IntEnum):
     OFFSET_Y = 1604
     TOOL = 1605
     PRESET = 1606
+    LENGTH_OFF = 1607
     RESULT_X = 1610
     RESULT_Y = 1611
     RESULT_Z = 1612
@@ -29,14 +30,23 @@ class Q(IntEnum):
     ROTARY_2 = 1632
 
 
+TOOL_LENGTH = 114
+"""Parameter in which the control keeps the length of the called tool, as in the tool table."""
+
 FREE = range(1600, 2000)
 """Parameters that a program may write."""
 
 SYSTEM_INDEX = {letter: i + 1 for i, letter in enumerate("XYZABCUVW")}
 """Order of the axes in the control's system data (IDX of ID240)."""
 
-LOG_LABEL, MISS_LABEL = 90, 91
-"""Subprograms: check and log one touch; no contact."""
+LOG_LABEL, MISS_LABEL, PROBE_LABEL = 90, 91, 92
+"""Subprograms: check and log one touch; no contact; another probe than planned."""
+
+LENGTH_LIMIT = 1
+"""By how much the probe's length may differ from the planned one, mm: the room that is planned."""
+
+INPUT_VALUE_INCORRECT = 1011
+"""Number of the control's error text that ends a program with another probe."""
 
 TOUCH_POINT_INACCESSIBLE = 1014
 """Number of the control's error text that ends a program without contact."""

@@ -1,11 +1,14 @@
 """From logs to measurements: calibrated foot points, deviations, and where the standard stands."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from artefact.standard import Standard
+from probe_paths.alignment import aligned_feet
 from probe_paths.dialect import Dialect
+from probe_paths.feet import foot_points
 from probe_paths.frame import LINEAR, ProgramFrame
 from probe_paths.log import LogPart
 from probe_paths.probe import Probe
@@ -14,7 +17,14 @@ from twin.errors import BadFile, NotEnoughData
 from twin.frames import Array, apply, inverse, pose, rotation
 from twin.kinematics import tip
 from twin.run import Run
-from twin.touches import IntArray, Labels, Setup, Touches, linear_approach
+from twin.touches import (
+    IntArray,
+    Labels,
+    Setup,
+    Touches,
+    computed_deviation,
+    linear_approach,
+)
 from twin.units import DEG, NM
 
 BESIDE = 10.0
@@ -38,9 +48,9 @@ def evaluate(
 
     The ball centre that a nominal machine would have is taken into the frame of the standard. The
     set-up is fitted first (six parameters each, Gauss-Newton on the deviations, foot points anew
-    every round), because a standard that stands beside its believed place would be touched beside
-    its foot points, and its curvature would pass for a deviation. Then
-    ``dev = n . (ball centre - p) - radius``.
+    every round), then every table pose is aligned by itself (`probe_paths.alignment`), because a
+    ball that met the surface beside its foot point would have the curvature in between pass for a
+    deviation. Then ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 
     Args:
         parts: Of one or several logs.
@@ -69,23 +79,10 @@ def evaluate(
     point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius)
     _check_near(parts, gap, ABSURD)
     touches = _touches(parts, chain, q, (radius, length), setups, setup, feature, point, normal)
-    return Run(touches, gap, np.full(len(q), u))
-
-
-def foot_points(standard: Standard, feature: Labels, ball: Array) -> tuple[Array, Array]:
-    """Foot points (N, 3) of balls (N, 3) on their features, and outward normals, artefact frame.
-
-    nan where a ball is so far off that its surface has no foot point for it.
-    """
-    point, normal = np.full(ball.shape, np.nan), np.full(ball.shape, np.nan)
-    for name in dict.fromkeys(feature.tolist()):
-        rows = np.flatnonzero(feature == name)
-        surface = standard.features[name]
-        uv = surface.project(ball[rows])
-        there = np.all(np.isfinite(uv), axis=1)
-        point[rows[there]] = surface.point(uv[there])
-        normal[rows[there]] = surface.normal(uv[there])
-    return point, normal
+    # the anchor of a deviation is where the ball met the surface, not where it was believed to be
+    point, normal = aligned_feet(standard, feature, touches.ball_artefact, touches.pose, radius)
+    touches = replace(touches, point=point, normal=normal)
+    return Run(touches, computed_deviation(touches), np.full(len(q), u))
 
 
 def _gaps(

@@ -122,9 +122,19 @@ def assign(q: int, value: float) -> str:
     return f"FN 0: Q{q:d} = {text}"
 
 
-def jump_if_negative(q: int, label: int) -> str:
-    """FN 12: go to a label when a parameter is negative."""
-    return f"FN 12: IF +Q{q:d} LT +0 GOTO LBL {label:d}"
+def difference(q: int, minuend: int, subtrahend: float) -> str:
+    """FN 2: a parameter less a number."""
+    return f"FN 2: Q{q:d} = +Q{minuend:d} - {signed(subtrahend)}"
+
+
+def jump_if_less(q: int, limit: int, label: int) -> str:
+    """FN 12: go to a label when a parameter is less than a whole number."""
+    return f"FN 12: IF +Q{q:d} LT {limit:+d} GOTO LBL {label:d}"
+
+
+def jump_if_greater(q: int, limit: int, label: int) -> str:
+    """FN 11: go to a label when a parameter is greater than a whole number."""
+    return f"FN 11: IF +Q{q:d} GT {limit:+d} GOTO LBL {label:d}"
 
 
 def stop_with_error(number: int) -> str:

@@ -29,7 +29,7 @@ class LogPart:
         heading: Standard, set-up and probe as planned.
         begin: When the program was started.
         radius: Of the ball as calibrated, mm.
-        tool_length: As calibrated, mm.
+        tool_length: As calibrated, mm; that of the tool table where the control keeps none.
         offset: Of the ball from the spindle axis as calibrated, (2,), mm; the control has already
             corrected X and Y by it.
         line: Of each touch in the file, (N,).
@@ -163,11 +163,11 @@ class _Reader:
         begin = self.clock(day, None)
         self.pairs(("TOOL", "PRESET"))
         radius, tool_length = self.pairs(("R", "L"))
-        offset = np.array(self.pairs(("EX", "EY")))
+        *offset, table_length = self.pairs(("EX", "EY", "TL"))
         rows, is_complete = self._touches(begin)
         table = np.array([row[1] for row in rows]).reshape(len(rows), -1)
         return _part(
-            self.path, words[1], heading, begin, (radius, tool_length), offset,
+            self.path, words[1], heading, begin, (radius, tool_length or table_length), offset,
             np.array([row[0] for row in rows], dtype=np.int64), table, self.rotary, is_complete,
         )  # fmt: skip
 
@@ -198,7 +198,7 @@ def _part(
     heading: Heading,
     begin: datetime,
     calibration: tuple[float, float],
-    offset: Array,
+    offset: Sequence[float],
     line: IntArray,
     table: Array,
     rotary: Sequence[str],
@@ -215,7 +215,7 @@ def _part(
         begin=begin,
         radius=calibration[0],
         tool_length=calibration[1],
-        offset=offset,
+        offset=np.array(offset),
         line=line,
         number=whole[:, 0],
         pose=whole[:, 1],

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from probe_paths.dialect import Dialect, Q
+from probe_paths.dialect import TOOL_LENGTH, Dialect, Q
 from probe_paths.klartext import LINE_END, MAX_LINE, checked_name
 from twin.errors import BadFile, DesignError
 
@@ -151,6 +151,6 @@ def head_mask(name: str, remarks: Sequence[str]) -> str:
         ("T%3d:%3d:%3d", ("HOUR", "MIN", "SEC")),
         _fields([("TOOL", Q.TOOL), ("PRESET", Q.PRESET)], "%8.1LF"),
         _fields([("R", Q.PROBE_RADIUS), ("L", Q.PROBE_LENGTH)], "%13.6LF"),
-        _fields([("EX", Q.OFFSET_X), ("EY", Q.OFFSET_Y)], "%13.6LF"),
+        _fields([("EX", Q.OFFSET_X), ("EY", Q.OFFSET_Y), ("TL", TOOL_LENGTH)], "%13.6LF"),
     ]
     return _mask(lines)

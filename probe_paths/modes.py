@@ -3,7 +3,7 @@
 import numpy as np
 
 from probe_paths.blocks import Block, Kind
-from probe_paths.dialect import SYSTEM_INDEX
+from probe_paths.dialect import SYSTEM_INDEX, TOOL_LENGTH
 from probe_paths.frame import LINEAR
 from probe_paths.state import State
 from twin.units import DEG
@@ -90,6 +90,7 @@ def _tool_call(block: Block, state: State) -> None:
     if not state.is_tcpm_off or not state.is_retracted:
         raise state.refuse(block, repr(block.text), "M129 and a retract with M91 before it")
     state.tool = int(block.word("tool"))
+    state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length
     # the tool changer leaves the linear axes wherever its builder wanted
     state.q[state.frame.linear] = np.nan
     state.is_retracted = False
@@ -103,6 +104,13 @@ def _assign(block: Block, state: State) -> None:
     state.write(block, int(block.word("q")), block.number("value"))
 
 
+def _subtract(block: Block, state: State) -> None:
+    value = state.value(block, int(block.word("from")))
+    if not isinstance(value, float):
+        raise state.refuse(block, repr(block.text), "a number, not the result of a touch")
+    state.write(block, int(block.word("q")), value - block.number("value"))
+
+
 _SETTERS = {
     Kind.TCPM_ON: _tcpm,
     Kind.TCPM_OFF: _tcpm,
@@ -114,4 +122,5 @@ _SETTERS = {
     Kind.TOOL_CALL: _tool_call,
     Kind.WAIT: _wait,
     Kind.ASSIGN: _assign,
+    Kind.SUBTRACT: _subtract,
 }

@@ -13,9 +13,13 @@ import numpy as np
 from probe_paths import klartext as k
 from probe_paths.clock import Clock
 from probe_paths.dialect import (
+    INPUT_VALUE_INCORRECT,
+    LENGTH_LIMIT,
     LOG_LABEL,
     MISS_LABEL,
+    PROBE_LABEL,
     SYSTEM_INDEX,
+    TOOL_LENGTH,
     TOUCH_POINT_INACCESSIBLE,
     Dialect,
     Q,
@@ -178,6 +182,8 @@ class _Writer:
 
     def _remarks(self, rows: IntArray, duration: float) -> list[str]:
         """What the operator must know, and what a reader of the text must."""
+        probe = self.plan.probe
+        table = f"L{k.signed(probe.tool_length)} R{k.signed(probe.radius)}"
         used = dict.fromkeys(self.plan.feature[rows].tolist())
         features = sorted(used, key=self.number.__getitem__)
         return [
@@ -189,7 +195,7 @@ class _Writer:
             k.comment(
                 f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT"
             ),
-            k.comment(f"PROBE: TOOL {self.dialect.tool}, SPINDLE MUST NOT TURN"),
+            k.comment(f"TOOL {self.dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN"),
             k.comment("TABLE MUST BE FREE TO TURN WITH Z RETRACTED"),
         ]
 
@@ -227,6 +233,9 @@ class _Writer:
             k.system_read(Q.OFFSET_Y, 350, 14, 2),
             k.system_read(Q.TOOL, 20, 1),
             k.assign(Q.PRESET, self.dialect.preset),
+            k.difference(Q.LENGTH_OFF, TOOL_LENGTH, self.plan.probe.tool_length),
+            k.jump_if_less(Q.LENGTH_OFF, -LENGTH_LIMIT, PROBE_LABEL),
+            k.jump_if_greater(Q.LENGTH_OFF, LENGTH_LIMIT, PROBE_LABEL),
             self._print(f"{name}.A", name),
         )
 
@@ -263,6 +272,7 @@ class _Writer:
                 k.comment(f"TOUCH {row + 1} ON {feature}{anchor}"),
                 k.assign(Q.TOUCH, row + 1),
                 k.assign(Q.FEATURE, self.number[feature]),
+                k.assign(Q.STATUS, -1),
                 k.line({a: start[a] for a in "XY"}),
                 *([up] if count == 0 else []),
                 k.line({"Z": start["Z"]}, feeds.approach),
@@ -288,7 +298,7 @@ class _Writer:
         places = zip((Q.ROTARY_1, Q.ROTARY_2), self.rotary, strict=False)
         out.add(
             k.label(LOG_LABEL, "CHECK AND LOG ONE TOUCH"),
-            k.jump_if_negative(Q.STATUS, MISS_LABEL),
+            k.jump_if_less(Q.STATUS, 0, MISS_LABEL),
             k.WAIT,
             *(k.system_read(q, 240, 1, SYSTEM_INDEX[a]) for q, a in places),
             self._print(f"{POINT_MASK}.A", name),
@@ -299,4 +309,7 @@ class _Writer:
             self._print(f"{MISS_MASK}.A", name),
             k.OPERATOR_STOP,
             k.stop_with_error(TOUCH_POINT_INACCESSIBLE),
+            k.label(PROBE_LABEL, "NOT THE PROBE OF THE PLAN"),
+            k.OPERATOR_STOP,
+            k.stop_with_error(INPUT_VALUE_INCORRECT),
         )

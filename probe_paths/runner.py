@@ -96,12 +96,13 @@ class Runner:
         return i + 1
 
     def _jump(self, i: int, block: Block, state: State) -> int:
-        """FN 12: a number decides at once; a touch's status is taken as good, and as missed."""
-        value = state.value(block, int(block.word("q")))
-        target = self.places[int(block.word("label"))] + 1
+        """FN 11, 12: a number decides at once; a touch's status is taken as good, and as missed."""
+        is_less = block.words["q"] is not None
+        value = state.value(block, int(block.word("q" if is_less else "q_greater")))
+        target, limit = self.places[int(block.word("label"))] + 1, block.number("limit")
         if not isinstance(value, Result):
-            return target if value < block.number("limit") else i + 1
-        if value.part != STATUS or block.number("limit") != 0.0:
+            return target if (value < limit if is_less else value > limit) else i + 1
+        if value.part != STATUS or limit != 0.0 or not is_less:
             raise state.refuse(block, repr(block.text), "the status (fourth result) LT +0")
         state.untested = None
         missed = state.copied()
@@ -158,8 +159,13 @@ class Runner:
             feature=state.whole(block, Q.FEATURE, "feature"),
         )
         self._check_sides(block, state, touch)
+        left_over = state.parameters.get(result + STATUS)
         for part in range(4):
             state.write(block, result + part, Result(touch.index, part))
+        if not isinstance(left_over, float) or left_over >= 0.0:
+            raise state.refuse(
+                block, "the status of the touch before", f"FN 0: Q{result + STATUS} = -1 before it"
+            )
         state.untested, state.way_back = touch.index, state.q.copy()
         state.is_synchronous = False
         self.touches.append(touch)
@@ -207,6 +213,7 @@ class Runner:
             raise state.refuse(block, "M30", "a retract (L Z.. R0 FMAX M91) at the end")
 
     def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
+        """Only a touch without contact may end a program early, and only after a retract."""
         up = [step for step in steps if isinstance(step, Move)]
         if not is_branch or len(up) != 1 or up[0].checked:
             raise BadFile(
