@@ -35,10 +35,10 @@ def touched(seed: int) -> tuple[object, np.ndarray, np.ndarray, np.ndarray, np.n
 
 
 def test_curvature_does_not_pass_for_a_deviation() -> None:
-    """The machine believes the balls 0.3 mm and 0.5 mrad beside: only -n.d may be left of it."""
+    """The machine believes the balls 0.7 mm and 0.5 mrad beside: only -n.d may be left of it."""
     standard, feature, _, normal, true = touched(1)
     turn = rotation(np.array([3e-4, -4e-4, 2e-4]))
-    displaced = (true - [0.0, 0.0, 100.0]) @ turn.T + [0.25, -0.15, 0.1] + [0.0, 0.0, 100.0]
+    displaced = (true - [0.0, 0.0, 100.0]) @ turn.T + [0.5, -0.4, 0.2] + [0.0, 0.0, 100.0]
     pose = np.zeros(len(true), dtype=np.int64)
     by_definition = np.einsum("ni,ni->n", normal, displaced - true)
 
