@@ -29,7 +29,8 @@ from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTo
 from OCP.XSControl import XSControl_WorkSession
 
 from artefact.standard import Standard
-from cad_out.solid import Solid, faces_of, is_closed, is_valid, solids_of, volume
+from cad_out.faces import faces_of, is_closed, is_valid, solids_of, volume
+from cad_out.solid import Solid
 from twin.errors import NotBuildable
 from twin.frames import Array
 
