@@ -14,7 +14,8 @@ from artefact.standard import STEEL, Base, Standard
 from probe_paths.plan import PlanOptions, TouchPlan, TouchRequests, requests_at
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
-from probe_paths.program import Feeds, ProgramSet, make_programs
+from probe_paths.program import ProgramSet, make_programs
+from probe_paths.writer import Feeds
 from twin.chain import Axis, Chain, make_chain
 from twin.frames import pose, rotation
 from twin.touches import Setup

@@ -12,7 +12,8 @@ from probe_paths.klartext import ProbeWords
 from probe_paths.plan import PlanOptions, requests_at
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
-from probe_paths.program import Feeds, make_programs
+from probe_paths.program import make_programs
+from probe_paths.writer import Feeds
 from twin.chain import Axis, make_chain
 from twin.errors import DesignError
 from twin.touches import Setup

@@ -24,8 +24,11 @@ from twin.model import Model
 from twin.touches import Setup, Touches, at_poses
 from twin.units import DEG, NM, UM, URAD
 
-SECOND_ORDER = 0.02 * UM
-"""Product of an error of 10 µm or 20 µrad with the change of a normal or an arm over it."""
+HARDLY_CURVED = 0.002 * UM
+"""Some µm along a face of 30 mm radius or more turn its normal by 1e-4."""
+
+CURVED = 0.14 * UM
+"""60 µm (all errors at once) along a ball of 10 mm, met by one of 3 mm: 60^2 / (2 * 13 000) µm."""
 
 
 def deviations(run, standard, chain):
@@ -133,7 +136,7 @@ def test_all_errors_at_once_against_the_linear_model(read, small, chain, plan):
         )  # fmt: skip
         expected = model.deviation(touches, theta)
         assert np.abs(expected).max() > 20.0 * UM
-        assert np.abs(measured - expected).max() < 10.0 * SECOND_ORDER
+        assert np.abs(measured - expected).max() < CURVED
 
 
 HAND = [
@@ -192,7 +195,7 @@ def test_shift_of_the_standard_and_bias_of_the_probe_count_outwards(read, small,
     normal = turn(plan.setup.T_table_artefact, plan.normal[rows])
     expected = normal @ np.array([2.0, -1.0, 3.0]) * UM + 0.7 * UM
     measured = deviations(run, small, chain)
-    assert np.abs(measured - expected).max() < 0.1 * SECOND_ORDER
+    assert np.abs(measured - expected).max() < HARDLY_CURVED
 
 
 def test_noise_is_that_of_the_trigger_and_of_the_seed(read, small, chain):
@@ -200,7 +203,7 @@ def test_noise_is_that_of_the_trigger_and_of_the_seed(read, small, chain):
     runs = [run_program(read[0], small, machine, np.random.default_rng(s)) for s in (4, 4, 5)]
     dev = [deviations(run, small, chain) for run in runs]
     drawn = np.random.default_rng(4).normal(0.0, 1.0, len(dev[0])) * 2.0 * UM
-    assert np.abs(dev[0] - drawn).max() < 0.1 * SECOND_ORDER
+    assert np.abs(dev[0] - drawn).max() < HARDLY_CURVED
     assert np.array_equal(dev[0], dev[1])
     assert np.abs(dev[0] - dev[2]).max() > UM
 
