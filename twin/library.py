@@ -10,8 +10,10 @@ from collections.abc import Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
 
+import numpy as np
+
 from twin.chain import Chain
-from twin.effect import Effect
+from twin.effect import Effect, Tunable
 from twin.effects import (
     artefact,
     artefact_form,
@@ -29,7 +31,9 @@ from twin.effects import (
 )
 from twin.effects.kind import Kind
 from twin.errors import BadFile, DesignError, UnknownEffect
+from twin.model import columns
 from twin.touches import Touches
+from twin.units import NM
 
 __all__ = [
     "ENTRY_POINT_GROUP",
@@ -43,6 +47,9 @@ __all__ = [
 ]
 
 ENTRY_POINT_GROUP = "material_standard.effects"
+
+ROUNDING = 1e-3 * NM
+"""Deviations below this are those of floating-point numbers, mm."""
 
 _NAME = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\((.*)\))?\s*\Z")
 
@@ -89,13 +96,26 @@ def parse_effect(text: str, chain: Chain) -> Effect:
 def proposals(touches: Touches, only: Sequence[str] | None = None) -> list[Effect]:
     """Every effect of the library that makes sense for some touches, each name once.
 
+    One that moves nothing at these touches, such as the roll of a spindle ram about the axis on
+    which the ball hangs, is left out.
+
     Args:
-        touches: The touches.
+        touches: The touches, all of the run.
         only: Words of the kinds to propose; None for all.
     """
     wanted = [k for k in kinds() if only is None or k.word in only]
     by_name = {effect.name: effect for kind in wanted for effect in kind.propose(touches)}
-    return list(by_name.values())
+    return [effect for effect in by_name.values() if _is_seen(effect, touches)]
+
+
+def _is_seen(effect: Effect, touches: Touches) -> bool:
+    """Whether an effect of its expected size changes any deviation beyond rounding."""
+    if isinstance(effect, Tunable):
+        effect = effect.tuned(
+            *(inner.grid[len(inner.grid) // 2] for inner in effect.inner(touches))
+        )
+    sd = np.array([p.sd for p in effect.parameters])
+    return bool(np.any(np.abs(columns([effect], touches) * sd) > ROUNDING))
 
 
 def load_user_effects(path: Path) -> tuple[Kind, ...]:

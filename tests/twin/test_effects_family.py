@@ -1,0 +1,280 @@
+"""What holds for every effect of the library, whatever its physics."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from twin.chain import Axis, make_chain
+from twin.effect import Contribution, Effect, Tunable, contribution
+from twin.effects.thermal_lag import lagged
+from twin.frames import fixed_xyz, pose
+from twin.library import parse_effect, proposals
+from twin.model import Model, columns
+from twin.touches import Setup, Touches, linear_approach
+from twin.units import DEG, NM
+
+MACHINES = {
+    "hsm600u": ("[w C' B' X' f Y Z (C1) t]", (0.0, 0.0, -500.0)),
+    "fork": ("[w C' X' f Y Z B (C1) t]", (0.0, 0.0, -700.0)),
+    "hmc1995": ("[w X' Z' f Y (C1) t]", (0.0, -150.0, -560.0)),
+}
+SECOND_ORDER = 60 * NM
+"""What products of two errors of 50 um and 100 urad on arms below 1 m may come to."""
+RELATIVE_ROUNDING = 1e-9
+
+
+def machine(label: str):
+    notation, origin = MACHINES[label]
+    rotary = [a for a in "BC" if f" {a}" in notation]
+    axes = {a: Axis((-400.0, 350.0)) for a in "XYZ"}
+    axes |= {a: Axis((-110.0 * DEG, 110.0 * DEG), (1.0, 2.0, -200.0)) for a in rotary}
+    return make_chain(label, notation, axes, origin)
+
+
+def run(label: str, n: int = 300) -> Touches:
+    """Touches of a made-up run with every kind of record in it."""
+    chain = machine(label)
+    rng = np.random.default_rng(7)
+    q = np.stack([rng.uniform(*chain.link(a).range, n) for a in chain.axes], axis=1)
+    q[:, chain.axis_index("C1")] = 0.0
+    for axis in chain.rotary_axes:  # ten readings, as of table poses
+        q[:, chain.axis_index(axis)] = np.repeat(q[:10, chain.axis_index(axis)], n // 10)
+    normal = rng.normal(size=(n, 3)) + np.array([0.0, 0.0, 1.5])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    setups = (Setup("a"), Setup("b", pose(fixed_xyz(np.array([0.1, 0.2, 0.5])), np.ones(3))))
+    time = np.sort(rng.uniform(0.0, 9000.0, n))
+    touches = Touches(
+        chain=chain,
+        q=q,
+        length=np.full(n, 160.0),
+        radius=np.full(n, 3.0),
+        point=rng.uniform(-100.0, 100.0, (n, 3)),
+        normal=normal,
+        setups=setups,
+        setup=(np.arange(n) >= n // 2).astype(np.int64),
+        time=time,
+        approach=np.zeros(q.shape),
+        temperature={
+            "room": 20.0 + np.sin(time / 3000.0),
+            "columnFront": 20.0 + time / 3000.0,
+            "columnBack": 20.0 + time / 6000.0,
+            "dead": np.full(n, np.nan),
+            "constant": np.full(n, 21.0),
+        },
+        spindle_rpm=np.where(time > 4000.0, 8000.0, 0.0),
+        force=rng.normal(size=(n, 3)) * 50.0,
+        feature=np.array([f"pad{i}" for i in rng.integers(0, 4, n)]),
+    )
+    approach = linear_approach(chain, q, touches.normal_table)
+    for axis in chain.rotary_axes:
+        approach[:, chain.axis_index(axis)] = np.where(np.arange(n) % 60 < 30, 1.0, -1.0)
+    object.__setattr__(touches, "approach", approach)
+    return touches
+
+
+RUNS = {label: run(label) for label in MACHINES}
+ALL = [(label, e) for label, touches in RUNS.items() for e in proposals(touches)]
+# thirty of a kind on a machine are the same code: every one that differs in kind and in axis
+SOME = list(
+    {
+        (label, e.kind, getattr(getattr(e, "symbol", None), "link", ""), type(e)): (label, e)
+        for label, e in ALL
+    }.values()
+)
+NAMES = [f"{label}-{e.name}" for label, e in SOME]
+
+
+def every(label: str) -> list[Effect]:
+    return [e for other, e in ALL if other == label]
+
+
+def test_the_made_up_runs_have_every_kind_of_effect() -> None:
+    from twin.library import kinds
+
+    assert {e.kind for _, e in ALL} == {k.word for k in kinds()}
+    assert len({e.name for e in every("hsm600u")}) == len(every("hsm600u"))
+
+
+@pytest.mark.parametrize("label", MACHINES)
+def test_names_lead_back_to_the_effect(label: str) -> None:
+    for effect in every(label):
+        assert parse_effect(effect.name, RUNS[label].chain) == effect
+        assert effect.name.split("(")[0] == effect.kind
+
+
+@pytest.mark.parametrize(("label", "effect"), SOME, ids=NAMES)
+def test_zero_at_zero_and_additive(label: str, effect: Effect) -> None:
+    """Contributions of theta, of -theta and of nothing; one parameter at a time adds up."""
+    touches, count = RUNS[label], len(effect.parameters)
+    nothing = contribution([(effect, np.zeros(count))], touches)
+    assert all(not np.any(part) for part in nothing)
+    theta = np.array([p.sd for p in effect.parameters])
+    whole = contribution([(effect, theta)], touches)
+    for part in Contribution._fields:
+        each = [contribution([(effect, row)], touches) for row in np.diag(theta)]
+        total = sum(getattr(c, part) for c in each)
+        scale = np.max(np.abs(getattr(whole, part)))
+        np.testing.assert_allclose(
+            getattr(whole, part), total, atol=RELATIVE_ROUNDING * max(scale, NM)
+        )
+
+
+@pytest.mark.parametrize("label", MACHINES)
+def test_first_order_columns_match_the_exact_machine(label: str) -> None:
+    """Each effect at two of its expected sizes: the exact product differs in second order only."""
+    touches = RUNS[label][np.arange(0, 300, 6)]
+    rng = np.random.default_rng(3)
+    for _, effect in (pair for pair in SOME if pair[0] == label):
+        model = Model(touches.chain, (effect,))
+        theta = model.prior_sd * rng.uniform(-1.0, 1.0, len(model.prior_sd))
+        linear = model.columns(touches) @ theta
+        size = np.max(np.abs(linear))
+        if size > 0.3:  # mm: keep products of errors within the tolerance
+            theta, linear = theta * 0.1 / size, linear * 0.1 / size
+        exact = model.deviation(touches, theta)
+        assert np.max(np.abs(exact - linear)) < SECOND_ORDER, effect.name
+
+
+@pytest.mark.parametrize("label", MACHINES)
+def test_effects_show_and_parameters_have_sizes(label: str) -> None:
+    touches = RUNS[label]
+    for effect in every(label):
+        C = columns([effect], touches)
+        assert C.shape == (len(touches), len(effect.parameters))
+        assert np.all(np.isfinite(C))
+        assert all(p.sd > 0.0 for p in effect.parameters)
+        assert len({p.name for p in effect.parameters}) == len(effect.parameters)
+        assert np.any(np.abs(C) > 1e-9), effect.name
+
+
+def test_what_moves_nothing_is_not_proposed() -> None:
+    """The ball hangs on the axis about which Z of an upright machine rolls; not so when tilted."""
+    assert not [e.name for e in every("hsm600u") if "(ECZ" in e.name]
+    assert [e.name for e in every("fork") if "(ECZ" in e.name]
+
+
+@pytest.mark.parametrize("label", MACHINES)
+def test_inner_parameters_have_ascending_grids_and_can_be_set(label: str) -> None:
+    touches = RUNS[label]
+    for effect in every(label):
+        if not isinstance(effect, Tunable):
+            continue
+        inner = effect.inner(touches)
+        assert list(effect.tuning) == [i.name for i in inner]
+        for i in inner:
+            assert len(i.grid) >= 2
+            assert np.all(np.diff(i.grid) > 0.0)
+        values = [float(i.grid[len(i.grid) // 2]) for i in inner]
+        tuned = effect.tuned(*values)
+        assert list(tuned.tuning.values()) == values
+        assert tuned.name == effect.name
+        # another tuning is another signature
+        other = effect.tuned(*(float(i.grid[0]) for i in inner))
+        assert not np.allclose(columns([tuned], touches), columns([other], touches))
+
+
+def test_the_scan_of_a_period_keeps_nine_tenths_of_any_sine() -> None:
+    """The worst period between two scanned ones, over evenly touched travel."""
+    touches = RUNS["hmc1995"]
+    (period,) = parse_effect("periodic(EXX)", touches.chain).inner(touches)
+    frequency = 1.0 / period.grid
+    middle = 0.5 * (frequency[200] + frequency[201])
+    x = np.linspace(*np.array([-1.0, 1.0]) * 0.5 * np.ptp(touches.reading("X")), 4000)
+    true = np.sin(2.0 * np.pi * middle * x + 0.3)
+    basis = np.exp(2j * np.pi * frequency[200] * x)
+    A = np.stack([basis.real, basis.imag], axis=1)
+    fitted = A @ np.linalg.lstsq(A, true, rcond=None)[0]
+    assert np.linalg.norm(fitted) > 0.9 * np.linalg.norm(true)
+
+
+def test_lag_of_a_ramp_in_closed_form() -> None:
+    """d = r t gives y = r (t - tau (1 - exp(-t/tau))) at whatever times it is read."""
+    t = np.concatenate([[0.0], np.sort(np.random.default_rng(1).uniform(0.0, 9000.0, 200))])
+    tau, rate = 1300.0, 2.0e-3
+    expected = rate * (t - tau * -np.expm1(-t / tau))
+    np.testing.assert_allclose(lagged(t, rate * t, tau), expected, atol=1e-12)
+
+
+def test_lag_against_small_steps() -> None:
+    """A bent record against Euler steps of a hundredth of a second's relative size."""
+    knots = np.array([0.0, 500.0, 900.0, 2400.0, 2500.0])
+    drive = np.array([1.0, 4.0, -2.0, 3.0, 3.0])
+    tau, step = 700.0, 0.05
+    fine = np.arange(0.0, 2500.0 + step / 2, step)
+    y, out = drive[0], {}
+    for t, d in zip(fine, np.interp(fine + step / 2, knots, drive), strict=True):
+        out[round(float(t), 3)] = y
+        y += step * (d - y) / tau
+    expected = [out[float(t)] for t in knots]
+    np.testing.assert_allclose(lagged(knots, drive, tau), expected, atol=2e-4)
+
+
+def test_lag_after_steps_of_the_spindle() -> None:
+    """Cold at time zero; 1 unit from the record at 100 s to the one at 400 s, then nothing."""
+    t = np.array([100.0, 250.0, 400.0, 700.0])
+    speed = np.array([1.0, 1.0, 0.0, 0.0])
+    tau = 150.0
+    # what is set at the first record has been set since time zero
+    warm = [1 - np.exp(-100 / tau), 1 - np.exp(-250 / tau), 1 - np.exp(-400 / tau)]
+    warm.append(warm[-1] * np.exp(-300 / tau))
+    np.testing.assert_allclose(lagged(t, speed, tau, steps=True), warm, atol=1e-12)
+
+
+def test_lag_does_not_mind_the_order_of_the_touches() -> None:
+    rng = np.random.default_rng(2)
+    t, d = np.sort(rng.uniform(0.0, 5000.0, 50)), rng.normal(size=50)
+    mixed = rng.permutation(50)
+    for steps in (False, True):
+        sorted_lag = lagged(t, d, 800.0, steps)
+        np.testing.assert_allclose(lagged(t[mixed], d[mixed], 800.0, steps), sorted_lag[mixed])
+
+
+def test_effects_are_quick() -> None:
+    """800 touches, whole library with its inner grids: the columns alone in about a second."""
+    import time
+
+    touches = run("hsm600u", 800)
+    touches.signature  # noqa: B018  (cached once for all effects)
+    start = time.perf_counter()
+    slowest = 0.0
+    for effect in proposals(touches):
+        before = time.perf_counter()
+        for _ in range(3):
+            effect.terms(touches)
+        slowest = max(slowest, (time.perf_counter() - before) / 3.0)
+    assert slowest < 5e-3
+    assert time.perf_counter() - start < 5.0
+
+
+def test_touching_both_sides_is_needed_for_backlash() -> None:
+    touches = RUNS["hsm600u"]
+    names = {e.name for e in proposals(touches, only=["backlash"])}
+    assert names == {f"backlash({a})" for a in "XYZBC"}
+    one_sided = touches[touches.last_move("B") > 0.0]
+    assert "backlash(B)" not in {e.name for e in proposals(one_sided, only=["backlash"])}
+
+
+def test_sensors_that_say_nothing_are_not_proposed() -> None:
+    text = " ".join(e.name for _, e in ALL)
+    assert "constant" not in text
+    assert "dead" not in text
+    assert "room" in text
+
+
+def test_axes_that_stood_still_are_not_proposed() -> None:
+    touches = RUNS["hsm600u"]
+    still = touches[np.flatnonzero(touches.reading("B") == touches.reading("B")[0])]
+    words = ["coupling", "periodic", "geometric", "gravity", "backlash"]
+    for effect in proposals(still, only=words):
+        assert "B)" not in effect.name.replace("EBB", "").replace(",B)", "B)"), effect.name
+        assert not effect.name.endswith("B,4)")
+
+
+def test_pairs_of_effects_keep_their_own_parameters() -> None:
+    """Two effects side by side have the columns that each has alone."""
+    touches = RUNS["fork"]
+    for (_, a), (_, b) in itertools.pairwise(pair for pair in SOME if pair[0] == "fork"):
+        both = columns([a, b], touches)
+        alone = np.hstack([columns([a], touches), columns([b], touches)])
+        np.testing.assert_array_equal(both, alone)
