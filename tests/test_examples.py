@@ -123,3 +123,18 @@ def test_06_the_step_file_holds_one_solid_with_every_face_named(tmp_path: Path) 
         result["volume by signed distances, mm3"], rel=1e-3
     )
     assert {p.name for p in tmp_path.iterdir()} == {"standard.step", "standard.stl"}
+
+
+def test_05_an_ideal_scatter_leaves_what_the_noise_leaves_and_one_face_leaves_more() -> None:
+    result = load(5).main()
+    left = result["not predicted after 160 touches, µm"]
+    # 160 touches of 1 um determine k combinations. Averaged over the touches, what stays unknown
+    # along their normals has the variance k/160 um^2 (the trace of the projection); points and
+    # normals taken at random represent the volume, with three directions: sqrt(3 k/160) um.
+    scatter = "random points and normals"
+    expected = np.sqrt(3.0 * result["combinations determined"][scatter] / 160.0)
+    assert left[scatter] == pytest.approx(expected, rel=0.2)
+    # One smooth face holds hardly more than one direction, so it leaves at least twice as much as
+    # four spheres do, and as the standard does.
+    own, spheres, face, _ = left.values()
+    assert face > 2.0 * max(own, spheres)

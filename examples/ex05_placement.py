@@ -1,0 +1,60 @@
+"""Placement: where patches go, which way they look, and what touches on them will tell.
+
+Sites, table poses and touches are chosen so that the tool point can be predicted best after the
+probing; the same number of touches on other artefacts is the measure of it.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from artefact.placement import PlacementOptions, place
+from artefact.sites import Frame
+from artefact.touchable import Probing
+from probe_paths.probe import Probe
+from sensitivity.workspace import Workspace
+from twin.files.machine_file import read_machine
+from twin.frames import apply
+from twin.touches import Setup
+from twin.units import DEG, UM
+
+HERE = Path(__file__).parent
+OPTIONS = PlacementOptions(patches=8, touches=160, poses=12, sites=80)
+LIMITS = {"X": (-150.0, 150.0), "Y": (-150.0, 150.0), "B": (-90 * DEG, 20 * DEG)}
+
+
+def main():
+    chain, probe = read_machine(HERE / "hsm600u-machine.toml"), Probe()
+    probing = Probing(chain, Setup("a"), probe.shape, probe.length)
+    workspace = Workspace(chain, LIMITS, probe.length)
+    placed = place(probing, Frame(), workspace, np.random.default_rng(600), options=OPTIONS)
+    return {
+        "placement": placed,
+        "not predicted before any touch, µm": placed.before[0] / UM,
+        "not predicted after 160 touches, µm": {r.name: r.rms / UM for r in placed.rivals},
+        "combinations determined": {r.name: r.estimable for r in placed.rivals},
+    }
+
+
+def draw(result):
+    import matplotlib.pyplot as plt
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.6, 3.4), layout="constrained")
+    placed = result["placement"]
+    for patch in placed.standard.patches:
+        a, b = patch.half_size
+        corners = np.array([[-a, -b, 0], [a, -b, 0], [a, b, 0], [-a, b, 0]])
+        left.fill(*apply(patch.T_artefact_patch, corners)[:, :2].T, fc="#cfe2f3", ec="C0")
+    left.plot(*placed.requests.point[:, :2].T, ".", color="C3", ms=3)
+    for sphere in placed.standard.spheres:
+        left.add_patch(plt.Circle(sphere.centre[:2], sphere.radius, fc="none", ec="C0"))
+    left.set(xlabel="x, mm", ylabel="y, mm", aspect="equal", title="patches, spheres, touches")
+    rest = result["not predicted after 160 touches, µm"]
+    bars = right.barh([name.replace(" ", "\n", 1) for name in rest], rest.values())
+    right.bar_label(bars, fmt="%.1f", padding=3)
+    right.set(xlabel="not predicted of the tool point, µm rms", xlim=(0, 7), ylim=(3.6, -0.6))
+    return figure
+
+
+if __name__ == "__main__":
+    draw(main()).savefig(HERE / "pictures" / "ex05.png", dpi=100)
