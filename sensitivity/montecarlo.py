@@ -1,6 +1,6 @@
 """Volumetric error of many random machines at many poses."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -49,6 +49,15 @@ class Volumetric:
     quantile_u: Array
     recurrence_u: Array
 
+    def __getitem__(self, rows: slice) -> "Volumetric":
+        """The statistics of some poses."""
+        each = {
+            f.name: getattr(self, f.name)[..., rows]
+            for f in fields(self)
+            if f.name not in ("draws", "levels")
+        }
+        return replace(self, **each)
+
     @property
     def p95(self) -> Array:
         """95 % of the machines stay below this, (N,), mm."""
@@ -67,6 +76,7 @@ def volumetric(
     draws: int,
     rng: np.random.Generator,
     progress: Progress = silent,
+    reference: int | None = None,
 ) -> Volumetric:
     """Statistics of the volumetric error over random machines, at every pose.
 
@@ -82,6 +92,8 @@ def volumetric(
         draws: S; the result for a seed does not depend on how the work is cut.
         rng: Source of the random numbers.
         progress: Told how many machines are done.
+        reference: The worst 5 % are those of the first so many poses, and a later pose counts as
+            affected where it reaches their limit; None for all poses.
 
     Raises:
         DesignError: Fewer than two draws, or no pose.
@@ -91,7 +103,7 @@ def volumetric(
             f"{draws} draws at {len(q)} poses; expected two draws and a pose at least"
         )
     G = _first_order(population.model, q, length)
-    tally = _Tally(rms(population, q, length))
+    tally = _Tally(rms(population, q, length), len(q) if reference is None else reference)
     done = 0
     for lot in drawn_in_chunks(population, draws, rng):
         theta = coefficients(population, lot).T.copy()  # (K, s)
@@ -117,13 +129,14 @@ def _first_order(model: Model, q: Array, length: Array | float) -> Array:
 class _Tally:
     """Sums, histogram and recurrence of |d|, lot by lot."""
 
-    def __init__(self, scale: Array) -> None:
+    def __init__(self, scale: Array, reference: int) -> None:
         n = len(scale)
         self.width = np.where(scale > 0.0, scale, 1.0) * (_SPAN / _BINS)
         self.count = 0
         self.sum, self.squares, self.worst = np.zeros(n), np.zeros(n), np.zeros(n)
         self.histogram = np.zeros((n, _BINS), dtype=np.int32)
-        self.allowed = max(1, round(WORST * n))
+        self.reference = reference
+        self.allowed = max(1, round(WORST * reference))
 
     def add(self, size: Array) -> None:
         """Count |d| of s machines, (N, s)."""
@@ -138,7 +151,8 @@ class _Tally:
             found = np.bincount(index.ravel(), minlength=_BINS * len(index))
             self.histogram[rows] += found.reshape(-1, _BINS).astype(np.int32)
         by_machine = np.ascontiguousarray(size.T)
-        limit = np.partition(by_machine, n - self.allowed, axis=1)[:, n - self.allowed]
+        place = self.reference - self.allowed
+        limit = np.partition(by_machine[:, : self.reference], place, axis=1)[:, place]
         self.worst += (by_machine >= limit[:, None]).sum(axis=0)
 
     def result(self) -> Volumetric:

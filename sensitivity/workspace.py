@@ -162,22 +162,23 @@ def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) 
 
 
 def section(
-    workspace: Workspace, first: str, second: str, count: int
+    workspace: Workspace, first: str, second: str, count: int, base: Array | None = None
 ) -> tuple[Array, Array, Array]:
-    """Readings over two axes with the others in the middle of their limits.
+    """Readings over two axes with the others held.
 
     Args:
         workspace: Limits.
         first: Axis along the rows.
         second: Axis along the columns.
         count: Values of each.
+        base: Readings of the other axes, (A,); None for the middle of their limits.
 
     Returns:
         Values of the first axis (n,), of the second (n,), readings (n n, A), the second fastest.
     """
     chain = workspace.chain
     a, b = (np.linspace(*workspace.limit(name), count) for name in (first, second))
-    q = np.tile(workspace.centre, (count * count, 1))
+    q = np.tile(workspace.centre if base is None else base, (count * count, 1))
     q[:, chain.axis_index(first)] = np.repeat(a, count)
     q[:, chain.axis_index(second)] = np.tile(b, count)
     return a, b, q
