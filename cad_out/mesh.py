@@ -131,17 +131,19 @@ def chord_errors(
         owner: Name of each triangle's feature, (F,).
 
     Returns:
-        Largest and root mean square distance by feature name.
+        Largest and root mean square distance by feature name; infinite where a feature has no
+        triangle at all.
     """
     errors = {}
     surfaces: tuple[FreeformPatch | DatumSphere, ...] = (*standard.patches, *standard.spheres)
     for surface in surfaces:
         mine = corners[triangles[owner == surface.name]]  # (F, 3, 3)
+        if not len(mine):
+            errors[surface.name] = ChordError(np.inf, np.inf)
+            continue
         points = np.einsum("lk,fki->fli", _LATTICE, mine).reshape(-1, 3)
         gap = _distance(surface, points)
-        errors[surface.name] = ChordError(
-            float(np.abs(gap).max(initial=0.0)), float(np.sqrt(np.mean(gap**2)))
-        )
+        errors[surface.name] = ChordError(float(np.abs(gap).max()), float(np.sqrt(np.mean(gap**2))))
     return errors
 
 

@@ -1,0 +1,222 @@
+"""STEP and STL of built standards, read anew; refusals and crashes leave nothing behind."""
+
+import re
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+import cad_out
+from artefact.datum import DatumSphere
+from cad_out import kernel
+from cad_out.conformity import FACE_LIMIT, face_deviations
+from cad_out.mesh import chord_errors, is_watertight, manifold_volume, mesh_volume, owners, read_stl
+from cad_out.part21 import SphereFace, SplineFace, read_faces
+from cad_out.process import run_apart
+from twin.errors import BadFile, NotBuildable
+from twin.units import NM, UM
+
+
+@pytest.mark.slow
+def test_ten_patches_conform_and_stay_below_their_limits(standard, tmp_path):
+    conformity = cad_out.export_standard(standard, tmp_path, chord=0.02)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["standard.step", "standard.stl"]
+    assert conformity.faults() == []
+    assert conformity.solids == 1
+    assert conformity.worst_face[1] < 1e-3 * FACE_LIMIT  # 14 digits of text leave 1e-8 um
+    assert conformity.worst_chord[1] <= 0.02
+    assert set(conformity.names) == set(standard.face_names)
+    assert conformity.volume == pytest.approx(standard.volume(2.0), rel=1e-3)
+    assert conformity.stl_bytes == (tmp_path / "standard.stl").stat().st_size < 6_000_000
+
+
+def test_step_text_carries_units_schema_names_and_a_fixed_time(small, built):
+    place, conformity, _ = built
+    text = (place / "standard.step").read_text()
+    assert "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF" in text
+    assert "'2000-01-01T00:00:00'" in text
+    assert "PRODUCT('small 0007'" in text
+    assert text.count("MANIFOLD_SOLID_BREP(") == 1
+    assert "NEXT_ASSEMBLY_USAGE_OCCURRENCE" not in text
+    for name in small.face_names:
+        assert text.count(f"ADVANCED_FACE('{name}'") == 1
+    assert small.material.name in text
+    assert conformity.is_millimetre
+    assert conformity.faults() == []
+
+
+def test_poles_and_knots_in_the_file_are_those_of_the_design(small, built):
+    faces = read_faces(built[0] / "standard.step")
+    for patch in small.patches:
+        face = faces[patch.name]
+        assert isinstance(face, SplineFace)
+        assert face.degree == patch.degree
+        # the kernel may count u and v the other way round only if it says so by its degrees
+        assert np.abs(face.poles - patch.poles).max() < NM
+        assert np.abs(face.knots[0] - patch.knots_u).max() < NM
+        assert np.abs(face.knots[1] - patch.knots_v).max() < NM
+    for sphere in small.spheres:
+        face = faces[sphere.name]
+        assert isinstance(face, SphereFace)
+        assert np.abs(face.centre - sphere.centre).max() < NM
+        assert face.radius == sphere.radius
+
+
+def test_a_pole_moved_by_a_tenth_of_a_micrometre_is_found(small, built, tmp_path):
+    text = (built[0] / "standard.step").read_text()
+    entity = re.search(r"ADVANCED_FACE\('FF2',\([^)]*\),\s*#(\d+)", text)
+    surface = re.search(rf"\n#{entity[1]} = B_SPLINE_SURFACE_WITH_KNOTS\(([^;]*);", text)
+    poles = re.findall(r"#(\d+)", surface[1])
+    point = re.search(rf"\n#{poles[len(poles) // 2 + 4]} = CARTESIAN_POINT\('',\(([^)]*)\)\)", text)
+    x, y, z = (float(v) for v in point[1].replace("\n", "").split(","))
+    moved = point[0].replace(point[1], f"{x},{y},{z + 0.1 * UM!r}")
+    path = tmp_path / "moved.step"
+    path.write_text(text.replace(point[0], moved))
+    apart = face_deviations(small, read_faces(path))
+    # a pole in the middle of the net moves the face by a sixth of its own way
+    assert apart["FF2"] > FACE_LIMIT
+    assert apart["FF1"] < 1e-3 * FACE_LIMIT
+    conformity = replace(built[1], face_deviation=apart)
+    assert any(
+        re.match(r"FF2 is 0\.\d+ µm from its design", words) for words in conformity.faults()
+    )
+
+
+def test_faces_lost_or_of_another_kind_are_infinitely_far(small, built):
+    faces = dict(read_faces(built[0] / "standard.step"))
+    faces["FF1"], faces["SPH1"] = None, faces["FF2"]
+    del faces["FF3"]
+    apart = face_deviations(small, faces)
+    assert [name for name, value in apart.items() if np.isinf(value)] == ["FF1", "FF3", "SPH1"]
+
+
+def test_part21_reader_refuses_what_is_no_step_file(tmp_path):
+    path = tmp_path / "a.step"
+    path.write_text("ISO-10303-21;\nnothing\n")
+    with pytest.raises(BadFile, match="no entities"):
+        read_faces(path)
+    path.write_text("DATA;\n#1 = ADVANCED_FACE('FF1',(#2),#9,.T.);\n#2 = X('');\nENDSEC;")
+    with pytest.raises(BadFile, match="a reference to #9"):
+        read_faces(path)
+
+
+def test_stl_is_closed_for_both_libraries_and_knows_its_faces(small, built):
+    place, conformity, mesh = built
+    corners, triangles = read_stl(place / "standard.stl")
+    assert len(triangles) == len(mesh.triangles) == conformity.triangles
+    assert is_watertight(corners, triangles)
+    assert manifold_volume(corners, triangles) == pytest.approx(
+        mesh_volume(corners, triangles), rel=1e-6
+    )
+    # what the kernel knew and what the surfaces tell agree
+    found = owners(small, corners, triangles)
+    named = np.isin(
+        mesh.owner, [*(p.name for p in small.patches), *(s.name for s in small.spheres)]
+    )
+    assert np.mean(found[named] == mesh.owner[named]) > 0.999
+    assert set(found[~named]) == {""}
+
+
+def test_a_mesh_with_a_triangle_missing_is_refused_by_both(built):
+    corners, triangles = read_stl(built[0] / "standard.stl")
+    assert not is_watertight(corners, triangles[1:])
+    assert np.isnan(manifold_volume(corners, triangles[1:]))
+
+
+def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(small):
+    # a regular triangle with its corners on a ball of radius r: its middle lies
+    # r - sqrt(r^2 - s^2/3) below the ball
+    sphere = small.spheres[0]
+    assert isinstance(sphere, DatumSphere)
+    up = np.array([0.0, 0.0, 1.0])
+    angle = 2.0 * np.pi * np.arange(3) / 3.0
+    lean = 0.1
+    corners = sphere.centre + sphere.radius * np.column_stack(
+        [np.sin(lean) * np.cos(angle), np.sin(lean) * np.sin(angle), np.full(3, np.cos(lean))]
+    )
+    sagitta = sphere.radius * (1.0 - np.cos(lean))
+    one = replace(small, patches=small.patches[:1], spheres=(sphere,))
+    owner = np.array([sphere.name])
+    errors = chord_errors(one, corners, np.array([[0, 1, 2]]), owner)
+    # the lattice of measured points has none exactly in the middle: a little less is found
+    assert 0.85 * sagitta < errors[sphere.name].largest <= sagitta + NM
+    assert up @ (corners.mean(axis=0) - sphere.centre) == pytest.approx(sphere.radius - sagitta)
+
+
+def test_same_standard_gives_the_same_bytes(small, built, tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONHASHSEED", "77")
+    cad_out.export_standard(small, tmp_path, chord=0.02)
+    for name in ("standard.step", "standard.stl"):
+        assert (tmp_path / name).read_bytes() == (built[0] / name).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"solids": 2}, "2 solids in the STEP file, expected 1"),
+        ({"is_valid": False}, "not valid"),
+        ({"is_closed": False}, "not closed"),
+        ({"is_millimetre": False}, "not in millimetres"),
+        ({"missing": ("FF2",)}, "faces without their name: FF2"),
+        ({"volume": 1.0}, "the volume changes"),
+        ({"area_error": {"FF1": 0.02}}, "FF1 has 2.0e-02 more or less area"),
+        ({"is_watertight": False}, "trimesh finds the STL file not watertight"),
+        ({"manifold_volume": float("nan")}, "manifold3d does not agree"),
+        ({"chord_error": {"SPH1": 0.05}}, "SPH1: mesh 50.0 µm off, limit 20 µm"),
+    ],
+)
+def test_every_figure_out_of_its_limit_is_named(built, change, words):
+    assert set(change) <= {f.name for f in fields(built[1])}
+    assert any(words in fault for fault in replace(built[1], **change).faults())
+
+
+def spoilt(small, **what):
+    patches = (replace(small.patches[0], **what), *small.patches[1:])
+    return replace(small, patches=patches)
+
+
+def test_a_refused_design_leaves_the_files_of_the_last_one(small, tmp_path):
+    for name in ("standard.step", "standard.stl"):
+        (tmp_path / name).write_text("of the last run")
+    adrift = spoilt(small, depth=8.0)
+    with pytest.raises(
+        NotBuildable, match=r"'small' falls into 2 solids .* does not reach the body"
+    ):
+        cad_out.export_standard(adrift, tmp_path)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["standard.step", "standard.stl"]
+    assert (tmp_path / "standard.step").read_text() == "of the last run"
+
+
+def test_a_crash_of_the_kernel_is_one_clear_error(small, tmp_path, monkeypatch):
+    def crashing(module, task, folder, *arguments, timeout):
+        return run_apart("faulthandler", "_sigsegv() or print", folder, timeout=timeout)
+
+    monkeypatch.setattr(kernel, "run_apart", crashing)
+    with pytest.raises(
+        NotBuildable, match=r"CAD kernel crashed \(SIGSEGV, exit code -11\).*nothing was written"
+    ) as caught:
+        cad_out.export_standard(small, tmp_path)
+    assert "\n" not in str(caught.value)
+    assert caught.value.facts["exit_code"] == -11
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_task_that_hangs_is_stopped(tmp_path):
+    ending = run_apart("time", "sleep(30) or print", tmp_path, timeout=0.5)
+    assert ending.code is None
+    assert not ending.is_good
+    assert str(ending) == "did not finish in time and was stopped"
+
+
+def test_a_task_that_fails_shows_its_last_line(tmp_path):
+    ending = run_apart("math", "sqrt(-1.0) or print", tmp_path)
+    assert str(ending).startswith("failed (exit code 1): ValueError: ")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(8))
+def test_random_standards_build_valid_solids(random_standard, tmp_path, seed):
+    standard = random_standard(seed)
+    conformity = cad_out.export_standard(standard, tmp_path, chord=0.02)
+    assert conformity.faults() == []
+    assert conformity.volume == pytest.approx(standard.volume(2.0), rel=2e-3)
