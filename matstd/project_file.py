@@ -41,8 +41,10 @@ class StandardTable(Table):
     """`[standard]`: what shall be made."""
 
     name: str = "FFS-1"
-    material: str = "steel 1.2379"
-    expansion_per_K: float = Field(default=11.0e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
+    serial: str = ""
+    material: str = "X40Cr14 (1.2083), hardened"
+    density_kg_m3: float = Field(default=7800.0, gt=0.0)
+    expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
     patches: int = Field(default=10, ge=8, le=16)
     touches: int = Field(default=480, ge=100, le=2000)
 

@@ -14,6 +14,9 @@ URAD = 1e-6
 DEG = math.pi / 180.0
 """One degree in rad."""
 
+KG_M3 = 1e-9
+"""One kilogram per cubic metre in kg/mm^3."""
+
 MINUTE = 60.0
 """One minute in s."""
 

@@ -1,0 +1,38 @@
+"""`matstd design`: the main job, from a project file to a folder that proves itself."""
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("project", metavar="PROJECT.toml", help="what to design, for which machine")
+    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
+    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Design, with a bar for every stage; the folder appears whole or not at all."""
+    from matstd.folder import results_folder
+    from matstd.project_file import read_project
+
+    project = read_project(args.project)
+    with results_folder(args.output, args.force) as folder:
+        from matstd.console import stages
+        from matstd.design import design
+        from matstd.report_design import write_design_page
+
+        with stages() as progress:
+            made = design(project, folder, progress)
+            progress("report", 0, 1)
+            remarks = write_design_page(made, folder)
+    for remark in remarks:
+        print(remark)
+    for machine in made.machines:
+        proof = machine.proof
+        print(
+            f"machine {machine.seed + 1}: volumetric error {proof.rms_before * 1e3:.1f} µm rms, "
+            f"not predicted {proof.rms_after * 1e3:.2f} µm (stated uncertainty "
+            f"{proof.rms_u * 1e3:.2f} µm): {proof.factor:.0f} times smaller"
+        )
+    print(f"{args.output}: look at report.html")
+    return 0

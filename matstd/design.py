@@ -1,0 +1,168 @@
+"""The design run: machine file in; standard, CAD, probing programs and proof out.
+
+Each stage is one call into one room; nothing is computed here.
+"""
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from artefact.placement import Placement, PlacementOptions, place
+from artefact.sites import Frame
+from artefact.standard import Material
+from artefact.standard_file import write_standard
+from artefact.touchable import Probing
+from cad_out.conformity import Conformity
+from cad_out.export import export_standard
+from diagnosis.estimable import Estimable
+from diagnosis.fit import Fit, fit_run
+from diagnosis.identification_file import write_identification
+from diagnosis.proof import Proof, probed_volume, prove
+from matstd.project_file import Project
+from probe_paths.campaign import Campaign, simulate
+from probe_paths.contacts import VirtualMachine
+from probe_paths.plan import TouchPlan, TouchRequests
+from probe_paths.planner import plan_touches
+from probe_paths.probe import Probe
+from probe_paths.program import ProgramSet, make_programs
+from sensitivity.sampling import Population, drawn_errors
+from sensitivity.study import Study, run_study, write_study
+from sensitivity.workspace import Workspace
+from twin.effect import Effect, contribution
+from twin.files.error_file import errors_toml
+from twin.files.run_writer import write_run
+from twin.files.whole import write_whole
+from twin.frames import Array
+from twin.units import KG_M3
+
+PROOF_POSES = 2000
+"""Poses at which predicted and true volumetric error are compared, none of them probed."""
+
+Stage = Callable[[str, int, int], None]
+"""Told the name of a stage, what is done and how much there is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Proven:
+    """One random machine, probed with the emitted programs and identified.
+
+    Attributes:
+        seed: Of its errors and noise, beside the project's.
+        errors: Its true errors.
+        campaign: The programs run on its twin.
+        fit: The identified model.
+        proof: Predicted against true volumetric error.
+    """
+
+    seed: int
+    errors: list[tuple[Effect, Array]]
+    campaign: Campaign
+    fit: Fit
+    proof: Proof
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Everything that a design run made; the files of the same names hold it."""
+
+    project: Project
+    study: Study
+    maps: list[tuple[str, str]]
+    placement: Placement
+    conformity: Conformity
+    plan: TouchPlan
+    programs: ProgramSet
+    machines: tuple[Proven, ...]
+    known: Estimable
+
+
+def design(project: Project, folder: Path, progress: Stage) -> Design:
+    """Run all stages and write their files into a folder.
+
+    Args:
+        project: What shall be designed, for which machine.
+        folder: Empty folder.
+        progress: Told what is going on.
+
+    Raises:
+        DesignError: A stage that cannot do its work; its message says which constraint binds.
+    """
+    rng_study, rng_place, rng_proof = np.random.default_rng(project.seed).spawn(3)
+    shutil.copyfile(project.machine_path, folder / "machine.toml")
+    population = Population(project.chain, project.ranges)
+    workspace = Workspace(project.chain, project.workspace, project.probe_length)
+    study = run_study(population, workspace, project.poses, project.draws, rng_study, progress)
+    maps = write_study(study, folder / "sensitivity")
+    placement = _placement(project, workspace, rng_place, progress)
+    write_standard(folder / "standard.toml", placement.standard)
+    progress("STEP and STL", 0, 1)
+    conformity = export_standard(placement.standard, folder)
+    progress("probing programs", 0, 1)
+    plan = _plan(project, placement)
+    programs = make_programs(plan)
+    paths = programs.write(folder / "programs")
+    machines = []
+    for seed in range(project.machines):
+        progress("proof on the twin", seed, project.machines)
+        machines.append(_prove(project, population, placement, paths, seed, rng_proof.spawn(1)[0]))
+    first = machines[0]
+    write_whole(folder / "errors.toml", errors_toml(first.errors))
+    write_run(folder / "run.csv", first.campaign.run, "machine.toml")
+    proofs = [m.proof for m in machines]
+    known = write_identification(folder / "identification.json", first.fit, proofs)
+    return Design(
+        project, study, maps, placement, conformity, plan, programs, tuple(machines), known
+    )
+
+
+def _probe(project: Project) -> Probe:
+    return Probe(project.probe_radius, project.probe_length)
+
+
+def _placement(
+    project: Project, workspace: Workspace, rng: np.random.Generator, progress: Stage
+) -> Placement:
+    """Standard and touches for the project's machine."""
+    wanted, probe = project.standard, _probe(project)
+    material = Material(wanted.material, wanted.density_kg_m3 * KG_M3, wanted.expansion_per_K)
+    return place(
+        Probing(project.chain, project.setup, probe.shape, probe.length),
+        Frame(material=material),
+        workspace,
+        rng,
+        project.ranges,
+        PlacementOptions(
+            wanted.name, wanted.serial, wanted.patches, wanted.touches, noise=project.noise
+        ),
+        progress,
+    )
+
+
+def _plan(project: Project, placement: Placement) -> TouchPlan:
+    """Touches that the placement wants, in the order of a cautious operator."""
+    wanted = placement.requests
+    requests = TouchRequests(wanted.feature, wanted.point, wanted.normal, wanted.rotary)
+    return plan_touches(placement.standard, project.chain, _probe(project), project.setup, requests)
+
+
+def _prove(
+    project: Project,
+    population: Population,
+    placement: Placement,
+    programs: list[Path],
+    seed: int,
+    rng: np.random.Generator,
+) -> Proven:
+    """Probe one random machine by the text of the programs, identify it, compare with its truth."""
+    rng_errors, rng_noise, rng_poses = rng.spawn(3)
+    errors = drawn_errors(population, rng_errors)
+    machine = VirtualMachine(
+        project.chain, lambda touches: contribution(errors, touches), noise=project.noise
+    )
+    campaign = simulate(programs, placement.standard, machine, rng_noise)
+    fit = fit_run(campaign.run, population.model)
+    poses = probed_volume(campaign.run, PROOF_POSES, rng_poses)
+    return Proven(seed, errors, campaign, fit, prove(fit, errors, project.setup, poses))

@@ -1,0 +1,199 @@
+"""The page of a design run: pictures, figures and tables of everything that was made."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from artefact.constraints import max_slope, min_concave_radius
+from artefact.freeform import FreeformPatch
+from cad_out.picture import draw_standard, draw_values
+from diagnosis.estimable import shown_value
+from diagnosis.proof_picture import write_proof_picture
+from matstd.design import Design, Proven
+from matstd.page import digits, write_page
+from probe_paths.picture import write_order_picture, write_touches_picture
+from twin.errors import DesignError
+from twin.units import DEG, UM
+
+_SHOWN_COMBINATIONS = 25
+_EXCERPT = 46  # lines of the first program
+
+
+def write_design_page(design: Design, folder: Path) -> list[str]:
+    """Draw the pictures and write report.html.
+
+    Args:
+        design: What was made; its files lie in the folder.
+        folder: The results.
+
+    Returns:
+        What could not be drawn and why, one line each; the page says it too.
+    """
+    remarks: list[str] = []
+    pictures = _standard_pictures(design, folder, remarks)
+    write_touches_picture(folder / "plan_touches.png", design.plan)
+    write_order_picture(folder / "plan_order.png", design.plan)
+    write_proof_picture(folder / "proof.png", [m.proof for m in design.machines])
+    write_page(
+        folder / "report.html",
+        "design.html",
+        folder=folder,
+        project=design.project,
+        chain=design.project.chain,
+        standard=design.placement.standard,
+        plan=design.plan,
+        programs=design.programs,
+        pictures=pictures,
+        remarks=remarks,
+        placeholders=(folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER"),
+        maps=design.maps,
+        known=design.known,
+        **_study(design),
+        **_standard(design),
+        **_proof(design),
+        **_known(design),
+        excerpt="\n".join([*design.programs.programs[0].text.splitlines()[:_EXCERPT], "..."]),
+    )
+    return remarks
+
+
+def _standard_pictures(design: Design, folder: Path, remarks: list[str]) -> list[tuple[str, str]]:
+    """Pictures that need OpenGL; without it the rest of the page is written all the same."""
+    standard, stl = design.placement.standard, folder / "standard.stl"
+    first = design.machines[0]
+    touches = first.campaign.run.touches
+    size = np.abs(first.campaign.run.deviation) / UM
+    made = []
+    try:
+        draw_standard(standard, stl, folder / "standard.png")
+        made.append(("standard.png", "The standard from two sides: patches, spheres, datum plane."))
+        draw_values(
+            standard,
+            stl,
+            folder / "standard_deviation.png",
+            touches.point,
+            size,
+            "|measured deviation| in µm",
+        )
+        made.append(
+            (
+                "standard_deviation.png",
+                "Size of the deviations that machine 1 shows on it, all table poses together.",
+            )
+        )
+    except DesignError as error:
+        remarks.append(f"No pictures of the standard: {error}")
+    return made
+
+
+def _study(design: Design) -> dict[str, Any]:
+    """Figures of the Monte Carlo."""
+    v = design.study.volumetric
+    return {
+        "study": design.study,
+        "study_poses": len(design.study.q),
+        "study_mean_um": float(v.mean.mean()) / UM,
+        "study_p95_um": float(v.p95.mean()) / UM,
+        "study_p95_u_um": float(v.p95_u.mean()) / UM,
+        "exact_um": design.study.exact.rms / UM,
+    }
+
+
+def _standard(design: Design) -> dict[str, Any]:
+    """Tables of the patches, of other artefacts and of the CAD files."""
+    c = design.conformity
+    faces = max(c.face_deviation.values()) / UM
+    return {
+        "patches": [_patch(p, design) for p in design.placement.standard.patches],
+        "comparison": [
+            {
+                "name": r.name,
+                "is_this": r is design.placement.own,
+                "touches": len(design.placement.requests),
+                "rms_um": r.rms / UM,
+                "p95_um": r.p95 / UM,
+                "rms_user_um": r.rms_user / UM,
+                "rms_random_um": r.rms_random / UM,
+                "estimable": r.estimable,
+            }
+            for r in design.placement.rivals
+        ],
+        "conformity_worst_um": faces,
+        "cad": [
+            ("STEP", f"AP242, mm, {c.step_bytes / 1e6:.1f} MB, {len(c.names)} named faces"),
+            ("solid", f"{c.solids} solid, valid: {_yes(c.is_valid)}, closed: {_yes(c.is_closed)}"),
+            ("volume", f"{c.volume / 1e3:.3f} cm³ re-read, {c.volume_built / 1e3:.3f} cm³ built"),
+            ("mass", f"{c.mass:.2f} kg"),
+            ("faces against design", f"{digits(faces, 2)} µm at most, read without any CAD kernel"),
+            (
+                "STL",
+                f"{c.triangles} triangles, {c.stl_bytes / 1e6:.1f} MB, "
+                f"watertight: {_yes(c.is_watertight)} (trimesh), volume {c.mesh_volume / 1e3:.3f} "
+                f"and {c.manifold_volume / 1e3:.3f} cm³ (trimesh, manifold3d)",
+            ),
+            (
+                "mesh against faces",
+                f"{max(c.chord_error.values()) / UM:.1f} µm at most, "
+                f"{c.chord / UM:.0f} µm asked for",
+            ),
+        ],
+    }
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"
+
+
+def _patch(patch: FreeformPatch, design: Design) -> dict[str, Any]:
+    """One row of the table of patches."""
+    x, y, z = patch.point(np.zeros((1, 2)))[0]
+    return {
+        "name": patch.name,
+        "centre": f"{x:.0f}, {y:.0f}, {z:.0f}",
+        "tilt": f"{np.arccos(patch.direction[2]) / DEG:.0f}",
+        "radius": f"{min_concave_radius(patch):.1f}",
+        "slope": f"{max_slope(patch) / DEG:.0f}",
+        "touches": int(np.sum(design.plan.feature == patch.name)),
+        "errors": ", ".join(f"{e.name} {100 * e.share:.0f} %" for e in patch.errors[:5]),
+    }
+
+
+def _proof(design: Design) -> dict[str, Any]:
+    """Table of the machines; the worst one opens the page."""
+    machines = [_machine(m) for m in design.machines]
+    return {
+        "machines": machines,
+        "worst": min(machines, key=lambda m: m["factor"]),
+        "noise_um": design.project.noise / UM,
+        "proof_poses": len(design.machines[0].proof.before),
+        "poses": len({v.pose for v in design.plan.visits}),
+        "minutes": round(design.programs.duration / 60.0),
+    }
+
+
+def _machine(machine: Proven) -> dict[str, Any]:
+    proof = machine.proof
+    return {
+        "number": machine.seed + 1,
+        "rms_before_um": proof.rms_before / UM,
+        "rms_after_um": proof.rms_after / UM,
+        "rms_u_um": proof.rms_u / UM,
+        "factor": proof.factor,
+        "covered": proof.covered,
+    }
+
+
+def _known(design: Design) -> dict[str, Any]:
+    """What the touches determine."""
+    known = design.known
+    return {
+        "determined": [
+            {"name": d.name, "value": shown_value(d.value, d.u, d.unit)} for d in known.determined
+        ],
+        "combinations": [
+            {"words": c.words, "value": shown_value(c.value, c.u, c.unit), "gain": c.gain}
+            for c in known.combinations[:_SHOWN_COMBINATIONS]
+        ],
+        "gauges": [g.words for g in known.gauges],
+    }
