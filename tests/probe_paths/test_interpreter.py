@@ -303,3 +303,15 @@ def test_golden_files_are_read_from_disk(golden_folder, chain, read):
         assert len(again.steps) == len(program.steps)
     with pytest.raises(BadFile, match="No such file"):
         read_program(golden_folder / "NONE.H", chain)
+
+
+def test_a_whole_program_as_a_control_saves_it_is_the_same_program(first, programs, chain, read):
+    """Number padded by a blank, two blanks before axis words, a trailing blank after MM."""
+    saved = re.sub(r"(?m)^(\d+) ", r"\1  ", first.text).replace(" MM\r", " MM \r")
+    saved = re.sub(r" ([XYZBC][+-])", r"  \1", saved)
+    saved = re.sub(r"FN (\d+):", r"FN\1:", saved)
+    again = interpret(saved.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+    assert len(again.steps) == len(read[0].steps)
+    for one, other in zip(again.touches, read[0].touches, strict=True):
+        assert np.array_equal(one.q, other.q)
+        assert (one.line, one.number, one.feature) == (other.line, other.number, other.feature)
