@@ -138,3 +138,18 @@ def test_05_an_ideal_scatter_leaves_what_the_noise_leaves_and_one_face_leaves_mo
     # four spheres do, and as the standard does.
     own, spheres, face, _ = left.values()
     assert face > 2.0 * max(own, spheres)
+
+
+def test_08_the_residual_is_the_noise_less_what_the_fit_took() -> None:
+    result = load(8).main()
+    fit, proof = result["fit"], result["proof"]
+    # A fit of k effective parameters to N touches of 1 um leaves sqrt(1 - k/N) um rms; over N - k
+    # degrees of freedom that scatters by 1/sqrt(2 (N - k)), here 4 %: three times that is allowed.
+    n, k = len(result["run"]), fit.solution.effective_parameters
+    expected = np.sqrt(1.0 - k / n)
+    assert fit.rms * 1e3 == pytest.approx(expected, rel=3.0 / np.sqrt(2.0 * (n - k)))
+    # The design's own promise: at least ten times less is left unpredicted at poses nobody probed.
+    assert proof.factor > 10.0
+    # And no better than the noise allows: touches that represented the volume ideally would leave
+    # sqrt(3 k/N) um, as in example 5; less would mean that the truth leaked into the fit.
+    assert proof.rms_after * 1e3 > np.sqrt(3.0 * k / n)
