@@ -100,19 +100,28 @@ class Ordinary:
             if effect.name == own_name or (inner is not None and inner.name == "period"):
                 continue
             variants = [effect] if inner is None else [effect.tuned(v) for v in inner.grid]
-            share = max(self.share(target, columns([v], self.touches)) for v in variants)
+            share = self.best_share(target, columns(variants, self.touches), len(variants))
             found.append([round(share, 4), effect.name, effect.kind])
         return sorted(found, reverse=True)
 
-    def share(self, target, block):
-        """Length of the part of a unit vector that lies in the span of what is left of columns."""
-        W = self.left(block)
-        size, before = np.linalg.norm(W, axis=0), np.linalg.norm(block, axis=0)
-        W = W[:, size > 1e-7 * np.maximum(before, 1e-300)]
-        if not W.shape[1]:
-            return 0.0
-        U, s, _ = np.linalg.svd(W / np.linalg.norm(W, axis=0), full_matrices=False)
-        return float(np.linalg.norm(U[:, s > 1e-6].T @ target))
+    def best_share(self, target, blocks, count):
+        """Longest part of a unit vector that lies in the span of what is left of one block.
+
+        Args:
+            target: Unit vector, (N,).
+            blocks: Columns of all variants of an effect, (N, count * K).
+            count: How many variants.
+        """
+        W, before = self.left(blocks), np.linalg.norm(blocks, axis=0)
+        size = np.linalg.norm(W, axis=0)
+        best = 0.0
+        for i in range(count):
+            part = slice(i * W.shape[1] // count, (i + 1) * W.shape[1] // count)
+            seen = size[part] > 1e-7 * np.maximum(before[part], 1e-300)
+            if np.any(seen):
+                U, s, _ = np.linalg.svd(W[:, part][:, seen] / size[part][seen], full_matrices=False)
+                best = max(best, float(np.linalg.norm(U[:, s > 1e-6].T @ target)))
+        return best
 
 
 def read_back(run_file, machine_file):

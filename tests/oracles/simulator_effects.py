@@ -288,7 +288,7 @@ def draw(rng, machine, hard, pads=11):
 
 
 def random_wave(rng):
-    k, m = 2.0 * np.pi / rng.uniform(30.0, 60.0, 2)
+    k, m = 2.0 * np.pi / rng.uniform(38.0, 60.0, 2)
     f, g = rng.uniform(0.0, 2.0 * np.pi, 2)
     return np.array([1.0, k, f, m, g])
 

@@ -171,7 +171,7 @@ def random_poses(rng, label, setups):
 
 def plan_pose(rng, machine, pads, stated, tilt, turned):
     """Touches of one pose that the probe can reach within all travels; None if too few."""
-    tries = 200
+    tries = 120
     pad = rng.integers(len(pads), size=tries)
     x, y = rng.uniform(-HALF, HALF, (2, tries))
     point, normal = surface_point(pads, pad, x, y)
@@ -181,7 +181,6 @@ def plan_pose(rng, machine, pads, stated, tilt, turned):
     for name, value in zip(sorted(machine.rotary), (tilt, turned), strict=False):
         rest[name] = np.full(tries, value)  # B before C
     q = readings_at(machine, target, rest, LENGTH)
-
     usable = np.ones(tries, dtype=bool)
     for name in machine.linear:
         axis = machine.axis(name)

@@ -138,6 +138,8 @@ def of(errors, name, n):
 def component_motion(axis, q, errors):
     """The six component errors of an axis: a turn about its lever point, and a displacement."""
     n = len(q)
+    if not any(f"E{letter}{axis.name}" in errors for letter in "XYZABC"):
+        return eye(n)
     six = [of(errors, f"E{letter}{axis.name}", n) for letter in "XYZABC"]
     lever = np.tile(axis.point, (n, 1))
     if not axis.rotary:  # a linear axis carries its reference point along, where its body goes
@@ -147,9 +149,20 @@ def component_motion(axis, q, errors):
     return undone(E) if axis.primed else E
 
 
+def nominal_motion(axis, travel):
+    """Travel of the body along, or about, an axis that stands where it should."""
+    if not axis.rotary:
+        return shifted(travel[:, None] * axis.direction)
+    here = np.tile(axis.point, (len(travel), 1))
+    main = int(np.flatnonzero(axis.direction)[0])
+    return shifted(here) @ ABOUT["ABC"[main]](travel) @ shifted(-here)
+
+
 def body_motion(axis, q, errors):
     """Travel along, or turn about, the axis where its location errors have put it."""
     n = len(q)
+    if not any(f"E{letter}0{axis.name}" in errors for letter in "XYZABC"):
+        return nominal_motion(axis, -q if axis.primed else q)
     e = [of(errors, f"E{letter}0{axis.name}", n) for letter in "XYZ"]
     r = [of(errors, f"E{letter}0{axis.name}", n) for letter in "ABC"]
     main = int(np.flatnonzero(axis.direction)[0])
@@ -167,6 +180,8 @@ def body_motion(axis, q, errors):
 
 
 def set_up_motion(point, letter, errors, n):
+    if not any(f"E{c}0{letter}" in errors for c in "XYZABC"):
+        return eye(n)
     six = [of(errors, f"E{c}0{letter}", n) for c in "XYZABC"]
     here = np.tile(point, (n, 1))
     displaced = shifted(np.stack(six[:3], axis=1))
