@@ -1,0 +1,73 @@
+"""`matstd effects`: complete, legible at 80 columns, quick, without scipy."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import twin.library as library
+from matstd.cli import main
+
+
+@pytest.fixture(autouse=True)
+def eighty_columns(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
+
+
+def test_every_kind_with_formula_units_size_and_source(capsys) -> None:
+    assert main(["effects"]) == 0
+    words = "".join(capsys.readouterr().out.split())
+    for kind in library.kinds():
+        for text in (kind.usage, kind.summary, kind.formula, kind.units, kind.typical, kind.source):
+            assert "".join(text.split()) in words
+
+
+def test_lines_fit_the_console(capsys) -> None:
+    main(["effects"])
+    assert max(len(line) for line in capsys.readouterr().out.splitlines()) <= 80
+
+
+def test_one_kind_tells_its_whole_story(capsys) -> None:
+    assert main(["effects", "gravity(EBB)"]) == 0
+    out = " ".join(capsys.readouterr().out.split())
+    for phrase in ("cantilever under a load", "E = a sin 2q", "off the centre of the table"):
+        assert phrase in out
+    assert "backlash" not in out
+    assert "Attributes" not in out
+
+
+def test_unknown_kind_is_one_line(capsys) -> None:
+    assert main(["effects", "wobble"]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert error.startswith("matstd effects: unknown kind 'wobble'; available: geometric, location")
+
+
+def test_own_effects_stand_in_the_table(capsys, tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(
+        "from twin.library import Kind\n"
+        "MINE = Kind('hose', '', 'EYZ = a X^2', 'a: µm', '5 µm', 'ours',\n"
+        "            lambda chain, arguments: None, lambda touches: [])\n",
+        encoding="utf-8",
+    )
+    assert main(["effects", "--effects", str(file)]) == 0
+    assert "EYZ = a X^2" in capsys.readouterr().out
+
+
+def test_a_file_that_fails_is_one_line(capsys, tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("1/0\n", encoding="utf-8")
+    assert main(["effects", "--effects", str(file)]) == 2
+    assert "found ZeroDivisionError: division by zero" in capsys.readouterr().err
+
+
+def test_no_scipy_is_loaded() -> None:
+    code = (
+        "import sys; from matstd.cli import main; main(['effects']); "
+        "sys.exit('scipy' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 0
