@@ -1,0 +1,159 @@
+"""Which table poses, and which touches in them, tell most on a standard that is there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.criterion import Criterion
+from artefact.patch import Surface
+from artefact.standard import Standard
+from artefact.touchable import Probing, Requests, joined
+from sensitivity.design import Quota, Selection, best_groups, exchange, fill
+from twin.errors import NotReachable
+from twin.frames import Array
+from twin.units import DEG, UM
+
+_EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face
+_OVERSHOOT = 6.0 * DEG  # left at the ends of a rotary travel, to approach readings from both sides
+_SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
+
+
+@dataclass(frozen=True)
+class PlacementOptions:
+    """How much is tried and how much is measured.
+
+    Attributes:
+        name: Type of the standard.
+        serial: Of the piece.
+        patches: Number of freeform patches.
+        touches: Number of touches.
+        poses: Number of table poses.
+        sites: Number of random sites to choose from.
+        noise: Standard deviation of one touch, mm.
+        sphere_share: Part of the touches that goes to the datum spheres, at least and at most. They
+            would take two thirds if they could, but a standard of spheres is no news, and faces
+            are what a freeform standard calibrates.
+        least_on_patch: Fewest touches on a patch, as a part of its even share.
+    """
+
+    name: str = "FFS"
+    serial: str = ""
+    patches: int = 10
+    touches: int = 480
+    poses: int = 18
+    sites: int = 400
+    noise: float = 1.0 * UM
+    sphere_share: tuple[float, float] = (0.15, 0.3)
+    least_on_patch: float = 0.4
+
+
+def table_poses(aim: Criterion, wanted: int) -> Array:
+    """Table poses to choose from: a grid of rotary readings in whole degrees, (K, R), rad.
+
+    The values of each later axis are shifted from one value of the earlier ones to the next, so
+    that the whole grid holds many different readings of each.
+    """
+    chain, limits = aim.probing.chain, []
+    for name, (low, high) in zip(chain.rotary_axes, aim.rotary, strict=True):
+        travel = chain.link(name).range
+        limits.append((max(low, travel[0] + _OVERSHOOT), min(high, travel[1] - _OVERSHOOT)))
+        if limits[-1][0] > limits[-1][1]:
+            raise NotReachable(f"the limits of {name} leave no room to approach a reading")
+    if not limits:
+        return np.zeros((1, 0))
+    total = 6 * wanted
+    spans = np.array([high - low for low, high in limits])
+    weight = np.sqrt(np.maximum(spans, 1.0 * DEG))
+    counts = np.maximum(np.round(weight * (total / weight.prod()) ** (1.0 / len(spans))), 1)
+    rows: list[list[float]] = [[]]
+    for (low, high), count in zip(limits, counts.astype(int), strict=True):
+        step = (high - low) / max(count - 1, 1)
+        grown = []
+        for i, row in enumerate(rows):
+            shift = ((i * 0.618034) % 1.0 - 0.5) * step if row else 0.0
+            values = np.clip(np.linspace(low, high, count) + shift, low, high)
+            inside = np.clip(np.round(values / DEG), np.ceil(low / DEG), np.floor(high / DEG))
+            grown += [[*row, float(v) * DEG] for v in inside]
+        rows = grown
+    return np.unique(np.array(rows), axis=0)
+
+
+def face_grid(half_size: tuple[float, float], count: int) -> Array:
+    """Parameters of a regular grid over a face, away from its edges, (count^2, 2)."""
+    axes = [np.linspace(-(half - _EDGE), half - _EDGE, count) for half in half_size]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def _sphere_grid(count: int) -> Array:
+    """Azimuth and elevation of directions spread evenly over the upper part of a sphere."""
+    i = np.arange(count) + 0.5
+    sine = np.sin(_SPHERE_LOWEST) + (1.0 - np.sin(_SPHERE_LOWEST)) * i / count
+    return np.stack([(i * np.pi * (3.0 - np.sqrt(5.0))) % (2.0 * np.pi), np.arcsin(sine)], axis=-1)
+
+
+def each_at(surface: Surface, uv: Array, poses: Array) -> Requests:
+    """Touches at parameters of a surface, each at every pose."""
+    n, k = len(uv), len(poses)
+    return Requests(
+        np.full(n * k, surface.name),
+        np.repeat(surface.point(uv), k, axis=0),
+        np.repeat(surface.normal(uv), k, axis=0),
+        np.tile(poses, (n, 1)),
+    )
+
+
+def touches_at(standard: Standard, poses: Array, pitch: int) -> Requests:
+    """Candidate touches on every face and sphere, `pitch` each way, at every pose."""
+    parts = [each_at(p, face_grid(p.half_size, pitch), poses) for p in standard.patches]
+    parts += [each_at(s, _sphere_grid(pitch * pitch), poses) for s in standard.spheres]
+    return joined(parts)
+
+
+def clear_touches(probing: Probing, standard: Standard, wanted: Requests) -> Requests:
+    """Those of the touches that machine and probe can make."""
+    wanted = wanted[probing.is_reachable(wanted)]
+    return wanted[probing.is_clear(standard, wanted)]
+
+
+def chosen_poses(
+    aim: Criterion, standard: Standard, poses: Array, options: PlacementOptions
+) -> Array:
+    """Table poses whose touches tell most, (K, R)."""
+    tried = clear_touches(aim.probing, standard, touches_at(standard, poses, pitch=3))
+    if not len(tried):
+        raise NotReachable("the machine reaches no touch on the standard at any table pose")
+    seen, group = np.unique(np.round(tried.rotary, 9), axis=0, return_inverse=True)
+    take = max(4, options.touches // options.poses)
+    chosen = best_groups(aim.purpose, aim.rows(tried), group.reshape(-1), options.poses, take)
+    picked: Array = seen[sorted(chosen)]
+    return picked
+
+
+def chosen_touches_on(
+    aim: Criterion, standard: Standard, tried: Requests, options: PlacementOptions
+) -> Requests:
+    """Single touches: spheres in every pose, every patch, then whatever tells most."""
+    n = options.touches
+    if len(tried) < n:
+        raise NotReachable(f"{len(tried)} touches can be made on the standard, {n} are wanted")
+    names = [*(p.name for p in standard.patches), *(s.name for s in standard.spheres)]
+    feature = np.array([names.index(f) for f in tried.feature.tolist()])
+    pose, poses = tried.pose, int(tried.pose.max()) + 1
+    is_sphere = feature >= len(standard.patches)
+    aside = np.where(is_sphere, pose * len(names) + feature, poses * len(names))
+    per_pose = Quota(pose, np.full(poses, int(np.ceil(1.6 * n / poses))))
+    selection = Selection(aim.purpose, aim.rows(tried))
+    # one touch on every sphere in every pose that allows it, up to the share of the spheres
+    first = Quota(aside, np.append(np.ones(poses * len(names), dtype=np.int64), 0))
+    least, most = (round(share * n) for share in options.sphere_share)
+    fill(selection, min(least, len(np.unique(aside[is_sphere]))), (first,))
+    for patch in range(len(standard.patches)):
+        only = Quota((feature != patch).astype(np.int64), np.array([n, 0]))
+        enough = round(options.least_on_patch * n / len(names))
+        here = int(np.sum(feature == patch))
+        fill(selection, int(selection.chosen.sum()) + min(enough, here), (only, per_pose))
+    kept = selection.chosen.copy()
+    quotas = (per_pose, Quota(is_sphere.astype(np.int64), np.array([n, most])))
+    fill(selection, n, quotas)
+    exchange(selection, quotas, kept, most=n // 2)
+    return tried[selection.chosen]
