@@ -27,8 +27,8 @@ class ProbeTable(Table):
 class ErrorsTable(Table):
     """`[errors]`: amplitude ranges by class and by parameter, µm or µrad."""
 
-    classes: dict[str, Pair] = Field(default_factory=dict, strict=False)
-    parameters: dict[str, Pair] = Field(default_factory=dict, strict=False)
+    classes: dict[str, Pair] = Field(default_factory=dict)
+    parameters: dict[str, Pair] = Field(default_factory=dict)
 
 
 class MonteCarloTable(Table):
@@ -52,8 +52,8 @@ class StandardTable(Table):
 class SetupTable(Table):
     """`[setup.a]`: pose of the standard in the table frame."""
 
-    origin_mm: Vector = Field(default=(0.0, 0.0, 0.0), strict=False)
-    rotation_deg: Vector = Field(default=(0.0, 0.0, 0.0), strict=False)
+    origin_mm: Vector = (0.0, 0.0, 0.0)
+    rotation_deg: Vector = (0.0, 0.0, 0.0)
 
 
 class SimulationTable(Table):

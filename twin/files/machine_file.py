@@ -1,30 +1,31 @@
 """Machine file (TOML, "machine/1"): a chain in ISO notation and what is known of each axis."""
 
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import Field
+from pydantic import Strict
 
 from twin.chain import Axis, Chain, make_chain
 from twin.errors import BadFile, DesignError
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.units import DEG
 
-Vector = tuple[float, float, float]
-Pair = tuple[float, float]
+Vector = Annotated[tuple[float, float, float], Strict(False)]  # TOML has lists, not tuples
+Pair = Annotated[tuple[float, float], Strict(False)]
 
 
 class AxisTable(Table):
     """`[axis.X]`: range in mm or degrees, point in mm, direction."""
 
-    range: Pair | None = Field(default=None, strict=False)
-    point: Vector | None = Field(default=None, strict=False)
-    direction: Vector | None = Field(default=None, strict=False)
+    range: Pair | None = None
+    point: Vector | None = None
+    direction: Vector | None = None
 
 
 class WorkpieceTable(Table):
     """`[workpiece]`: origin of the table frame, mm."""
 
-    origin: Vector = Field(default=(0.0, 0.0, 0.0), strict=False)
+    origin: Vector = (0.0, 0.0, 0.0)
 
 
 class MachineTable(Table):

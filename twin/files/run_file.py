@@ -47,8 +47,8 @@ class ProbeTable(Table):
 class SetupTable(Table):
     """`[setup.a]`: pose of the standard in the table frame."""
 
-    origin_mm: Vector = Field(default=(0.0, 0.0, 0.0), strict=False)
-    rotation_deg: Vector = Field(default=(0.0, 0.0, 0.0), strict=False)
+    origin_mm: Vector = (0.0, 0.0, 0.0)
+    rotation_deg: Vector = (0.0, 0.0, 0.0)
 
 
 class HeadTable(Table):

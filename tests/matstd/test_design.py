@@ -1,0 +1,152 @@
+"""The main job on a small project: every file is there, and the proof holds."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from matstd.cli import main
+from matstd.project_file import read_project
+from twin.files.run_file import read_run
+from twin.units import UM, URAD
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def small_project(folder: Path, machines: int = 1, seed: int = 600) -> Path:
+    """The example project with fewer poses, draws and touches."""
+    (folder / "machine.toml").write_text((EXAMPLES / "hsm600u-machine.toml").read_text())
+    text = (EXAMPLES / "hsm600u.toml").read_text()
+    for old, new in (
+        ("hsm600u-machine.toml", "machine.toml"),
+        ("poses = 2000", "poses = 300"),
+        ("draws = 2000", "draws = 300"),
+        ("patches = 10", "patches = 8"),
+        ("touches = 480", "touches = 240"),
+        ("machines = 3", f"machines = {machines}"),
+        ("seed = 600", f"seed = {seed}"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "project.toml"
+    path.write_text(text)
+    return path
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("design")
+    out = folder / "out"
+    assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
+    return out
+
+
+def test_every_file_is_there(made: Path) -> None:
+    names = {str(p.relative_to(made)) for p in made.rglob("*") if p.is_file()}
+    for name in (
+        "standard.toml",
+        "standard.step",
+        "standard.stl",
+        "run.csv",
+        "identification.json",
+        "report.html",
+        "errors.toml",
+        "machine.toml",
+        "sensitivity/poses.csv",
+        "sensitivity/sensitivity.csv",
+        "sensitivity/shares.csv",
+    ):
+        assert name in names, name
+    assert any(re.fullmatch(r"programs/\w+\.H", n) for n in names)
+    assert any(re.fullmatch(r"programs/\w+\.A", n) for n in names)
+    assert any(re.fullmatch(r"sensitivity/\w+\.png", n) for n in names)
+    assert [p.name for p in made.parent.iterdir() if p.name.startswith(".")] == []
+
+
+def test_the_unpredicted_error_falls_tenfold(made: Path) -> None:
+    proof = json.loads((made / "identification.json").read_text())["volumetric_error"]
+    for machine in proof:
+        assert machine["times_smaller"] > 10.0
+        assert machine["within_2u"] > 0.9
+
+
+def test_the_run_can_be_made_again_from_the_files(made: Path, tmp_path: Path) -> None:
+    """What the page proves, a user can repeat: the same programs, standard, machine, errors."""
+    programs = sorted(str(p) for p in (made / "programs").glob("*.H"))
+    again = tmp_path / "again.csv"
+    arguments = ["--standard", str(made / "standard.toml"), "--machine", str(made / "machine.toml")]
+    arguments += ["--errors", str(made / "errors.toml"), "--noise-um", "0", "-o", str(again)]
+    assert main(["simulate", *programs, *arguments]) == 0
+    first, second = read_run(made / "run.csv"), read_run(again)
+    assert len(first) == len(second)
+    difference = (first.deviation - second.deviation) * 1e3
+    assert 0.8 < np.std(difference) < 1.25  # the noise of the first run, 1 um
+
+
+def test_the_page_stands_alone(made: Path) -> None:
+    page = (made / "report.html").read_text(encoding="utf-8")
+    assert "http://" not in page
+    assert "https://" not in page
+    assert page.count("data:image/png;base64,") >= 7
+    assert "placeholders" in page
+
+
+def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    project = str(made.parent / "project.toml")
+    before = (made / "report.html").stat().st_mtime_ns
+    assert main(["design", project, "-o", str(made)]) == 2
+    assert "--force" in capsys.readouterr().err
+    assert (made / "report.html").stat().st_mtime_ns == before
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('"machine.toml"', '"none.toml"', "none.toml"),
+        ("X = [-150.0, 150.0]", "X = [150.0, -150.0]", "workspace.X"),
+        ("X = [-150.0, 150.0]", "Q = [-150.0, 150.0]", "workspace.Q"),
+        ("X = [-150.0, 150.0]", "X = [-900.0, 150.0]", "within the travel"),
+        ("patches = 8", "patches = 3", "standard.patches"),
+        ("noise_um = 1.0", "noise_um = nan", "simulation.noise_um"),
+        ("noise_um = 1.0", "noises = 1.0", "simulation.noises"),
+        ("# [errors.classes]", "[errors.classes]\nspeed = [1.0, 2.0]", "errors.classes.speed"),
+        ("# [errors.parameters]", "[errors.parameters]\nEQQ = [1.0, 2.0]", "EQQ"),
+        ("# [errors.parameters]", "[errors.parameters]\nEXX = [3.0, 2.0]", "smaller first"),
+        ("[simulation]", "[simulation", "TOML"),
+    ],
+)
+def test_bad_project(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, expected: str
+) -> None:
+    path = small_project(tmp_path)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    assert main(["design", str(path), "-o", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert expected in told
+    assert told.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:
+    path = small_project(tmp_path)
+    ranges = "[errors.classes]\nsquareness = [1.0, 2.0]\n[errors.parameters]\nEXX = [3.0, 4.0]\n"
+    path.write_text(path.read_text() + ranges)
+    project = read_project(path)
+    chain = project.chain
+    assert project.ranges.of(chain, chain.symbol("EXX")) == (3.0 * UM, 4.0 * UM)
+    assert project.ranges.of(chain, chain.symbol("EC0Y")) == (1.0 * URAD, 2.0 * URAD)
+    assert project.ranges.of(chain, chain.symbol("EYX")) == (50.0 * UM, 100.0 * UM)
+
+
+@pytest.mark.slow
+def test_tenfold_for_every_seed_tried(tmp_path: Path) -> None:
+    """The proof of the main job on ten random machines, probed by one design."""
+    out = tmp_path / "out"
+    assert main(["design", str(small_project(tmp_path, machines=10)), "-o", str(out)]) == 0
+    proof = json.loads((out / "identification.json").read_text())["volumetric_error"]
+    assert len(proof) == 10
+    assert min(machine["times_smaller"] for machine in proof) > 10.0
