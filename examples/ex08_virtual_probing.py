@@ -1,7 +1,6 @@
 """Virtual probing: a program run on the exact twin of a random machine, and what is learnt of it.
 
-The true ball meets the true surface, the control's log is read back, a model is fitted; the proof
-is at poses that nobody probed.
+The true ball meets the true surface, the log is read back; the proof is at poses nobody probed.
 """
 
 import tempfile
@@ -26,27 +25,29 @@ from twin.files.machine_file import read_machine
 from twin.touches import Setup
 from twin.units import DEG, UM
 
-HERE, NOISE = Path(__file__).parent, 1.0 * UM
-FACE = np.array([[0.0, 0.0], [14.0, 14.0], [-14.0, 14.0], [-14.0, -14.0], [14.0, -14.0]])  # mm
+MACHINE, NOISE = Path(__file__).with_name("hsm600u-machine.toml"), 1.0 * UM
+FACE = np.array([[0, 0], [14, 14], [-14, 14], [-14, -14], [14, -14]])  # mm
 BALL = np.array([[0, 90], [0, 30], [120, 30], [240, 30]]) * DEG  # azimuth, elevation
 POSES = [np.array(pose) * DEG for pose in product((-120, 0, 60, 180), (-70, -45, -20, 5))]
 
 
-def main():
-    made, setup, rng = standard(), Setup("a"), np.random.default_rng(8)
-    population = Population(read_machine(HERE / "hsm600u-machine.toml"))
+def probed(population, errors, rng):
+    made = standard()
     sets = [(p.name, FACE) for p in made.patches] + [(s.name, BALL) for s in made.spheres]
     each = [requests_at(made, *one, pose) for one in sets for pose in POSES]
     wanted = TouchRequests(*map(np.concatenate, zip(*map(astuple, each), strict=True)))
-    options = PlanOptions(tolerated=len(wanted))  # leave out what the probe cannot reach
-    plan = plan_touches(made, population.chain, Probe(), setup, wanted, options)
-    errors = drawn_errors(population, rng)
+    all_may_go = PlanOptions(tolerated=len(wanted))  # leave out what the probe cannot reach
+    plan = plan_touches(made, population.chain, Probe(), Setup("a"), wanted, all_may_go)
     machine = VirtualMachine(population.chain, lambda t: contribution(errors, t), noise=NOISE)
     with tempfile.TemporaryDirectory() as folder:
-        run = simulate(make_programs(plan).write(folder), made, machine, rng).run
-    fit = fit_run(run, population.model)
-    proof = prove(fit, errors, setup, probed_volume(run, 500, rng))
-    return {"run": run, "fit": fit, "proof": proof}
+        return simulate(make_programs(plan).write(folder), made, machine, rng).run
+
+
+def main():
+    rng, population = np.random.default_rng(8), Population(read_machine(MACHINE))
+    errors = drawn_errors(population, rng)
+    fit = fit_run(run := probed(population, errors, rng), population.model)
+    return {"fit": fit, "proof": prove(fit, errors, Setup("a"), probed_volume(run, 500, rng))}
 
 
 if __name__ == "__main__":
@@ -54,6 +55,6 @@ if __name__ == "__main__":
 
     from diagnosis.proof_picture import write_proof_picture
 
-    picture = HERE / "pictures" / "ex08.png"
-    write_proof_picture(picture, [main()["proof"]])
-    Image.open(picture).resize((840, 336)).save(picture)
+    path = MACHINE.parent / "pictures" / "ex08.png"
+    write_proof_picture(path, [main()["proof"]])
+    Image.open(path).resize((840, 336)).save(path)

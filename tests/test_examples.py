@@ -145,7 +145,7 @@ def test_08_the_residual_is_the_noise_less_what_the_fit_took() -> None:
     fit, proof = result["fit"], result["proof"]
     # A fit of k effective parameters to N touches of 1 um leaves sqrt(1 - k/N) um rms; over N - k
     # degrees of freedom that scatters by 1/sqrt(2 (N - k)), here 4 %: three times that is allowed.
-    n, k = len(result["run"]), fit.solution.effective_parameters
+    n, k = len(fit.run), fit.solution.effective_parameters
     expected = np.sqrt(1.0 - k / n)
     assert fit.rms * 1e3 == pytest.approx(expected, rel=3.0 / np.sqrt(2.0 * (n - k)))
     # The design's own promise: at least ten times less is left unpredicted at poses nobody probed.
