@@ -78,6 +78,11 @@ class Complement:
         return out
 
 
+def projected(complement: Complement, effects: Sequence[Effect]) -> Array:
+    """Projected, whitened, scaled columns of effects at their present tuning, (N + P, K)."""
+    return complement.project(complement.columns(effects))
+
+
 def tuned_variants(effect: Effect, touches: Touches) -> list[Effect]:
     """The effect at every point of the grid of its inner parameters."""
     if not isinstance(effect, Tunable):

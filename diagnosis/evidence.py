@@ -56,7 +56,10 @@ class EffectSet:
 
     def whiten(self, B: Array) -> Array:
         """``L^-1 A^T B``: (K, M) from columns (N + P, M), whatever their precision."""
-        inside = np.asarray(self.A.T.astype(B.dtype) @ B, dtype=float)
+        return self.lower_solve(np.asarray(self.A.T.astype(B.dtype) @ B, dtype=float))
+
+    def lower_solve(self, inside: Array) -> Array:
+        """``L^-1`` times inner products with the columns, (K, M)."""
         if len(inside) == 0:
             return inside
         return np.asarray(solve_triangular(self._factor, inside, lower=True, check_finite=False))
@@ -115,6 +118,29 @@ class EffectSet:
     def held_out_rms(self) -> float:
         """Root mean square of the standardised errors of held-out poses, in units of the noise."""
         return float(np.sqrt(np.mean(self.held_out.standardised**2)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reduced:
+    """Features freed of the model and of the effects, by inner products alone.
+
+    Attributes:
+        gram: With each other, (K, K).
+        along: With the residual, (K,).
+    """
+
+    gram: Array
+    along: Array
+
+
+def reduced(effects: EffectSet, F: Array) -> Reduced:
+    """Inner products of whitened features (N, K), with the model and the effects removed."""
+    complement = effects.complement
+    n = len(F)
+    B = complement.Q[:n].T @ F
+    E = effects.lower_solve(effects.A[:n].T @ F)
+    gram = F.T @ F - B.T @ B - E.T @ E
+    return Reduced(gram, F.T @ complement.residual[:n] - E.T @ effects.along)
 
 
 def log_evidence(complement: Complement, objective: Array | float, log_det: Array | float) -> Array:

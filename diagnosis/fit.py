@@ -22,6 +22,10 @@ PRIOR_EXCEEDED = 2.0
 """Mean squared parameter over its prior variance from which the machine is called worse than its
 stated distributions, and the prior is widened."""
 
+MIN_POSES = 4
+BLOCKS = 10
+"""With fewer table poses than that, held out are so many blocks of touches one after the other."""
+
 MIN_TOUCHES = 8
 """Fewer touches than this do not even place a standard and leave something to judge it by."""
 
@@ -117,10 +121,15 @@ class Fit:
 
     @cached_property
     def groups(self) -> tuple[NDArray[np.int64], ...]:
-        """Rows of the fit, by numbers within it, of every table pose in every set-up."""
+        """Rows of the fit, by numbers within it, of every table pose in every set-up.
+
+        With fewer than `MIN_POSES` poses blocks of touches in the order of probing instead.
+        """
         t = self.run.touches
         key = np.column_stack([t.setup, t.pose])[self.used]
         label = np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
+        if label.max() + 1 < MIN_POSES:
+            return tuple(np.array_split(np.arange(len(label)), min(BLOCKS, len(label))))
         return tuple(np.flatnonzero(label == k) for k in range(label.max() + 1))
 
     @cached_property

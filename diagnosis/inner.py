@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.effect import Effect, Inner, Parameter, Term, Tunable
 from twin.frames import Array
-from twin.model import Model
+from twin.model import Model, columns
 from twin.touches import Touches
 
 STEP = 0.02
@@ -88,8 +88,18 @@ def continuous_inner(effect: Effect, touches: Touches) -> list[tuple[int, Inner,
     return [(i, p, values[i]) for i, p in enumerate(inner) if p.continuous and len(p.grid) > 1]
 
 
+def is_smooth(effect: Tunable, index: int, step: float, touches: Touches) -> bool:
+    """Whether the columns change evenly with an inner parameter; an instant only makes jumps."""
+    slopes = []
+    for h in (step, 0.5 * step):
+        moved = [columns([shifted(effect, index, s * h)], touches) for s in (1.0, -1.0)]
+        slopes.append((moved[0] - moved[1]) / (2.0 * h))
+    size = float(np.linalg.norm(slopes[1]))
+    return size > 0.0 and float(np.linalg.norm(slopes[0] - slopes[1])) < 0.1 * size
+
+
 def tangents(model: Model, touches: Touches, theta: Array) -> list[Tangent]:
-    """Tangents of every continuous inner parameter in a model.
+    """Tangents of every inner parameter in a model with which its columns change smoothly.
 
     Args:
         model: Effects at their present inner parameters.
@@ -105,5 +115,7 @@ def tangents(model: Model, touches: Touches, theta: Array) -> list[Tangent]:
         for index, inner, value in continuous_inner(effect, touches):
             assert isinstance(effect, Tunable)
             step = STEP * spacing(inner, value)
+            if not is_smooth(effect, index, step, touches):
+                continue
             out.append(Tangent(effect, index, own, step, WIDE * spacing(inner, value)))
     return out

@@ -1,0 +1,112 @@
+"""Parameters of fitted effects as a user reads them: names with units, sizes, uncertainties."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.fit import Fit
+from twin.effect import Effect, Tunable
+from twin.frames import Array
+from twin.units import DEG, MINUTE, UM, URAD
+
+_HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
+_TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
+
+
+@dataclass(frozen=True, slots=True)
+class Reported:
+    """One number of an effect as it stands in a file.
+
+    Attributes:
+        name: With its unit: `amplitude_um`, `tau_min`.
+        value: In that unit.
+        u: Standard uncertainty, or None where the run gives none.
+        factor: One of that unit in the base unit.
+    """
+
+    name: str
+    value: float
+    u: float | None
+    factor: float
+
+
+def file_unit(unit: str) -> tuple[str, float]:
+    """Suffix of a linear parameter in files, and one of it in the base unit.
+
+    Example:
+        >>> file_unit("mm/K")
+        ('um_per_K', 0.001)
+    """
+    if unit == "1/K":
+        return "um_per_m_K", 1e-6
+    head, _, tail = unit.partition("/")
+    label, factor = _HEADS.get(head, (head, 1.0))
+    return label + (_TAILS.get(tail, f"_per_{tail}") if tail else ""), factor
+
+
+def inner_unit(name: str, unit: str) -> tuple[str, float]:
+    """Suffix of an inner parameter in files, and one of it in the base unit.
+
+    Example:
+        >>> inner_unit("tau", "s")
+        ('_min', 60.0)
+    """
+    if unit == "s":
+        return ("_min", MINUTE) if name.startswith("tau") else ("_s", 1.0)
+    return {"mm": ("_mm", 1.0), "rad": ("_deg", DEG)}.get(unit, ("", 1.0))
+
+
+def reported(fit: Fit, effect: Effect) -> tuple[Reported, ...]:
+    """Inner parameters, the size, and every linear parameter of a fitted effect.
+
+    Args:
+        fit: A fit with the effect, and with the tangents of its inner parameters where their
+            uncertainty is wanted.
+        effect: As it stands in the fit.
+    """
+    place = fit.of_effect(effect.name)
+    theta, covariance = fit.theta[place], fit.covariance[place, place]
+    out = list(_inner(fit, effect))
+    if len(theta) > 1:
+        out.append(size(effect, theta, covariance))
+    for i, parameter in enumerate(effect.parameters):
+        suffix, factor = file_unit(parameter.unit)
+        name = f"{parameter.name.replace(' ', '_')}_{suffix}"
+        u = float(np.sqrt(covariance[i, i]))
+        out.append(Reported(name, float(theta[i]) / factor, u / factor, factor))
+    return tuple(out)
+
+
+def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
+    """Length of those parameters that share the unit of the first, with its uncertainty.
+
+    Of a sine and a cosine it is the amplitude; of a displacement its length.
+    """
+    units = [p.unit for p in effect.parameters]
+    same = np.array([unit == units[0] for unit in units])
+    part = theta[same]
+    length = float(np.linalg.norm(part))
+    direction = part / max(length, 1e-300)
+    u = float(np.sqrt(max(direction @ covariance[np.ix_(same, same)] @ direction, 0.0)))
+    suffix, factor = file_unit(units[0])
+    return Reported(f"amplitude_{suffix}", length / factor, u / factor, factor)
+
+
+def _inner(fit: Fit, effect: Effect) -> Sequence[Reported]:
+    """Inner parameters with the uncertainty that their tangents give."""
+    if not isinstance(effect, Tunable):
+        return []
+    described = {p.name: p.unit for p in effect.inner(fit.run.touches)}
+    u = {
+        tangent.index: float(np.sqrt(np.diag(fit.covariance[place, place])[0]))
+        for tangent in fit.tangents
+        if tangent.effect.name == effect.name
+        for place in [fit.of_effect(tangent.name)]
+    }
+    out = []
+    for i, (name, value) in enumerate(effect.tuning.items()):
+        suffix, factor = inner_unit(name, described.get(name, "1"))
+        own = u[i] / factor if i in u else None
+        out.append(Reported(f"{name}{suffix}", value / factor, own, factor))
+    return out
