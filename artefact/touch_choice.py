@@ -119,7 +119,9 @@ def chosen_poses(
     aim: Criterion, standard: Standard, poses: Array, options: PlacementOptions
 ) -> Array:
     """Table poses whose touches tell most, (K, R)."""
-    tried = clear_touches(aim.probing, standard, touches_at(standard, poses, pitch=3))
+    tried = touches_at(standard, poses, pitch=3)
+    tried = tried[aim.probing.is_reachable(tried)]
+    tried = tried[aim.probing.has_room(standard, tried)]  # the way there is looked at later
     if not len(tried):
         raise NotReachable("the machine reaches no touch on the standard at any table pose")
     seen, group = np.unique(np.round(tried.rotary, 9), axis=0, return_inverse=True)

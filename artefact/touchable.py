@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from artefact.body import Plate
-from artefact.clearance import ProbeShape
+from artefact.clearance import ProbeShape, clearance
 from artefact.patch import Meeting
 from artefact.standard import Standard
 from twin.chain import Chain
 from twin.frames import Array, apply, inverse, turn
-from twin.kinematics import inverse_linear, linear_directions, table_to_tool, tip
+from twin.kinematics import inverse_linear, linear_directions, table_to_tool
 from twin.touches import IntArray, Labels, Setup, Touches, linear_approach
 from twin.units import DEG
 
@@ -90,12 +90,44 @@ class Probing:
         return self.shape.ball_radius
 
     def readings(self, wanted: Requests, gap: float = 0.0) -> Array:
-        """Axis readings with the ball this far off the surface along the normal, (N, A)."""
-        chain = self.chain
+        """Axis readings with the ball this far off the surface along the normal, (N, A).
+
+        At fixed rotary readings the tip is an affine function of the linear ones, so kinematics is
+        done once a table pose and not once a touch.
+
+        Raises:
+            NotReachable: The machine has not three independent linear axes at some pose.
+        """
+        chain, stands = self.chain, self._stands(wanted)
+        rotary = [chain.axis_index(name) for name in chain.rotary_axes]
         q = np.zeros((len(wanted), len(chain.axes)))
-        q[:, [chain.axis_index(name) for name in chain.rotary_axes]] = wanted.rotary
+        q[:, rotary] = wanted.rotary
         ball = wanted.point + (self.radius + gap) * wanted.normal
-        return inverse_linear(chain, apply(self.setup.T_table_artefact, ball), q, self.length)
+        target = apply(self.setup.T_table_artefact, ball)
+        i = stands.index
+        way = (target - stands.tip[i])[..., None]
+        linear = [chain.axis_index(name) for name in chain.linear_axes]
+        q[:, linear] = stands.q[i][:, linear] + (stands.inverse[i] @ way)[..., 0]
+        return q
+
+    def _stands(self, wanted: Requests) -> "_Stands":
+        """The table poses of touches, with all that depends on the pose alone."""
+        chain = self.chain
+        poses, index = np.unique(wanted.rotary, axis=0, return_inverse=True)
+        q = np.zeros((len(poses), len(chain.axes)))
+        q[:, [chain.axis_index(name) for name in chain.rotary_axes]] = poses
+        target = np.tile(self.setup.T_table_artefact[:3, 3], (len(poses), 1))
+        q = inverse_linear(chain, target, q, self.length)
+        along = linear_directions(chain, q)
+        unit = np.broadcast_to(np.eye(3), along.shape)
+        return _Stands(
+            index=index.reshape(-1),
+            q=q,
+            tip=target,
+            inverse=np.asarray(np.linalg.solve(along, unit), dtype=np.float64),
+            T_table_tool=table_to_tool(chain, q),
+            along=along,
+        )
 
     def touches(self, wanted: Requests) -> Touches:
         """The touches as a record that effects understand."""
@@ -118,15 +150,12 @@ class Probing:
 
     def is_reachable(self, wanted: Requests) -> Mask:
         """Touches within the angle to the tool axis and within every travel, (N,)."""
-        contact = self.readings(wanted)
-        axis = table_to_tool(self.chain, contact)[:, :3, 2]
+        stands = self._stands(wanted)
+        axis = stands.T_table_tool[stands.index, :3, 2]
         n = turn(self.setup.T_table_artefact, wanted.normal)
         good: Mask = np.einsum("ni,ni->n", axis, n) >= np.cos(self.steepest)
-        for q in (
-            contact,
-            self.readings(wanted, self.standoff),
-            self.readings(wanted, -self.search),
-        ):
+        for gap in (self.standoff, 0.0, -self.search):
+            q = self.readings(wanted, gap)
             for i, name in enumerate(self.chain.axes):
                 low, high = self.chain.link(name).range
                 good &= (q[:, i] >= low) & (q[:, i] <= high)
@@ -134,23 +163,31 @@ class Probing:
 
     def is_clear(self, standard: Standard, wanted: Requests) -> Mask:
         """Touches with room for the probe, a free way down and nothing in front of them, (N,)."""
-        good = np.ones(len(wanted), dtype=bool)
-        for check in (self._has_room, self._way_is_free):
-            rows = np.flatnonzero(good)
-            good[rows] = check(standard, wanted[rows])
+        good = self.has_room(standard, wanted)
+        rows = np.flatnonzero(good)
+        good[rows] = self.has_room(standard, wanted[rows], self.standoff)
+        rows = np.flatnonzero(good)
+        good[rows] = self._way_is_free(standard, wanted[rows])
         return good
 
-    def _has_room(self, standard: Standard, wanted: Requests) -> Mask:
+    def has_room(self, standard: Standard, wanted: Requests, gap: float = 0.0) -> Mask:
+        """Touches at which nothing comes near the probe above its ball, (N,).
+
+        Args:
+            standard: What is touched.
+            wanted: The touches.
+            gap: Between ball and surface, mm.
+        """
         T_artefact_table = inverse(self.setup.T_table_artefact)
-        good = np.ones(len(wanted), dtype=bool)
-        for gap in (0.0, self.standoff):
-            rows = np.flatnonzero(good)
-            q = self.readings(wanted[rows], gap)
-            T_table_tool = table_to_tool(self.chain, q)
-            centre = tip(self.chain, q, self.length)
-            axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
-            above = standard.clearance(apply(T_artefact_table, centre), axis, self.shape)
-            good[rows] = (above.distance >= self.room) & self._is_above_table(T_table_tool, centre)
+        stands = self._stands(wanted)
+        T_table_tool = stands.T_table_tool[stands.index]
+        ball = wanted.point + (self.radius + gap) * wanted.normal
+        axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
+        above = clearance(standard, ball, axis, self.shape, enough=self.room)
+        good: Mask = above.distance >= self.room
+        rows = np.flatnonzero(good)
+        centre = apply(self.setup.T_table_artefact, ball[rows])
+        good[rows] = self._is_above_table(T_table_tool[rows], centre)
         return good
 
     def _is_above_table(self, T_table_tool: Array, centre: Array) -> Mask:
@@ -171,9 +208,8 @@ class Probing:
     def _way_is_free(self, standard: Standard, wanted: Requests) -> Mask:
         """The ball meets nothing on its way down, and first the wanted feature on its way in."""
         T_artefact_table = inverse(self.setup.T_table_artefact)
-        q = self.readings(wanted, self.standoff)
-        start = apply(T_artefact_table, tip(self.chain, q, self.length))
-        up = turn(T_artefact_table, self._retreat(q))
+        start = wanted.point + (self.radius + self.standoff) * wanted.normal
+        up = turn(T_artefact_table, self._retreat(wanted))
         down = standard.contact(start + _LIFT * up, -up, self.radius + _WIDER, _LIFT)
         good: Mask = down.meeting == Meeting.NOTHING
         rows = np.flatnonzero(good)
@@ -182,7 +218,7 @@ class Probing:
         good[rows] = met.is_surface & (met.feature == wanted.feature[rows])
         return good
 
-    def _retreat(self, q: Array) -> Array:
+    def _retreat(self, wanted: Requests) -> Array:
         """Direction in which the tool withdraws, table frame, (N, 3).
 
         The linear axis that runs most nearly along the tool with every axis at zero, as programs
@@ -192,5 +228,27 @@ class Probing:
         zero = np.zeros((1, len(chain.axes)))
         along = linear_directions(chain, zero)[0].T @ table_to_tool(chain, zero)[0, :3, 2]
         best = int(np.argmax(np.abs(along)))
-        up: Array = np.sign(along[best]) * linear_directions(chain, q)[:, :, best]
+        stands = self._stands(wanted)
+        up: Array = np.sign(along[best]) * stands.along[stands.index, :, best]
         return up
+
+
+@dataclass(frozen=True, eq=False)
+class _Stands:
+    """K table poses that N touches are made at.
+
+    Attributes:
+        index: Pose of every touch, (N,).
+        q: Readings that bring the tip to one point, (K, A).
+        tip: That point, table frame, (K, 3), mm.
+        inverse: Linear readings per motion of the tip, (K, 3, 3).
+        T_table_tool: Pose of the tool, of which only the rotation depends on the pose alone.
+        along: Motion of the tip per unit of each linear axis, (K, 3, 3).
+    """
+
+    index: IntArray
+    q: Array
+    tip: Array
+    inverse: Array
+    T_table_tool: Array
+    along: Array

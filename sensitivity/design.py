@@ -268,14 +268,21 @@ class _Groups:
         gain /= 1.0 + np.einsum("nr,nr->n", reach, self.W)
         free = np.all(fits[chosen], axis=0) if chosen else np.ones(self.count, dtype=bool)
         free[chosen] = False
-        best: int | None = None
-        most, brought = -np.inf, self.start
+        top: dict[int, IntArray] = {}
+        hoped = np.full(self.count, -np.inf)
         for k in np.flatnonzero(free & (np.diff(self.edges) > 0)).tolist():
             rows = np.arange(self.edges[k], self.edges[k + 1])
-            top = rows[np.argsort(-gain[rows], kind="stable")[: self.take]]
-            drop = self._drop(reach[top], self.W[top])
+            top[k] = rows[np.argsort(-gain[rows], kind="stable")[: self.take]]
+            hoped[k] = gain[top[k]].sum()
+        best: int | None = None
+        most, brought = -np.inf, self.start
+        # like rows bring less together than one by one, so that most groups need no look
+        for k in np.argsort(-hoped, kind="stable").tolist():
+            if hoped[k] <= most or k not in top:
+                break
+            drop = self._drop(reach[top[k]], self.W[top[k]])
             if drop > most:
-                best, most, brought = k, drop, self.W[top].T @ self.W[top]
+                best, most, brought = k, drop, self.W[top[k]].T @ self.W[top[k]]
         if best is not None:
             self.brought[best] = brought
         return best
