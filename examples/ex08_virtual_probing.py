@@ -5,6 +5,7 @@ The true ball meets the true surface, the log is read back; the proof is at pose
 
 import tempfile
 from dataclasses import astuple
+from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from ex06_step import standard
 
 from diagnosis.fit import fit_run
 from diagnosis.proof import probed_volume, prove
+from diagnosis.proof_picture import write_proof_picture
 from probe_paths.campaign import simulate
 from probe_paths.contacts import VirtualMachine
 from probe_paths.plan import PlanOptions, TouchRequests, requests_at
@@ -28,17 +30,18 @@ from twin.units import DEG, UM
 MACHINE, NOISE = Path(__file__).with_name("hsm600u-machine.toml"), 1.0 * UM
 FACE = np.array([[0, 0], [14, 14], [-14, 14], [-14, -14], [14, -14]])  # mm
 BALL = np.array([[0, 90], [0, 30], [120, 30], [240, 30]]) * DEG  # azimuth, elevation
-POSES = [np.array(pose) * DEG for pose in product((-120, 0, 60, 180), (-70, -45, -20, 5))]
+C_DEG, B_DEG = (-120, 0, 60, 180), (-70, -45, -20, 5)
 
 
-def probed(population, errors, rng):
-    made = standard()
+def probed(population, errors, rng, noise=NOISE, **true):
+    made, rotary = standard(), [np.array(p) * DEG for p in product(C_DEG, B_DEG)]
     sets = [(p.name, FACE) for p in made.patches] + [(s.name, BALL) for s in made.spheres]
-    each = [requests_at(made, *one, pose) for one in sets for pose in POSES]
+    each = [requests_at(made, *one, pose) for one in sets for pose in rotary]
     wanted = TouchRequests(*map(np.concatenate, zip(*map(astuple, each), strict=True)))
-    all_may_go = PlanOptions(tolerated=len(wanted))  # leave out what the probe cannot reach
-    plan = plan_touches(made, population.chain, Probe(), Setup("a"), wanted, all_may_go)
-    machine = VirtualMachine(population.chain, lambda t: contribution(errors, t), noise=NOISE)
+    options = PlanOptions(tolerated=len(wanted))  # leave out what the probe cannot reach
+    plan = plan_touches(made, population.chain, Probe(), Setup("a"), wanted, options)
+    caused = partial(contribution, errors)  # by all effects, at any touches
+    machine = VirtualMachine(population.chain, caused, noise=noise, **true)
     with tempfile.TemporaryDirectory() as folder:
         return simulate(make_programs(plan).write(folder), made, machine, rng).run
 
@@ -53,8 +56,5 @@ def main():
 if __name__ == "__main__":
     from PIL import Image
 
-    from diagnosis.proof_picture import write_proof_picture
-
-    path = MACHINE.parent / "pictures" / "ex08.png"
-    write_proof_picture(path, [main()["proof"]])
+    write_proof_picture(path := MACHINE.parent / "pictures" / "ex08.png", [main()["proof"]])
     Image.open(path).resize((840, 336)).save(path)
