@@ -1,8 +1,8 @@
 """Chooses patches, table poses and touches by what they tell of the machine.
 
 Candidate sites with random shapes stand all over the blank; every touch that could be made on them
-at some table poses is a row ``n^T J`` times the shape functions of the ordinary error model. Sites,
-then poses, then single touches are chosen so that the tool point can be predicted best over the
+at some table poses is a row ``n^T J`` times the shape functions of the expected errors. Sites, then
+poses, then single touches are chosen so that the tool point can be predicted best over the
 user's poses (`sensitivity.design`), and the finished body is measured against every limit.
 """
 
@@ -32,10 +32,10 @@ from artefact.touchable import Probing, Requests, joined
 from sensitivity.blocks import Progress, silent
 from sensitivity.design import best_groups
 from sensitivity.information import Identifiability, identifiability, whitened
+from sensitivity.sampling import Population
 from sensitivity.workspace import Workspace
 from twin.errors import NotBuildable
 from twin.frames import Array
-from twin.ordinary import ordinary_model
 from twin.ranges import Ranges
 
 __all__ = ["Placement", "PlacementOptions", "place"]
@@ -96,7 +96,7 @@ def place(
         NotReachable: The machine reaches too few touches on the standard.
     """
     options = options or PlacementOptions()
-    model = ordinary_model(probing.chain, ranges)
+    model = Population(probing.chain, ranges or Ranges()).model
     aim = criterion(probing, model, frame, workspace, options.noise, rng)
     progress("placement", 1, 6)
     all_poses = table_poses(aim, options.poses)

@@ -21,6 +21,7 @@ _SPAN = 5.0
 """The histogram of |d| at a pose reaches to this multiple of its root mean square. A sum of many
 independent errors exceeds it in less than one case of a million, and then sits in the last bin."""
 _POSES_A_BLOCK = 128
+_NOTHING = 1e-12  # mm: scale of the histogram where no machine has an error
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +132,7 @@ class _Tally:
 
     def __init__(self, scale: Array, reference: int) -> None:
         n = len(scale)
-        self.width = np.where(scale > 0.0, scale, 1.0) * (_SPAN / _BINS)
+        self.width = np.maximum(scale, _NOTHING) * (_SPAN / _BINS)
         self.count = 0
         self.sum, self.squares, self.worst = np.zeros(n), np.zeros(n), np.zeros(n)
         self.histogram = np.zeros((n, _BINS), dtype=np.int32)

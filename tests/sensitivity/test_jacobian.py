@@ -1,0 +1,86 @@
+"""S of every parameter against lever arms worked out by hand and against the exact product."""
+
+import numpy as np
+import pytest
+
+from sensitivity.jacobian import jacobian, sensitivity
+from sensitivity.workspace import latin_hypercube
+from twin.effect import Contribution
+from twin.kinematics import exact_tip
+from twin.symbols import Family
+from twin.units import DEG, NM
+
+LENGTH = 160.0
+RELATIVE = 1e-6
+STEP = {False: 0.1, True: 1e-4}  # mm, rad
+
+
+def readings(chain, **given):
+    q = np.zeros((1, len(chain.axes)))
+    for name, value in given.items():
+        q[0, chain.axis_index(name)] = value * (1.0 if chain.link(name).kind == "linear" else DEG)
+    return q
+
+
+def test_every_parameter_against_central_differences(chain, workspace):
+    q = latin_hypercube(workspace, 12, np.random.default_rng(4))
+    J = jacobian(chain, q, LENGTH)
+    assert J.shape == (12, 71, 3)
+    for p, symbol in enumerate(chain.symbols):
+        h = STEP[symbol.is_angular]
+        moved = []
+        for size in (h, -h):
+            added = Contribution.zeros(12, len(chain.links))
+            part = added.twist if symbol.family is Family.COMPONENT else added.place
+            part[:, chain.link_index(symbol.link), symbol.component] = size
+            moved.append(exact_tip(chain, q, LENGTH, added))
+        difference = (moved[0] - moved[1]) / (2.0 * h)
+        scale = max(float(np.abs(J[:, p]).max()), 1.0)
+        assert np.abs(difference - J[:, p]).max() < RELATIVE * scale, symbol.name
+
+
+def test_a_translation_counts_once_everywhere(chain, workspace):
+    q = latin_hypercube(workspace, 200, np.random.default_rng(1))
+    S = sensitivity(chain, q, LENGTH)
+    for p, symbol in enumerate(chain.symbols):
+        if not symbol.is_angular and symbol.family is Family.COMPONENT:
+            np.testing.assert_allclose(S[:, p], 1.0, rtol=0, atol=1e-12, err_msg=symbol.name)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        # the arm of X' is (100, 50, -360): an angle counts with the distance from its own axis
+        ("EAX", np.hypot(50.0, 360.0)),
+        ("EBX", np.hypot(100.0, 360.0)),
+        ("ECX", np.hypot(100.0, 50.0)),
+        ("EBB", np.hypot(100.0, 60.0)),  # B's line is 420 mm below the spindle's gauge line
+        ("EAY", 360.0),
+        ("ECY", 0.0),
+        ("EC0Y", 50.0),  # squareness: the travel alone
+        ("EC0X", 100.0),
+        ("EA0Z", 200.0),
+        ("EX0C", 0.0),  # at C = 0 nothing has turned
+        ("EB0t", 160.0),
+        ("EC0w", np.hypot(100.0, 50.0)),
+    ],
+)
+def test_angles_count_with_their_lever_arm(chain, name, expected):
+    q = readings(chain, X=100, Y=50, Z=-200)
+    S = sensitivity(chain, q, LENGTH, [chain.symbol(name)])
+    assert S[0, 0] == pytest.approx(expected, abs=NM)
+
+
+def test_displaced_line_of_a_rotary_axis_counts_twice_at_half_a_turn(chain):
+    S = sensitivity(chain, readings(chain, C=180), LENGTH, [chain.symbol("EX0C")])
+    assert S[0, 0] == pytest.approx(2.0, abs=1e-12)
+
+
+def test_blocks_and_selections_change_nothing(chain, workspace, monkeypatch):
+    q = latin_hypercube(workspace, 50, np.random.default_rng(2))
+    length = np.linspace(100.0, 200.0, 50)
+    whole = jacobian(chain, q, length)
+    monkeypatch.setattr("sensitivity.jacobian._POSES_A_BLOCK", 7)
+    np.testing.assert_array_equal(jacobian(chain, q, length), whole)
+    some = [chain.symbols[i] for i in (70, 3, 40)]
+    np.testing.assert_array_equal(jacobian(chain, q, length, some), whole[:, [70, 3, 40]])

@@ -1,0 +1,103 @@
+"""Drawn machines: within their ranges, reproducible, and the same as effect and as vector."""
+
+import numpy as np
+import pytest
+
+from sensitivity.sampling import (
+    DRAWS_A_CHILD,
+    Distributions,
+    Population,
+    coefficients,
+    draw,
+    drawn_errors,
+    drawn_in_chunks,
+)
+from sensitivity.workspace import latin_hypercube
+from twin.effect import contribution
+from twin.effects.geometric import ComponentError
+from twin.effects.location import LocationError
+from twin.errors import DesignError
+from twin.files.error_file import errors_toml, read_errors
+from twin.ordinary import ordinary_model
+from twin.ranges import Ranges
+from twin.touches import at_poses
+
+MANY = Distributions(periods=(1, 2, 3))
+
+
+def test_amplitudes_signs_and_shapes_are_drawn_evenly(chain):
+    population = Population(chain, distributions=MANY)
+    draws = draw(population, 4000, np.random.default_rng(3))
+    for p, symbol in enumerate(chain.symbols):
+        low, high = population.ranges.of(chain, symbol)
+        size = np.abs(draws.amplitude[:, p])
+        assert low <= size.min()
+        assert size.max() <= high
+    # standard errors of a mean over 4000 x 71 draws: 0.002 and less
+    assert np.mean(draws.amplitude > 0.0) == pytest.approx(0.5, abs=0.01)
+    on_x = next(p for p, s in enumerate(chain.symbols) if s.name == "EXX")
+    assert np.bincount(draws.shape[:, on_x]) / 4000 == pytest.approx([1 / 3] * 3, abs=0.04)
+    assert np.bincount(draws.periods[:, on_x])[1:] / 4000 == pytest.approx([1 / 3] * 3, abs=0.04)
+    assert np.mean(np.exp(1j * draws.phase)) == pytest.approx(0.0, abs=0.01)
+
+
+def test_constants_stay_constants(chain):
+    population = Population(chain)
+    assert population.shapes_of(chain.symbol("EC0Y")) == ("constant",)
+    assert population.shapes_of(chain.symbol("EXC1")) == ("constant",)
+    assert population.shapes_of(chain.symbol("EXC")) == ("linear", "parabolic", "sinusoidal")
+
+
+def test_a_drawn_machine_is_the_same_as_effects_and_as_vector(chain, workspace):
+    population = Population(chain, distributions=MANY)
+    touches = at_poses(chain, latin_hypercube(workspace, 30, np.random.default_rng(1)), 160.0)
+    for seed in range(5):
+        theta = coefficients(population, draw(population, 1, np.random.default_rng(seed)))[0]
+        errors = drawn_errors(population, np.random.default_rng(seed))
+        assert len(errors) == 71
+        by_effects = contribution(errors, touches)
+        by_vector = population.model.contribution(touches, theta)
+        np.testing.assert_allclose(by_vector.twist, by_effects.twist, rtol=0, atol=1e-15)
+        np.testing.assert_allclose(by_vector.place, by_effects.place, rtol=0, atol=1e-15)
+        assert np.abs(by_effects.twist).max() > 0.01  # mm: something was drawn
+
+
+def test_the_ordinary_model_is_part_of_the_population(chain):
+    assert set(ordinary_model(chain).names) < set(Population(chain).model.names)
+
+
+def test_a_drawn_machine_comes_back_from_an_error_file(chain, tmp_path):
+    errors = drawn_errors(Population(chain, distributions=MANY), np.random.default_rng(6))
+    path = tmp_path / "errors.toml"
+    path.write_text(errors_toml(errors), encoding="utf-8")
+    for (effect, theta), (again, theta_again) in zip(errors, read_errors(path, chain), strict=True):
+        assert type(effect) is type(again)
+        assert isinstance(effect, ComponentError | LocationError)
+        assert effect.symbol == again.symbol
+        np.testing.assert_allclose(theta_again, theta, rtol=1e-12)
+
+
+def test_the_first_machines_do_not_depend_on_how_many_are_drawn(chain):
+    population = Population(chain)
+    few = next(iter(drawn_in_chunks(population, DRAWS_A_CHILD, np.random.default_rng(5))))
+    many = list(drawn_in_chunks(population, 3 * DRAWS_A_CHILD + 7, np.random.default_rng(5)))
+    assert [len(lot) for lot in many] == [DRAWS_A_CHILD] * 3 + [7]
+    np.testing.assert_array_equal(few.amplitude, many[0].amplitude)
+    assert not np.array_equal(many[0].amplitude, many[1].amplitude)
+
+
+def test_ranges_by_name_go_first(chain):
+    ranges = Ranges(by_name={"EXX": (0.2, 0.2), "EYX": (0.0, 0.0)})
+    draws = draw(Population(chain, ranges), 10, np.random.default_rng(1))
+    names = [s.name for s in chain.symbols]
+    np.testing.assert_array_equal(np.abs(draws.amplitude[:, names.index("EXX")]), 0.2)
+    np.testing.assert_array_equal(draws.amplitude[:, names.index("EYX")], 0.0)
+
+
+def test_distributions_that_cannot_be_drawn_are_refused():
+    with pytest.raises(DesignError, match="expected at least one of"):
+        Distributions(shapes=())
+    with pytest.raises(DesignError, match="cubic"):
+        Distributions(shapes=("cubic",))
+    with pytest.raises(DesignError, match="periods"):
+        Distributions(periods=(0,))
