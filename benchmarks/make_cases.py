@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
 
 from simulator_case import simulate_case  # noqa: E402  (found through the path above)
-from simulator_effects import draw, draw_unknown  # noqa: E402
+from simulator_draw import draw, draw_unknown  # noqa: E402
 from simulator_experiment import MACHINES  # noqa: E402
 
 MACHINE_WEIGHTS = (0.6, 0.2, 0.2)

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import simulator_effects as effects
 from simulator import probe, run_text
+from simulator_draw import random_direction, random_wave
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment, random_noise
 
 from twin.effect import Tunable
@@ -37,21 +38,30 @@ def named(rng, machine, name):
             return effects.harmonic(arguments[0], int(rng.integers(2, 5)), turn)
         return effects.periodic(arguments[0], float(rng.choice([4.0, 5.0, 8.0, 10.0, 12.0])), turn)
     if word == "thermal-lag":
-        make = effects.warm_up if len(arguments) == 1 else effects.after_speed
-        return make(arguments[0], minutes)
+        if len(arguments) == 1:
+            return effects.warm_up(arguments[0], minutes)
+        if arguments[1] == "spindle_rpm":
+            return effects.after_speed(arguments[0], minutes)
+        return effects.after_sensor(*arguments, minutes)
+    if word == "gravity":
+        if len(arguments) == 2:
+            return effects.load_off_centre(*arguments, turn)
+        axis = arguments[0][2:]
+        turns = machine.axis(axis).rotary
+        return effects.tilting_weight(axis) if turns else effects.sagging_ram(arguments[0])
     simple = {
         "coupling": lambda: effects.coupling(*arguments),
         "backlash": lambda: effects.backlash(*arguments),
         "thermal-expansion": lambda: effects.scale_growth(*arguments),
-        "gravity": lambda: effects.tilting_weight(arguments[0][2:]),
+        "geometric": lambda: effects.quartic(arguments[0]),
         "artefact-expansion": lambda: effects.growth_of_standard(*arguments),
         "artefact-slip": lambda: effects.slip(
-            float(rng.uniform(0.15, 0.85)), effects.random_direction(rng)
+            float(rng.uniform(0.15, 0.85)), random_direction(rng)
         ),
         "artefact-form": lambda: effects.form_of_pad(
-            int(arguments[0].removeprefix("pad")), effects.random_wave(rng)
+            int(arguments[0].removeprefix("pad")), random_wave(rng)
         ),
-        "drift": lambda: effects.drift(effects.random_direction(rng)),
+        "drift": lambda: effects.drift(random_direction(rng)),
         "probe-lobing": lambda: effects.lobes(int(rng.integers(2, 6)), turn),
         "probe-radius": effects.ball_too_large,
         "stylus-bending": effects.bending_stylus,
@@ -169,7 +179,8 @@ def simulate_case(
     ordinary = Ordinary(run.touches)
     chosen, told = [], []
     for wanted in hidden:
-        effect, truth = place_one(rng, e, wanted, ordinary, sd, signal_to_noise, keep_weak)
+        taken = [c.name for c in chosen]
+        effect, truth = place_one(rng, e, wanted, ordinary, sd, signal_to_noise, keep_weak, taken)
         if with_alike and effect.kind != "unknown":
             ranked = ordinary.alike(truth.pop("signature"), effect.name)
             truth["alike"] = [r for r in ranked if r[0] > ALIKE]
@@ -196,7 +207,7 @@ def simulate_case(
     )
 
 
-def place_one(rng, e, wanted, ordinary, noise, visibility, keep_weak):
+def place_one(rng, e, wanted, ordinary, noise, visibility, keep_weak, taken):
     """Effect with an amplitude that gives it the wanted visibility, and the truth about it."""
     for _ in range(50):
         effect = wanted
@@ -204,6 +215,8 @@ def place_one(rng, e, wanted, ordinary, noise, visibility, keep_weak):
             effect = named(rng, e.machine, wanted)
         elif callable(wanted):
             effect = wanted(rng, e.machine)
+            if effect.name in taken:
+                continue
         given = effect.amplitude
         per_unit, signature = visible_size(e, effect, ordinary, noise)
         effect.amplitude = given or min(

@@ -1,4 +1,4 @@
-"""Hidden effects of the simulator, each by its own formula, and the drawing of random ones.
+"""Hidden effects of the simulator, each by its own formula.
 
 An effect is a function of the state of all touches that returns what it adds: component errors by
 name (mm, rad), a shift of the standard, a growth of the standard, a bias of the trigger; the form
@@ -144,6 +144,58 @@ def after_speed(component, minutes):
     return Hidden(f"thermal-lag({component},spindle_rpm)", "thermal-lag-driven", act, inner)
 
 
+def after_sensor(component, sensor, minutes):
+    """A body that follows a sensor, in balance with it at first: small steps in between."""
+
+    def act(s, a):
+        t, warm = s.time, s.temperature[sensor] - 20.0
+        level, out, steps = warm[0], np.zeros(len(s)), 50
+        out[0] = level
+        for i in range(1, len(s)):
+            for k in range(steps):
+                drive = warm[i - 1] + (warm[i] - warm[i - 1]) * (k + 0.5) / steps
+                level += (drive - level) * (t[i] - t[i - 1]) / steps / (60.0 * minutes)
+            out[i] = level
+        return {component: a * unit_of(component) * out}
+
+    inner = {"axis": component[2:], "component": component, "tau_min": minutes}
+    return Hidden(f"thermal-lag({component},{sensor})", "thermal-lag", act, inner)
+
+
+def sagging_ram(component):
+    """A ram under its own weight, the more the further it is out (towards smaller readings)."""
+    axis = component[2:]
+
+    def act(s, a):
+        body = s.machine.axis(axis)
+        out = (body.high - s.q[axis]) / (body.high - body.low)
+        return {component: a * unit_of(component) * out**3}
+
+    inner = {"axis": axis, "component": component}
+    return Hidden(f"gravity({component})", "gravity", act, inner)
+
+
+def load_off_centre(component, table, phase):
+    def act(s, a):
+        moment = np.sin(s.q[component[2:]]) * np.cos(s.q[table] - phase)
+        return {component: a * unit_of(component) * moment}
+
+    inner = {"axis": component[2:], "component": component}
+    return Hidden(f"gravity({component},{table})", "gravity", act, inner)
+
+
+def quartic(component):
+    """A component error that swings twice over the travel: 8 u^4 - 8 u^2 + 1."""
+    axis = component[2:]
+
+    def act(s, a):
+        u = s.machine.axis(axis).u(s.q[axis])
+        return {component: a * unit_of(component) * (8.0 * u**4 - 8.0 * u**2 + 1.0)}
+
+    inner = {"axis": axis, "component": component}
+    return Hidden(f"geometric({component},4)", "geometric", act, inner)
+
+
 def tilting_weight(axis):
     component = f"E{axis[0]}{axis}"
 
@@ -235,70 +287,3 @@ def chiller(period, phase):
         return {"EXX": a * SMALL * tooth}
 
     return Hidden("?chiller", "unknown", act, {"depends_on": ["time_s"]})
-
-
-def random_direction(rng):
-    v = rng.normal(size=3)
-    return v / np.linalg.norm(v)
-
-
-def draw(rng, machine, hard, pads=11):
-    """One random effect of a kind that this machine can have; harder cases know more kinds."""
-    kinds = ["coupling", "backlash", "periodic", "expansion", "lag", "standard", "slip", "lobes"]
-    kinds += ["radius"] + (["gravity", "harmonic"] if machine.rotary else [])
-    if hard:
-        kinds += ["speed", "drift", "stylus", "form"]
-    kind = str(rng.choice(kinds))
-    axes = machine.programmed
-    turn = rng.uniform(0.0, 2.0 * np.pi)
-    minutes = rng.uniform(10.0, 40.0)
-    if kind == "coupling":
-        own, other = rng.choice(axes, 2, replace=False)
-        return coupling(f"E{rng.choice(list('ABC'))}{own}", str(other))
-    if kind == "backlash":
-        return backlash(str(rng.choice(axes)))
-    if kind == "periodic":
-        axis = str(rng.choice(machine.linear))
-        return periodic(
-            f"E{axis}{axis}", float(rng.choice([4.0, 5.0, 8.0, 10.0, 12.0, 16.0])), turn
-        )
-    if kind == "harmonic":
-        axis = str(rng.choice(machine.rotary))
-        return harmonic(f"E{rng.choice(list('XYZABC'))}{axis}", int(rng.integers(2, 5)), turn)
-    if kind == "expansion":
-        axis = str(rng.choice(machine.linear))
-        return scale_growth(axis, f"scale{axis}")
-    if kind in ("lag", "speed"):
-        letters = "XYZ" if rng.uniform() < 0.7 else "ABC"
-        component = f"E{rng.choice(list(letters))}{rng.choice(axes)}"
-        return (warm_up if kind == "lag" else after_speed)(component, float(minutes))
-    if kind == "gravity":
-        tilting = [a for a in machine.rotary if a[0] in "AB"]
-        return tilting_weight(str(rng.choice(tilting)))
-    simple = {
-        "standard": lambda: growth_of_standard("artefact"),
-        "slip": lambda: slip(float(rng.uniform(0.15, 0.85)), random_direction(rng)),
-        "lobes": lambda: lobes(int(rng.integers(2, 6)), turn),
-        "radius": ball_too_large,
-        "drift": lambda: drift(random_direction(rng)),
-        "stylus": bending_stylus,
-        "form": lambda: form_of_pad(int(rng.integers(pads)), random_wave(rng)),
-    }
-    return simple[kind]()
-
-
-def random_wave(rng):
-    k, m = 2.0 * np.pi / rng.uniform(38.0, 60.0, 2)
-    f, g = rng.uniform(0.0, 2.0 * np.pi, 2)
-    return np.array([1.0, k, f, m, g])
-
-
-def draw_unknown(rng):
-    """One random effect from outside any library."""
-    turn = rng.uniform(0.0, 2.0 * np.pi)
-    which = rng.integers(3)
-    if which == 0:
-        return cable(rng.uniform(-60.0, 60.0), rng.uniform(20.0, 50.0), rng.uniform(-60.0, 30.0))
-    if which == 1:
-        return pump(rng.uniform(300.0, 1500.0), turn)
-    return chiller(rng.uniform(400.0, 1500.0), rng.uniform())
