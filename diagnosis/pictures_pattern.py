@@ -1,0 +1,104 @@
+"""Picture of a pattern without a name: a residual over one or two variables, beside pure chance."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.fit import Fit
+from diagnosis.ink import BLUE, DIVERGING, INK, SOFT, new_figure, plain, robust_limit, save
+from diagnosis.partial import SEES
+from diagnosis.patterns import directions, groups, variables
+from diagnosis.pictures_residuals import binned, kept
+from diagnosis.structure import Structure
+from twin.frames import Array
+from twin.units import UM
+
+NEIGHBOURS = 14
+"""Touches over which a map of two variables is averaged."""
+
+BINS = 24
+
+
+def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Generator) -> bool:
+    """What a residual does over the variables of a pattern, and the same residual shuffled.
+
+    The second half is what the first would look like if there were nothing but noise of this size.
+
+    Args:
+        path: PNG.
+        fit: The model whose residual it is.
+        found: The pattern, of one or two variables.
+        rng: Shuffles.
+
+    Returns:
+        Whether there was something to draw: some tests name no variables of their own.
+    """
+    touches, rows = fit.run.touches, np.flatnonzero(fit.used)
+    known = variables(touches) | {k: v.astype(float) for k, v in groups(touches).items()}
+    along = directions(touches)
+    if not 1 <= len(found.variables) <= 2 or not set(found.variables) <= set(known):
+        return False
+    seen = along.get(found.direction, along["normal"])[rows]
+    weight = (seen / fit.run.u[rows]) ** 2
+    clear = np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99))
+    rows, seen, weight = rows[clear], seen[clear], weight[clear]
+    r = fit.residual[rows] / (seen * UM)
+    x = np.stack([known[name][rows] for name in found.variables])
+    word = "the normal" if found.direction == "normal" else found.direction
+    shuffled = rng.permutation(r)
+    figure = new_figure(3.7 if len(x) == 1 else 4.3)
+    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    panels = zip(axes, (r, shuffled), ("as measured", "shuffled: what chance makes"), strict=True)
+    values = [_map(x, v, weight) for v in (r, shuffled)] if len(x) == 2 else []
+    limit = robust_limit(values[0], 1.0) if values else robust_limit(r, 0.99)
+    for i, (ax, v, title) in enumerate(panels):
+        if len(x) == 1:
+            _course(ax, x[0], v, weight, limit)
+        else:
+            marks = ax.scatter(
+                *x,
+                c=values[i],
+                s=17,
+                cmap=DIVERGING,
+                vmin=-limit,
+                vmax=limit,
+                lw=0.3,
+                ec="#00000030",
+            )
+            ax.set_ylabel(found.variables[1])
+        ax.set_xlabel(found.variables[0])
+        ax.set_title(title, fontsize=9.5, loc="left", color=INK)
+        plain(ax)
+    if values:
+        bar = figure.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.85)
+        bar.set_label(f"mean residual of {NEIGHBOURS} neighbours along {word}, µm", fontsize=8.5)
+    else:
+        axes[0].set_ylabel(f"residual along {word} in µm")
+    save(figure, path)
+    return True
+
+
+def _map(x: Array, r: Array, weight: Array) -> Array:
+    """Mean residual of the nearest touches, variables scaled to their ranges, (N,).
+
+    Args:
+        x: Two variables, (2, N).
+        r: Residuals, (N,).
+        weight: Of each, (N,).
+    """
+    from scipy.spatial import cKDTree
+
+    scaled = (x / np.ptp(x, axis=1)[:, None]).T
+    near = cKDTree(scaled).query(scaled, k=min(NEIGHBOURS, len(r)))[1].reshape(len(r), -1)
+    return np.asarray((weight[near] * r[near]).sum(axis=1) / weight[near].sum(axis=1))
+
+
+def _course(ax: Any, x: Array, r: Array, weight: Array, limit: float) -> None:
+    """Touches and means over one variable."""
+    shown = kept(len(r))
+    ax.axhline(0.0, color=SOFT, lw=0.8)
+    ax.plot(x[shown], np.clip(r[shown], -limit, limit), ".", ms=2.0, color="#9aa4b1", alpha=0.6)
+    at, mean, error = binned(x, r, weight, BINS)
+    ax.errorbar(at, mean, error, fmt="o-", ms=4, lw=1.2, color=BLUE, zorder=3)
+    ax.set_ylim(-1.05 * limit, 1.05 * limit)
