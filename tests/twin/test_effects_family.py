@@ -11,6 +11,7 @@ from twin.effects.thermal_lag import lagged
 from twin.frames import fixed_xyz, pose
 from twin.library import parse_effect, proposals
 from twin.model import Model, columns
+from twin.ordinary import ordinary_model
 from twin.touches import Setup, Touches, linear_approach
 from twin.units import DEG, NM
 
@@ -101,6 +102,14 @@ def test_names_lead_back_to_the_effect(label: str) -> None:
     for effect in every(label):
         assert parse_effect(effect.name, RUNS[label].chain) == effect
         assert effect.name.split("(")[0] == effect.kind
+
+
+@pytest.mark.parametrize("label", MACHINES)
+def test_names_of_the_ordinary_model_lead_back(label: str) -> None:
+    """Sines with their phase too: a saved model is the model."""
+    chain = RUNS[label].chain
+    for effect in ordinary_model(chain).effects:
+        assert parse_effect(effect.name, chain) == effect
 
 
 @pytest.mark.parametrize(("label", "effect"), SOME, ids=NAMES)

@@ -13,6 +13,7 @@ from twin.ranges import Ranges
 from twin.shapes import SHAPES, ShapeName, scaled, shape
 from twin.symbols import Family, Symbol
 from twin.touches import Touches
+from twin.units import DEG
 
 USAGE = "geometric(symbol,degree or shape)"
 HIGHEST = 12
@@ -48,9 +49,9 @@ class ComponentError:
 
     @property
     def name(self) -> str:
-        """`geometric(EXX,linear)`; the phase of a sine is told in degrees where it is not zero."""
-        extra = f",{self.periods:g}" if self.periods != 1.0 else ""
-        extra += f"@{self.phase:.6g}" if self.phase else ""
+        """`geometric(EXX,linear)`, `geometric(EXX,sinusoidal,2@90)`: periods, phase in degrees."""
+        extra = f",{self.periods:.10g}" if self.periods != 1.0 else ""
+        extra += f"@{self.phase / DEG:.10g}" if self.phase else ""
         return f"geometric({self.symbol.name},{self.shape}{extra})"
 
     @property
@@ -151,7 +152,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
         raise refusal(USAGE, arguments, f"a degree of 1 to {HIGHEST} or one of {', '.join(SHAPES)}")
     _, periods, phase = match.groups()
     sd = Ranges().sd(chain, symbol)
-    return ComponentError(symbol, word, float(periods or 1.0), float(phase or 0.0), sd)
+    return ComponentError(symbol, word, float(periods or 1.0), float(phase or 0.0) * DEG, sd)
 
 
 def propose(touches: Touches) -> Iterable[HigherOrder]:
