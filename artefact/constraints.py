@@ -24,7 +24,7 @@ class Limits:
     """What workshop, stylus and table allow.
 
     Attributes:
-        min_concave_radius: For the ball-end cutter and the ball, mm.
+        min_concave_radius: For the ball-end cutter, mm; never less than the ball's own radius.
         max_slope: Between a face's normal and its patch's own direction, rad.
         ball_radius: Of the largest probe ball, mm.
         gap: Left between the ball at any touch and every other body, mm.
@@ -110,9 +110,8 @@ def max_slope(patch: FreeformPatch) -> float:
 
 
 def _of_patch(standard: Standard, patch: FreeformPatch, limits: Limits) -> Iterator[Constraint]:
-    yield _at_least(
-        "smallest concave radius", patch.name, min_concave_radius(patch), limits.min_concave_radius
-    )
+    smallest = max(limits.min_concave_radius, limits.ball_radius)
+    yield _at_least("smallest concave radius", patch.name, min_concave_radius(patch), smallest)
     yield _at_most("slope", patch.name, max_slope(patch) / DEG, limits.max_slope / DEG, "deg")
     uv = patch.grid(_FACE_PITCH)
     face, base = patch.point(uv), standard.base
@@ -153,7 +152,11 @@ def _of_holes(standard: Standard) -> Iterator[Constraint]:
     base = standard.base
     heights = np.arange(base.thickness, standard.blank_height + 4.0, 4.0)
     above = {name: body for name, body in standard.bodies.items() if name != "BASE"}
-    for hole in standard.holes:
+    for k, hole in enumerate(standard.holes):
+        for other in standard.holes[:k]:
+            wall = np.hypot(hole.x - other.x, hole.y - other.y)
+            wall -= hole.bore_radius + other.bore_radius
+            yield _at_least(f"wall to {other.name}", hole.name, float(wall), 3.0)
         xy = np.array([[hole.x, hole.y]])
         inset = -outline_distance(xy, base.half_size, base.corner_radius)[0]
         yield _at_least("wall to the outline", hole.name, inset - hole.bore_radius, 3.0)

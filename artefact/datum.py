@@ -168,6 +168,13 @@ class MountingHole:
     bore_radius: float
     bore_depth: float
 
+    def __post_init__(self) -> None:
+        if not 0.0 < self.radius < self.bore_radius:
+            raise ShapeMismatch(
+                f"{self.name}: hole radius {self.radius:g} mm, expected between 0 and the "
+                f"counterbore's {self.bore_radius:g} mm"
+            )
+
 
 def outline_distance(xy: Array, half_size: tuple[float, float], corner_radius: float) -> Array:
     """Signed distance to a rectangle with rounded corners, negative inside, mm.

@@ -9,12 +9,15 @@ from numpy.typing import ArrayLike
 
 from artefact.newton import ball_contact, foot_points, graph_normal
 from artefact.patch import Hit, Mask, read_only, rows, sphere_entry, unit
-from artefact.spline import Jet, clamped_knots, greville, height, jet
+from artefact.spline import Jet, check_knots, clamped_knots, greville, height, jet
 from twin.errors import ShapeMismatch
 from twin.frames import Array, apply, inverse, turn
 
 OVERHANG = 6.0
 """How far the spline reaches beyond the trimmed rectangle on every side, mm: room for the trim."""
+
+LEAST_OVERHANG = 1.0
+"""What a patch from elsewhere must have of it at least, mm."""
 
 _GRID_PITCH = 2.0  # of the start grid, mm; finer than half the smallest concave radius allowed
 _BLOCK = 4_000_000  # numbers held at once while a start point is sought
@@ -72,12 +75,11 @@ class FreeformPatch:
             object.__setattr__(
                 self, key, read_only(getattr(self, key), what=f"{self.name}: {what}")
             )
-        shape = self.heights.shape
-        for key, k, axis in (("knots_u", self.degree[0], 0), ("knots_v", self.degree[1], 1)):
-            count = (shape[axis] + k + 1,)
-            knots = read_only(getattr(self, key), count, f"{self.name}: {key}")
-            if np.any(np.diff(knots) < 0.0):
-                raise ShapeMismatch(f"{self.name}: {key} must ascend")
+        for key, axis in (("knots_u", 0), ("knots_v", 1)):
+            k = self.degree[axis]
+            what = f"{self.name}: {key}"
+            knots = read_only(getattr(self, key), (self.heights.shape[axis] + k + 1,), what)
+            check_knots(knots, k, self.half_size[axis] + LEAST_OVERHANG, what)
             object.__setattr__(self, key, knots)
 
     @cached_property

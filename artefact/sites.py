@@ -1,6 +1,6 @@
 """From a list of sites to a whole standard: columns, core, spheres and holes follow by rule."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,11 +8,11 @@ import numpy as np
 from artefact.constraints import Limits
 from artefact.datum import DatumSphere, MountingHole
 from artefact.freeform import ErrorShare, FreeformPatch, graph_patch
+from artefact.spread import rim, spread
 from artefact.standard import STEEL, Base, Core, Material, Standard
 from twin.errors import NotBuildable
 from twin.frames import Array, apply, pose, rotation
 
-_AZIMUTHS = 90  # places tried along the rim for spheres and holes
 _ROOTED = 5.0  # mm a column runs on below mid-base, where it is cut off: no two faces coincide
 
 
@@ -206,7 +206,7 @@ def _core(patches: tuple[FreeformPatch, ...], base: Base) -> Core | None:
 
 def _spheres(standard: Standard, frame: Frame) -> tuple[DatumSphere, ...]:
     fit, top = frame.fittings, frame.base.thickness
-    places = _rim(frame.base, fit.foot_radius + 3.0)
+    places = rim(frame.base, fit.foot_radius + 3.0)
     around = fit.sphere_radius + 2.0 * frame.limits.ball_radius + frame.limits.gap
     options = []
     for number, height in enumerate(fit.sphere_heights, 1):
@@ -221,7 +221,7 @@ def _spheres(standard: Standard, frame: Frame) -> tuple[DatumSphere, ...]:
         options.append(centres[free])
     return tuple(
         DatumSphere(f"SPH{i}", c, fit.sphere_radius, fit.stem_radius, fit.foot_radius, top)
-        for i, c in enumerate(_spread(options), 1)
+        for i, c in enumerate(spread(options), 1)
     )
 
 
@@ -229,7 +229,7 @@ def _holes(
     standard: Standard, spheres: tuple[DatumSphere, ...], frame: Frame
 ) -> tuple[MountingHole, ...]:
     fit, base = frame.fittings, frame.base
-    places = _rim(base, fit.bore_radius + 5.0)
+    places = rim(base, fit.bore_radius + 5.0)
     for s in spheres:
         # A screw and its key come from above, past the ball.
         apart = np.linalg.norm(places - s.centre[:2], axis=1)
@@ -245,7 +245,7 @@ def _holes(
         MountingHole(
             f"HOLE{i}", float(x), float(y), fit.hole_radius, fit.bore_radius, fit.bore_depth
         )
-        for i, (x, y) in enumerate(_spread([places] * fit.hole_count), 1)
+        for i, (x, y) in enumerate(spread([places] * fit.hole_count), 1)
     )
 
 
@@ -256,50 +256,3 @@ def _room(standard: Standard, places: Array, heights: Array) -> Array:
     room = np.min([body.distance(points) for body in bodies], axis=0)
     nearest: Array = room.reshape(len(places), len(heights)).min(axis=1)
     return nearest
-
-
-def _rim(base: Base, inset: float) -> Array:
-    """Places (K, 2) on the outline of the base, moved inwards by `inset`, mm."""
-    angle = 2.0 * np.pi * np.arange(_AZIMUTHS) / _AZIMUTHS
-    ray = np.column_stack([np.cos(angle), np.sin(angle)])
-    low, high = np.zeros(_AZIMUTHS), np.full(_AZIMUTHS, 2.0 * max(base.half_size))
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        points = np.column_stack([middle[:, None] * ray, np.full(_AZIMUTHS, 0.5 * base.thickness)])
-        inside = base.body.distance(points) < -min(inset, 0.5 * base.thickness - 1e-6)
-        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    return low[:, None] * ray
-
-
-def _spread(options: Sequence[Array]) -> list[Array]:
-    """One place from each list, as far apart as an exchange from several starts finds."""
-    best: list[int] = []
-    best_gap = -1.0
-    for first in range(0, len(options[0]), 5):
-        chosen = [first]
-        for places in options[1:]:
-            chosen.append(int(np.argmax(_gaps(places, options, chosen, skip=None))))
-        for _ in range(10):
-            before = list(chosen)
-            for k, places in enumerate(options):
-                chosen[k] = int(np.argmax(_gaps(places, options, chosen, skip=k)))
-            if chosen == before:
-                break
-        gap = min(
-            float(_gaps(places[[i]], options, chosen, skip=k)[0])
-            for k, (places, i) in enumerate(zip(options, chosen, strict=True))
-        )
-        if gap > best_gap + 1e-9:
-            best, best_gap = chosen, gap
-    return [places[i] for places, i in zip(options, best, strict=True)]
-
-
-def _gaps(
-    places: Array, options: Sequence[Array], chosen: Sequence[int], skip: int | None
-) -> Array:
-    """Distance of each place to the nearest of those chosen, slot `skip` left out, mm."""
-    others = [options[k][i] for k, i in enumerate(chosen) if k != skip]
-    if not others:
-        return np.full(len(places), np.inf)
-    gaps: Array = np.min([np.linalg.norm(places - other, axis=1) for other in others], axis=0)
-    return gaps

@@ -20,6 +20,33 @@ def clamped_knots(low: float, high: float, count: int, degree: int) -> Array:
     return np.concatenate([np.full(degree, low), inner, np.full(degree, high)])
 
 
+def check_knots(knots: Array, degree: int, reach: float, what: str) -> None:
+    """Refuse knots that are not those of a smooth, clamped and wide enough spline.
+
+    Args:
+        knots: Shape (poles + degree + 1,).
+        degree: Of the spline.
+        reach: How far the knots must reach to both sides of zero, mm.
+        what: Whose they are, for the message.
+
+    Raises:
+        ShapeMismatch: Says what is wrong with them.
+    """
+    if degree < 2:
+        raise ShapeMismatch(f"{what}: degree {degree}, expected at least 2 for a normal that bends")
+    if np.any(np.diff(knots) < 0.0):
+        raise ShapeMismatch(f"{what} must ascend")
+    if knots[0] != knots[degree] or knots[-1] != knots[-degree - 1]:
+        raise ShapeMismatch(f"{what}: the first and the last knot must stand {degree + 1} times")
+    inner, counts = np.unique(knots[degree + 1 : -degree - 1], return_counts=True)
+    if np.any(counts > degree - 1) or np.any((inner == knots[0]) | (inner == knots[-1])):
+        raise ShapeMismatch(f"{what}: a knot stands too often for a face without a crease")
+    if min(-knots[0], knots[-1]) < reach:
+        raise ShapeMismatch(
+            f"{what} go from {knots[0]:g} to {knots[-1]:g} mm, expected {reach:g} mm to both sides"
+        )
+
+
 def greville(knots: Array, degree: int) -> Array:
     """Abscissae at which poles must stand so that the spline reproduces ``x = u`` exactly.
 

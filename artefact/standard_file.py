@@ -132,12 +132,9 @@ def _standard(path: Path, file: _File) -> Standard:
             core=None
             if file.core is None
             else Core(file.core.low_radius_mm, file.core.high_radius_mm, file.core.height_mm),
-            patches=tuple(_patch(path, i, patch) for i, patch in enumerate(file.patch, 1)),
-            spheres=tuple(_sphere(path, i, sphere) for i, sphere in enumerate(file.sphere, 1)),
-            holes=tuple(
-                MountingHole(h.name, h.x_mm, h.y_mm, h.radius_mm, h.bore_radius_mm, h.bore_depth_mm)
-                for h in file.hole
-            ),
+            patches=tuple(_patch(path, i, patch) for i, patch in enumerate(file.patch)),
+            spheres=tuple(_sphere(path, i, sphere) for i, sphere in enumerate(file.sphere)),
+            holes=tuple(_hole(path, i, hole) for i, hole in enumerate(file.hole)),
             blank_height=file.blank_height_mm,
         )
     except ShapeMismatch as error:
@@ -157,7 +154,7 @@ def _base(path: Path, base: _Base) -> Base:
 
 
 def _patch(path: Path, number: int, patch: _Patch) -> FreeformPatch:
-    where = f"patch[{number}]"
+    where = f"patch.{number}"
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = patch.rotation, patch.origin_mm
     slip = np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max()
@@ -196,7 +193,16 @@ def _sphere(path: Path, number: int, sphere: _Sphere) -> DatumSphere:
             foot=sphere.foot_mm,
         )
     except ShapeMismatch as error:
-        raise BadFile(path, f"sphere[{number}]", str(error), "a ball on a stem") from error
+        raise BadFile(path, f"sphere.{number}", str(error), "a ball on a stem") from error
+
+
+def _hole(path: Path, number: int, hole: _Hole) -> MountingHole:
+    try:
+        return MountingHole(
+            hole.name, hole.x_mm, hole.y_mm, hole.radius_mm, hole.bore_radius_mm, hole.bore_depth_mm
+        )
+    except ShapeMismatch as error:
+        raise BadFile(path, f"hole.{number}", str(error), "a counterbored hole") from error
 
 
 def _table(standard: Standard) -> dict[str, Any]:

@@ -28,7 +28,7 @@ from artefact.freeform import FreeformPatch
 from artefact.standard import Base, Standard
 from cad_out.faces import is_valid, named_faces, solids_of, volume
 from twin.errors import NotBuildable
-from twin.frames import Array
+from twin.frames import Array, apply
 
 _FACE_TOLERANCE = 1e-7  # mm, of the kernel's own edges
 _SAME = 1e-7  # mm: two points or radii are one
@@ -115,7 +115,7 @@ def _knot_arrays(knots: Array) -> tuple[Any, Any]:
 
 
 def _column(patch: FreeformPatch, surface: Any, base: Base) -> Any:
-    """Prism of the face, trimmed by the pad's box and cut off in mid-base."""
+    """Prism of the face, trimmed by the pad's box and cut off in mid-base if it gets there."""
     face = BRepBuilderAPI_MakeFace(surface, _FACE_TOLERANCE).Face()
     span = float(patch.heights.max() - patch.heights.min())
     back = -(patch.depth + span + 10.0) * patch.direction
@@ -127,6 +127,9 @@ def _column(patch: FreeformPatch, surface: Any, base: Base) -> Any:
     height = patch.depth + float(patch.heights.max()) + 5.0
     box = BRepPrimAPI_MakeBox(frame, 2.0 * a, 2.0 * b, height).Shape()
     column = _boolean(BRepAlgoAPI_Common(), [prism], [box], f"trimming {patch.name}")
+    end = [[x, y, -patch.depth] for x in (-a, a) for y in (-b, b)]
+    if apply(T, np.array(end))[:, 2].min() > 0.5 * base.thickness:
+        return column
     far = 1000.0
     above = BRepPrimAPI_MakeBox(
         gp_Pnt(-far, -far, 0.5 * base.thickness), 2.0 * far, 2.0 * far, far

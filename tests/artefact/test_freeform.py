@@ -1,5 +1,7 @@
 """The spline against scipy, closed forms and finite differences; contact against other searches."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -194,7 +196,7 @@ def test_contact_agrees_with_bisection_on_the_distance():
     # the distance by scipy's bounded minimiser from the best of a fine grid
     patch = wavy(11)
     rng = np.random.default_rng(12)
-    uv = inside(patch, rng, 12, margin=4.0)
+    uv = inside(patch, rng, 6, margin=4.0)
     n = patch.normal(uv)
     d = -(n + 0.5 * rng.normal(size=n.shape))
     d /= np.linalg.norm(d, axis=1, keepdims=True)
@@ -241,6 +243,32 @@ def test_patch_refuses_what_is_no_control_net():
         graph_patch("FF1", T, (10.0, 10.0), np.zeros(8))
     with pytest.raises(ShapeMismatch, match="FF7: control heights: every number must be finite"):
         graph_patch("FF7", T, (10.0, 10.0), np.full((8, 8), np.nan))
+
+
+def test_patch_refuses_knots_of_another_spline():
+    patch = wavy(0)
+    knots = np.array(patch.knots_u)
+    unclamped, creased, short = knots.copy(), knots.copy(), knots * 0.7
+    unclamped[0] -= 1.0
+    creased[6:10] = knots[7]
+    for wrong, words in (
+        (unclamped, "must stand 6 times"),
+        (creased[::-1], "must ascend"),
+        (np.concatenate([knots[:6], np.zeros(len(knots) - 12), knots[-6:]]), None),
+        (short, "expected 21 mm to both sides"),
+        (knots[:-1], r"shape \(14,\), expected \(15,\)"),
+    ):
+        if words is None:
+            replace(patch, knots_u=wrong)  # three knots in one place: still smooth at degree 5
+            continue
+        with pytest.raises(ShapeMismatch, match=words):
+            replace(patch, knots_u=wrong)
+    cubic = graph_patch("FF1", np.eye(4), (10.0, 10.0), np.zeros((7, 7)), (3, 3))
+    triple = np.concatenate([cubic.knots_u[:4], np.zeros(3), cubic.knots_u[-4:]])
+    with pytest.raises(ShapeMismatch, match="a knot stands too often for a face without a crease"):
+        replace(cubic, knots_u=triple)
+    with pytest.raises(ShapeMismatch, match="degree 1, expected at least 2"):
+        graph_patch("FF1", np.eye(4), (10.0, 10.0), np.zeros((6, 6)), (1, 3))
 
 
 def test_patch_is_read_only():

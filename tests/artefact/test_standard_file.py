@@ -80,8 +80,9 @@ def text_of(standard, tmp_path):
         ),
         ('name = "FF2"', 'name = "FF1"', "two features are named FF1"),
         ('name = "FF2"', 'name = "FF 2"', r"patch\.1\.name: found 'FF 2'"),
-        ("    5,\n    5,\n", "    4,\n    5,\n", r"patch\[1\]: found FF1: knots_u: shape \(14,\)"),
-        ("radius_mm = 12.5", "radius_mm = 2.5", r"sphere\[1\]: found SPH1: stem radius 6 mm"),
+        ("    5,\n    5,\n", "    4,\n    5,\n", r"patch\.0: found FF1: knots_u: shape \(14,\)"),
+        ("\nradius_mm = 5.5", "\nradius_mm = 9.5", r"hole\.0: found HOLE1: hole radius 9\.5 mm"),
+        ("radius_mm = 12.5", "radius_mm = 2.5", r"sphere\.0: found SPH1: stem radius 6 mm"),
     ],
 )
 def test_whatever_is_wrong_is_one_line_with_file_and_key(standard, tmp_path, old, new, where):
@@ -101,7 +102,7 @@ def test_a_mirror_is_no_rotation(standard, tmp_path):
     T[:3, 0] *= -1.0
     mirrored = replace(standard.patches[0], T_artefact_patch=T)
     write_standard(path, replace(standard, patches=(mirrored, *standard.patches[1:])))
-    with pytest.raises(BadFile, match=r"patch\[1\]\.rotation: .*right-handed rotation matrix"):
+    with pytest.raises(BadFile, match=r"patch\.0\.rotation: .*right-handed rotation matrix"):
         read_standard(path)
 
 
