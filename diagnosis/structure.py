@@ -39,6 +39,7 @@ class Structure:
         columns: Projected features scaled to their most likely size, (N + P, K): a prior of one
             each; None for tests that name no pattern.
         words: In words.
+        period: Of a wave, s; zero for everything else.
     """
 
     shape: str
@@ -48,6 +49,7 @@ class Structure:
     evidence: float
     columns: Array | None
     words: str
+    period: float = 0.0
 
 
 def find_structure(
@@ -164,7 +166,8 @@ def _wave_structure(effects: EffectSet, wave: Wave, count: int) -> Structure:
     p = min(1.0, wave.p_value * count)
     words = f"a wave in time of {wave.period:.4g} s, along {wave.direction}"
     C = effects.complement.project(wave.columns) if p < CHANCE else None
-    return Structure("wave", ("time_s",), wave.direction, p, float(gained), C, words)
+    along = wave.direction
+    return Structure("wave", ("time_s",), along, p, float(gained), C, words, wave.period)
 
 
 def _neighbours(effects: EffectSet) -> list[Structure]:
