@@ -169,6 +169,7 @@ def test_effect_of_the_library_explains_what_the_simulator_hides(experiments, la
     theta = np.linalg.lstsq(C, shown, rcond=1e-12)[0]
     if effect.kind == "artefact-form":  # a sine wave, by polynomials of limited degree
         assert np.linalg.norm(shown - C @ theta) < 0.1 * np.linalg.norm(shown)
+        assert np.linalg.norm(theta) / UM == pytest.approx(size, rel=0.25)
         return
     assert np.max(np.abs(shown - C @ theta)) < CURVED
     assert np.max(np.abs(shown)) > 10 * CURVED

@@ -255,16 +255,16 @@ def test_slip_turns_about_the_middle_of_the_touches() -> None:
 
 
 def test_form_of_one_patch() -> None:
-    """2 um P_1 over 40 mm of touched points: -2, 0, 2 um; nothing on the other patch."""
+    """sqrt(3) v/2 over 40 mm of touched points: -2, 0, 2 um; nothing on the other patch."""
     place = np.array([(-20.0, 0.0, 0.0), (0.0, 5.0, 0.0), (20.0, -5.0, 0.0), (3.0, 3.0, 0.0)])
     touches = touch(Z, n=4, point=place, feature=np.array(["pad1", "pad1", "pad1", "pad2"]))
     theta = np.zeros(21)
-    theta[1] = 2 * UM
+    theta[1] = 4 * UM / np.sqrt(3.0)
     found = deviation("artefact-form(pad1)", theta, touches)
     assert abs(found[0]) == pytest.approx(2.0, abs=1e-3)
     assert found[2] == pytest.approx(-found[0], abs=1e-3)
     assert found[3] == 0.0
-    theta[:2] = (3 * UM, 0.0)
+    theta[:2] = (6 * UM, 0.0)
     np.testing.assert_allclose(
         deviation("artefact-form(pad1)", theta, touches), [3.0, 3.0, 3.0, 0.0], atol=PER_HAND / UM
     )

@@ -22,9 +22,11 @@ FORM_TOUCHES = 30
 class ArtefactForm:
     """Smooth form deviation of one patch from its calibration.
 
-    ``bias = sum_(i+j<=n) a_ij P_i(v) P_j(w)``, P the Legendre polynomials over the touched
-    rectangle, v and w in [-1, 1] along the two longest directions of the touched points, n = 5.
-    Parameters mm: 0.5 to 2 um, expected to fall with the degree.
+    ``bias = sum_(i+j<=5) a_ij p_i(v) p_j(w)/2``, ``p_i = sqrt(2 i + 1) P_i`` the Legendre
+    polynomials of unit mean square over the touched rectangle, v and w in [-1, 1] along the two
+    longest directions of the touched points. The length of (a_ij) is thus the amplitude of a wave
+    ``a sin(k v) sin(l w)`` of the same mean square. Parameters mm: together 0.5 to 2 um, expected
+    to fall with the degree.
 
     The touches must be the whole run: its points on the patch give the rectangle.
 
@@ -53,7 +55,7 @@ class ArtefactForm:
     def parameters(self) -> Sequence[Parameter]:
         """Coefficients, by rising degree."""
         return tuple(
-            Parameter(f"P{i}{j}", "mm", 3 * UM / np.sqrt(1.0 + i + j)) for i, j in self._degrees
+            Parameter(f"P{i}{j}", "mm", 1.5 * UM / np.sqrt(1.0 + i + j)) for i, j in self._degrees
         )
 
     def terms(self, touches: Touches) -> Sequence[Term]:
@@ -63,7 +65,7 @@ class ArtefactForm:
         out = []
         for k, (i, j) in enumerate(self._degrees):
             amount = np.zeros(len(touches))
-            amount[rows] = v[i] * w[j]
+            amount[rows] = 0.5 * v[i] * w[j]
             out.append(Term(k, Where("bias"), amount))
         return tuple(out)
 
@@ -81,13 +83,13 @@ def _local(point: Array) -> Array:
 
 
 def _legendre(place: Array) -> tuple[list[Array], list[Array]]:
-    """Legendre polynomials up to `FORM_DEGREE` of both columns of (M, 2)."""
+    """Legendre polynomials of unit mean square up to `FORM_DEGREE`, of both columns of (M, 2)."""
     out = []
     for x in (place[:, 0], place[:, 1]):
         p = [np.ones_like(x), x]
         for k in range(1, FORM_DEGREE):
             p.append(((2 * k + 1) * x * p[-1] - k * p[-2]) / (k + 1))
-        out.append(p)
+        out.append([np.sqrt(2.0 * k + 1.0) * p_k for k, p_k in enumerate(p)])
     return out[0], out[1]
 
 
@@ -108,7 +110,7 @@ def propose(touches: Touches) -> Iterable[ArtefactForm]:
 KIND = Kind(
     word="artefact-form",
     arguments="patch",
-    formula="bias = sum a_ij P_i(v) P_j(w) over the touched rectangle of a patch, i + j <= 5",
+    formula="bias = sum a_ij p_i(v) p_j(w)/2, i + j <= 5, Legendre over the touched rectangle",
     units="a_ij: µm",
     typical="0.5 to 2 µm, correlated over 20 to 50 mm",
     source="calibration of freeform standards",
