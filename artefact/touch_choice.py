@@ -8,7 +8,8 @@ from artefact.criterion import Criterion
 from artefact.patch import Surface
 from artefact.standard import Standard
 from artefact.touchable import Probing, Requests, joined
-from sensitivity.design import Quota, Selection, best_groups, exchange, fill
+from sensitivity.design import Quota, Selection, exchange, fill
+from sensitivity.groups import best_groups
 from twin.errors import NotReachable
 from twin.frames import Array
 from twin.units import DEG, UM

@@ -1,0 +1,97 @@
+"""A whole study: the same for a seed, its files hold its numbers, its pictures show something."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from sensitivity.sampling import Population
+from sensitivity.study import run_study, section_pairs, write_study
+from sensitivity.workspace import Workspace
+from twin.chain import Axis, make_chain
+from twin.units import DEG, UM
+
+
+@pytest.fixture(scope="module")
+def study(chain, workspace):
+    return run_study(Population(chain), workspace, 150, 200, np.random.default_rng(5))
+
+
+@pytest.fixture(scope="module")
+def written(study, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study")
+    return folder, write_study(study, folder)
+
+
+def test_the_same_seed_gives_the_same_study(chain, workspace, study):
+    again = run_study(Population(chain), workspace, 150, 200, np.random.default_rng(5))
+    np.testing.assert_array_equal(again.q, study.q)
+    np.testing.assert_array_equal(again.volumetric.p95, study.volumetric.p95)
+    other = run_study(Population(chain), workspace, 150, 200, np.random.default_rng(6))
+    assert not np.array_equal(other.volumetric.p95, study.volumetric.p95)
+
+
+def test_recurrence_is_counted_over_the_workspace(study):
+    # 8 of 150 poses are the worst 5 %
+    assert study.volumetric.recurrence.mean() == pytest.approx(8 / 150, abs=1e-12)
+    assert max(s.volumetric.recurrence.max() for s in study.sections) > 0.1
+
+
+def test_sections_pass_through_the_worst_pose(study, chain):
+    assert [s.axes for s in study.sections] == [("X", "Y"), ("X", "Z"), ("Y", "Z"), ("B", "C")]
+    worst = study.worst_pose
+    held = study.sections[0].q[:, chain.axis_index("B")]
+    assert np.all(held == worst[chain.axis_index("B")])
+    assert study.rms.max() == pytest.approx(study.rms[np.all(study.q == worst, axis=1)][0])
+
+
+def test_data_files_hold_the_numbers(study, written, chain):
+    folder, _ = written
+    with (folder / "poses.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == 150
+    p95 = np.array([float(r["p95_um"]) for r in rows])
+    np.testing.assert_allclose(p95, study.volumetric.p95 / UM, rtol=1e-6)
+    b = np.array([float(r["B_deg"]) for r in rows])
+    np.testing.assert_allclose(b, study.q[:, chain.axis_index("B")] / DEG, rtol=1e-6)
+    with (folder / "sensitivity.csv").open(encoding="utf-8") as stream:
+        first = next(csv.DictReader(stream))
+    assert float(first["EXX"]) == pytest.approx(1.0)
+    assert float(first["EBZ"]) == pytest.approx(0.16)  # um/urad at 160 mm
+    with (folder / "shares.csv").open(encoding="utf-8") as stream:
+        shares = next(csv.DictReader(stream))
+    assert sum(float(shares[s.name]) for s in chain.symbols) == pytest.approx(1.0, abs=1e-5)
+    with np.load(folder / "sections.npz") as arrays:
+        section = study.sections[0].volumetric.p95.reshape(25, 25)
+        np.testing.assert_array_equal(arrays["XY_p95"], section)
+
+
+def test_pictures_show_something(written):
+    from matplotlib.image import imread
+
+    folder, maps = written
+    assert len(maps) == 5
+    for name, caption in maps:
+        picture = imread(folder / name)
+        assert min(picture.shape[:2]) > 250
+        assert picture[..., :3].std() > 0.03  # a blank page has none
+        assert caption.endswith(".")
+
+
+def test_ranking_is_by_share(study):
+    ranking = study.ranking()
+    assert [r[0] for r in ranking[:2]] in (["EX0C", "EY0C"], ["EY0C", "EX0C"])
+    assert sum(share for _, share in ranking) == pytest.approx(1.0)
+
+
+def test_a_machine_with_two_readings_is_studied_too(tmp_path):
+    lathe = make_chain(
+        "lathe",
+        "[w f X Z t]",
+        {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
+    )
+    area = Workspace(lathe, {}, 50.0)
+    assert section_pairs(area) == [("X", "Z")]
+    study = run_study(Population(lathe), area, 40, 50, np.random.default_rng(1))
+    maps = write_study(study, tmp_path)
+    assert all((tmp_path / name).stat().st_size > 5000 for name, _ in maps)
