@@ -52,7 +52,7 @@ def draw(result):
     rest = result["not predicted after 160 touches, µm"]
     bars = right.barh([name.replace(" ", "\n", 1) for name in rest], rest.values())
     right.bar_label(bars, fmt="%.1f", padding=3)
-    right.set(xlabel="not predicted of the tool point, µm rms", xlim=(0, 7), ylim=(3.6, -0.6))
+    right.set(xlabel="not predicted of the tool point, µm rms", xlim=(0, 9), ylim=(3.6, -0.6))
     return figure
 
 

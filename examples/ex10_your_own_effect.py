@@ -1,0 +1,60 @@
+"""Your own effect: a rotary table that lifts while it is clamped after a backward turn.
+
+One frozen class says where it acts and how much; one `Kind` gives it a word, and it can be found.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from ex08_virtual_probing import MACHINE, probed
+
+from diagnosis.diagnose import diagnose
+from diagnosis.verdict import sentence
+from sensitivity.sampling import Population, drawn_errors
+from twin.effect import Parameter, Term, Where
+from twin.effects.kind import Kind
+from twin.files.machine_file import read_machine
+from twin.library import register
+from twin.units import UM
+
+
+@dataclass(frozen=True)
+class ClampLift:
+    """``EZC = h`` where C was last turned backwards, else nothing; h in mm, 1 to 10 um."""
+
+    kind = name = "clamp-lift"
+    parameters = (Parameter("lift", "mm", 5 * UM),)
+
+    def terms(self, touches):
+        """A twist of C along its Z, the third of X Y Z A B C."""
+        where = Where("twist", touches.chain.link_index("C"), 2)
+        return (Term(0, where, (touches.last_move("C") < 0).astype(float)),)
+
+
+KIND = Kind(
+    word="clamp-lift", arguments="", formula="EZC = h after a backward turn, else 0", units="h: µm",
+    typical="1 to 10 µm", source="a wedge that clamps",
+    make=lambda chain, arguments: ClampLift(), propose=lambda touches: [ClampLift()],
+)  # fmt: skip
+
+
+def main():
+    rng, population = np.random.default_rng(10), Population(read_machine(MACHINE))
+    hidden = ClampLift(), np.array([5 * UM])
+    run = probed(population, [*drawn_errors(population, rng), hidden], rng)
+    before = diagnose(run, population.model)
+    register(KIND)
+    return {"before": before, "after": diagnose(run, population.model)}
+
+
+if __name__ == "__main__":
+    import matplotlib.pyplot as plt
+
+    figure, panels = plt.subplots(1, 2, figsize=(7.6, 3.0), sharey=True, layout="constrained")
+    for axes, (when, found) in zip(panels, main().items(), strict=True):
+        print(f"{when}: {sentence(found)} {found.steps[-1].reported}")
+        colour = np.where(found.run.touches.last_move("C") > 0, "C0", "C3")
+        axes.scatter(range(len(colour)), found.fit.residual / UM, 4, colour)
+        axes.set(title=f"{when}: {found.verdict.value}", xlabel="touch; red: C from above")
+    panels[0].set_ylabel("residual, µm")
+    figure.savefig(MACHINE.parent / "pictures" / "ex10.png", dpi=100)
