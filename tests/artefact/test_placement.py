@@ -1,0 +1,192 @@
+"""The first placement: buildable, touchable, the same for a seed, and better than chance."""
+
+import numpy as np
+import pytest
+
+from artefact.clearance import ProbeShape
+from artefact.constraints import Limits
+from artefact.patch import Meeting
+from artefact.placement import PlacementOptions, place
+from artefact.sites import Frame
+from artefact.standard import Base
+from artefact.touch_choice import table_poses
+from artefact.touchable import Probing
+from sensitivity.information import Posterior
+from sensitivity.workspace import Workspace
+from twin.chain import Axis, make_chain
+from twin.errors import NotBuildable, NotReachable
+from twin.kinematics import table_to_tool, tip
+from twin.touches import Setup
+from twin.units import DEG, NM
+
+LENGTH = 160.0
+PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
+OPTIONS = PlacementOptions(name="trial", patches=8, touches=160, poses=12, sites=90)
+
+
+@pytest.fixture(scope="module")
+def chain():
+    return make_chain(
+        "HSM 600U",
+        "[w C' B' X' f Y Z (C1) t]",
+        {
+            "X": Axis(range=(-400.0, 400.0)),
+            "Y": Axis(range=(-300.0, 300.0)),
+            "Z": Axis(range=(-500.0, 0.0)),
+            "B": Axis(range=(-110.0 * DEG, 30.0 * DEG), point=(0.0, 0.0, -420.0)),
+            "C": Axis(range=(-360.0 * DEG, 360.0 * DEG)),
+        },
+        (0.0, 0.0, -500.0),
+    )
+
+
+@pytest.fixture(scope="module")
+def workspace(chain):
+    limits = {
+        "X": (-150.0, 150.0),
+        "Y": (-150.0, 150.0),
+        "Z": (-400.0, -150.0),
+        "B": (-90.0 * DEG, 20.0 * DEG),
+        "C": (-180.0 * DEG, 180.0 * DEG),
+    }
+    return Workspace(chain, limits, LENGTH)
+
+
+@pytest.fixture(scope="module")
+def probing(chain):
+    return Probing(chain, Setup("a"), PROBE, LENGTH)
+
+
+@pytest.fixture(scope="module")
+def placement(probing, workspace):
+    return place(probing, Frame(), workspace, np.random.default_rng(3), options=OPTIONS)
+
+
+def test_the_standard_meets_every_limit(placement):
+    placement.standard.check(Limits())
+    assert len(placement.standard.patches) == 8
+    assert len(placement.standard.spheres) == 3
+    heights = [p.T_artefact_patch[2, 3] for p in placement.standard.patches]
+    assert max(heights) - min(heights) > 30.0
+    directions = np.stack([p.direction for p in placement.standard.patches])
+    # faces look to all sides: no half space around the axis is without one
+    azimuth = np.sort(np.arctan2(directions[:, 1], directions[:, 0]))
+    gaps = np.diff(np.append(azimuth, azimuth[0] + 2.0 * np.pi))
+    assert gaps.max() < np.pi
+
+
+def test_touches_lie_on_their_features(placement):
+    requests, standard = placement.requests, placement.standard
+    assert len(requests) == 160
+    for name in np.unique(requests.feature):
+        mine = requests[requests.feature == name]
+        surface = standard.features[name]
+        uv = surface.project(mine.point)
+        np.testing.assert_allclose(surface.point(uv), mine.point, rtol=0, atol=NM)
+        np.testing.assert_allclose(surface.normal(uv), mine.normal, rtol=0, atol=1e-9)
+        assert surface.contains(uv).all()
+    assert set(requests.feature) == {*(p.name for p in standard.patches), "SPH1", "SPH2", "SPH3"}
+
+
+def test_touches_are_spread_over_poses_and_spheres(placement):
+    requests = placement.requests
+    count = np.bincount(requests.pose)
+    assert len(count) == 12
+    assert count.max() <= np.ceil(1.6 * 160 / 12)
+    on_sphere = np.char.startswith(requests.feature, "SPH")
+    assert 0.15 <= on_sphere.mean() <= 0.3
+    for name in ("SPH1", "SPH2", "SPH3"):
+        assert len(np.unique(requests.pose[requests.feature == name])) >= 5
+    keys = np.column_stack([requests.point, requests.rotary])
+    assert len(np.unique(np.round(keys, 6), axis=0)) == 160  # no touch twice
+
+
+def test_every_touch_can_be_made(placement, probing, chain):
+    requests, standard = placement.requests, placement.standard
+    q = probing.readings(requests)
+    ball = requests.point + 3.0 * requests.normal
+    np.testing.assert_allclose(tip(chain, q, LENGTH), ball, rtol=0, atol=NM)
+    for i, name in enumerate(chain.axes):
+        low, high = chain.link(name).range
+        assert np.all((q[:, i] >= low) & (q[:, i] <= high))
+    axis = table_to_tool(chain, q)[:, :3, 2]
+    cosine = np.einsum("ni,ni->n", axis, requests.normal)
+    assert cosine.min() >= np.cos(75.0 * DEG) - 1e-9
+    assert standard.clearance(ball, axis, PROBE).distance.min() >= 2.0
+    met = standard.contact(ball + 5.0 * requests.normal, -requests.normal, 3.0, 8.0)
+    assert np.all(met.meeting == Meeting.SURFACE)
+    assert np.all(met.feature == requests.feature)
+    np.testing.assert_allclose(met.travel, 5.0, rtol=0, atol=NM)
+
+
+def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
+    own = placement.own
+    assert own.rms < 0.02 * placement.before[0]
+    assert own.rms_user < 0.05 * placement.before[1]
+    assert own.rms < 0.9 * own.rms_random
+    assert own.rms < own.p95
+    by_name = {r.name: r for r in placement.rivals}
+    assert len(by_name) == 4
+    assert own.rms < 0.6 * by_name["one freeform face"].rms
+    assert by_name["random points and normals"].rms < own.rms  # an honest yardstick
+
+
+def test_figures_are_those_of_the_information(placement):
+    aim = placement.criterion
+    posterior = Posterior(aim.whitened(placement.requests), aim.prior_sd, aim.model.names)
+    rms = np.sqrt(np.mean(posterior.predicted_sd(aim.tip_volume) ** 2))
+    assert placement.own.rms == pytest.approx(rms, rel=1e-12)
+    both = np.concatenate([aim.tip_volume, aim.tip_user])
+    rows = aim.rows(placement.requests)
+    mean_square = np.mean(posterior.predicted_sd(both) ** 2)
+    assert aim.purpose.value(rows.T @ rows) == pytest.approx(mean_square, rel=1e-6)
+
+
+def test_every_patch_says_what_it_is_for(placement, chain):
+    known = {s.name for s in chain.symbols}
+    for patch in placement.standard.patches:
+        assert len(patch.errors) == 4
+        shares = [e.share for e in patch.errors]
+        assert shares == sorted(shares, reverse=True)
+        assert 0.02 < sum(shares) < 1.0
+        assert {e.name for e in patch.errors} <= known
+        assert not any(e.name.endswith(("0w", "0t")) for e in patch.errors)
+    named = {e.name for p in placement.standard.patches for e in p.errors}
+    assert len(named) >= 8  # patches are for different errors
+
+
+def test_what_touches_cannot_separate_is_listed(placement):
+    found = placement.identifiability
+    assert found.rank + len(found.freedoms) == found.parameters
+    words = [str(f) for f in found.freedoms]
+    assert any(w.startswith("location(EC0C) cannot be told from") for w in words)
+
+
+def test_the_same_seed_gives_the_same_standard(placement, probing, workspace):
+    again = place(probing, Frame(), workspace, np.random.default_rng(3), options=OPTIONS)
+    np.testing.assert_array_equal(again.requests.point, placement.requests.point)
+    for one, other in zip(again.standard.patches, placement.standard.patches, strict=True):
+        np.testing.assert_array_equal(one.heights, other.heights)
+
+
+def test_too_many_patches_for_a_blank_are_refused(probing, workspace):
+    options = PlacementOptions(patches=16, touches=160, poses=12, sites=60)
+    small = Frame(base=Base(half_size=(70.0, 70.0), corner_radius=10.0))
+    with pytest.raises(NotBuildable, match="patches"):
+        place(probing, small, workspace, np.random.default_rng(1), options=options)
+
+
+def test_poses_keep_room_to_be_approached(probing, chain):
+    class Aim:
+        rotary = np.array([(-360.0 * DEG, 360.0 * DEG), (-110.0 * DEG, 30.0 * DEG)])
+
+    Aim.probing = probing
+    poses = table_poses(Aim, 18)
+    assert 80 <= len(poses) <= 140
+    assert poses[:, 1].min() >= -104.0 * DEG - 1e-9
+    assert poses[:, 1].max() <= 24.0 * DEG + 1e-9
+    np.testing.assert_allclose(poses / DEG, np.round(poses / DEG), atol=1e-9)
+    assert len(np.unique(poses[:, 1])) > 20  # many different readings of B
+    Aim.rotary = np.array([(0.0, 0.0), (-109.0 * DEG, -108.0 * DEG)])
+    with pytest.raises(NotReachable, match="no room to approach"):
+        table_poses(Aim, 18)
