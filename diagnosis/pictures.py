@@ -46,7 +46,7 @@ def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> Non
     """
     figure = new_figure(4.2, layout=None)  # what lays out by itself cuts axes in space
     limit = robust_limit(np.concatenate([f.residual[f.used] / UM for _, f in fits]))
-    for (title, fit), left in zip(fits, (-0.01, 0.44), strict=False):
+    for (title, fit), left in zip(fits, (-0.02, 0.425), strict=False):
         ax = figure.add_axes((left, 0.03, 0.46, 0.9), projection="3d")
         marks = _points(ax, fit, limit, fit.run.touches.point)
         _standing(ax, fit.run.touches)
@@ -57,7 +57,7 @@ def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> Non
         flat.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
         flat.set_title("from above", fontsize=10, color=INK)
         plain(flat)
-    bar = figure.colorbar(marks, cax=figure.add_axes((0.925, 0.14, 0.015, 0.72)), extend="both")
+    bar = figure.colorbar(marks, cax=figure.add_axes((0.93, 0.14, 0.014, 0.72)), extend="both")
     bar.set_label("residual in µm (positive: outside)", fontsize=9)
     if any(f.gross.rows.any() for _, f in fits):
         handles = figure.axes[0].get_legend_handles_labels()
@@ -103,7 +103,7 @@ def _standing(ax: Any, touches: Touches) -> None:
     middle = 0.5 * (low + high)
     for set_limit, m, s in zip((ax.set_xlim, ax.set_ylim, ax.set_zlim), middle, size, strict=True):
         set_limit(m - 0.5 * s, m + 0.5 * s)
-    ax.set_box_aspect(size, zoom=1.2)
+    ax.set_box_aspect(size, zoom=1.06)
     ax.view_init(26.0, -58.0)
     for letter, axis in zip("xyz", (ax.xaxis, ax.yaxis, ax.zaxis), strict=True):
         axis.set_label_text(f"{letter} in mm", fontsize=8)
@@ -125,8 +125,8 @@ def pose_vectors(fit: Fit) -> tuple[IntArray, Array, Array]:
     """Mean displacement of the tool that the residuals of every table pose ask for.
 
     Least squares of ``r = a . d`` over the touches of a pose, with a the deviation along the normal
-    per unit of tool displacement in machine directions; a prior of ten times the residual keeps
-    what the touches of a pose do not show near zero.
+    per unit of tool displacement in machine directions; a prior as wide as the residual keeps
+    near zero what the touches of a pose do not show.
 
     Returns:
         Rows of every pose by its first touch (M,), vectors (M, 3) and their standard uncertainties
@@ -136,11 +136,11 @@ def pose_vectors(fit: Fit) -> tuple[IntArray, Array, Array]:
     first = next(i for i, link in enumerate(t.chain.links) if not link.carries_workpiece)
     a = t.signature.twist[:, first, :3]
     key = np.unique(np.column_stack([t.setup, t.pose]), axis=0, return_inverse=True)[1].reshape(-1)
+    rms = max(fit.rms, 1e-12)
     starts, vectors, spreads = [], [], []
     for k in np.unique(key[fit.used]):
         rows = np.flatnonzero((key == k) & fit.used)
         w = 1.0 / fit.u[rows]
-        rms = max(float(np.sqrt(np.mean(fit.residual[rows] ** 2))), 1e-12)
         information = (a[rows] * w[:, None]).T @ (a[rows] * w[:, None]) + np.eye(3) / (
             10 * rms
         ) ** 2

@@ -45,6 +45,9 @@ def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Ge
     rows, seen, weight = rows[clear], seen[clear], weight[clear]
     r = fit.residual[rows] / (seen * UM)
     x = np.stack([known[name][rows] for name in found.variables])
+    names = list(found.variables)
+    if found.period > 0.0:
+        x, names = x % found.period, [f"{names[0]} within a period of {found.period:.4g} s"]
     word = "the normal" if found.direction == "normal" else found.direction
     shuffled = rng.permutation(r)
     figure = new_figure(3.7 if len(x) == 1 else 4.3)
@@ -66,8 +69,8 @@ def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Ge
                 lw=0.3,
                 ec="#00000030",
             )
-            ax.set_ylabel(found.variables[1])
-        ax.set_xlabel(found.variables[0])
+            ax.set_ylabel(names[1])
+        ax.set_xlabel(names[0])
         ax.set_title(title, fontsize=9.5, loc="left", color=INK)
         plain(ax)
     if values:

@@ -1,0 +1,123 @@
+"""What the pages on measurements say in words: verdicts with numbers, sizes with uncertainties."""
+
+import math
+
+from diagnosis.describe import Reported
+from diagnosis.fit import Fit
+from diagnosis.verdict import Diagnosis, Step, Verdict
+from matstd.page import digits
+from twin.units import UM
+
+_UNITS = (
+    ("_um_per_m_K", "µm/(m K)"),
+    ("_urad_per_K", "µrad/K"),
+    ("_um_per_K", "µm/K"),
+    ("_um_per_h", "µm/h"),
+    ("_urad_per_h", "µrad/h"),
+    ("_um_per_N", "µm/N"),
+    ("_urad", "µrad"),
+    ("_um", "µm"),
+    ("_min", "min"),
+    ("_mm", "mm"),
+    ("_deg", "°"),
+    ("_s", "s"),
+)
+"""Endings of the names of numbers in files, the longest first, with the unit that a reader sees."""
+
+_WORDS = {"tau": "time constant"}
+
+
+def with_uncertainty(value: float, u: float | None, unit: str = "") -> str:
+    """A number to two digits of its uncertainty.
+
+    Example:
+        >>> with_uncertainty(11.137, 0.538, "µm")
+        '11.14 ± 0.54 µm'
+    """
+    tail = f" {unit}" if unit else ""
+    if u is None or not u > 0.0 or not math.isfinite(u):
+        return f"{digits(value)}{tail}"
+    places = max(0, 1 - math.floor(math.log10(u)))
+    return f"{value:.{places}f} ± {u:.{places}f}{tail}"
+
+
+def named_value(reported: Reported) -> tuple[str, str]:
+    """Name and value of a number of an effect as a reader sees them: `time constant`, `42 ± 3 min`.
+
+    Example:
+        >>> named_value(Reported("tau_min", 42.07, 3.32, 60.0))
+        ('time constant', '42.1 ± 3.3 min')
+    """
+    name, unit = next(
+        ((reported.name[: -len(end)], unit) for end, unit in _UNITS if reported.name.endswith(end)),
+        (reported.name, ""),
+    )
+    return _WORDS.get(name, name).replace("_", " "), with_uncertainty(
+        reported.value, reported.u, unit
+    )
+
+
+def sizes(step: Step, most: int = 3) -> str:
+    """The leading numbers of an added effect in one clause."""
+    return ", ".join(" ".join(named_value(r)) for r in step.reported[:most])
+
+
+def microns(value: float) -> str:
+    """A length in µm to two decimals, or to three digits where that would say nothing."""
+    um = value / UM
+    return f"{um:.2f} µm" if abs(um) >= 0.095 else f"{digits(um, 2)} µm"
+
+
+def noise_words(fit: Fit) -> str:
+    """The noise as found, and as stated where that is another."""
+    stated = float((fit.run.u**2).mean() ** 0.5)
+    found = stated * fit.noise.factor
+    if fit.noise.is_wrongly_stated:
+        return f"{microns(found)} (stated: {microns(stated)})"
+    return microns(stated)
+
+
+def excess(fit: Fit) -> float:
+    """Root mean square of what is left beyond the stated noise, mm."""
+    stated = float((fit.run.u**2).mean() ** 0.5)
+    return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
+
+
+def _fall(diagnosis: Diagnosis) -> str:
+    return (
+        f"the error of held-out touches falls from {microns(diagnosis.start.test_rms)} to "
+        f"{microns(diagnosis.fit.test_rms)}"
+    )
+
+
+def _added(step: Step) -> str:
+    """An effect with its size, and whether another name would do as well."""
+    rivals = len(step.confusion.rivals) if step.confusion else 0
+    name = step.effect.name if step.effect is not None else ""
+    alike = f", or one of {rivals} effects that look the same" if rivals else ""
+    return f"{name} ({sizes(step)}{alike})"
+
+
+def verdict_sentence(diagnosis: Diagnosis) -> str:
+    """The verdict in one plain sentence, with numbers and standard uncertainties."""
+    added = [_added(s) for s in diagnosis.steps[1:]]
+    if diagnosis.verdict is Verdict.MISSING:
+        what, them = ("one effect", "it") if len(added) == 1 else (f"{len(added)} effects", "them")
+        return (
+            f"The model lacks {what}: {'; '.join(added)}. With {them} {_fall(diagnosis)}; the "
+            f"noise is {noise_words(diagnosis.fit)}."
+        )
+    if diagnosis.verdict is Verdict.UNEXPLAINED:
+        words = "; ".join(dict.fromkeys(d.words for d in diagnosis.depends_on[:4]))
+        named = f" Named were {'; '.join(added)}: {_fall(diagnosis)}." if added else ""
+        return (
+            f"Something is left that no effect of the library accounts for: "
+            f"{microns(excess(diagnosis.fit))} rms beyond the stated noise of "
+            f"{microns(float((diagnosis.run.u**2).mean() ** 0.5))}. It is no noise: "
+            f"{words or 'it varies with nothing that was recorded'}.{named}"
+        )
+    named = f" Added by name were {'; '.join(added)}: {_fall(diagnosis)}." if added else ""
+    return (
+        f"Nothing is missing that this run could have shown: the error of held-out touches is "
+        f"{microns(diagnosis.fit.test_rms)}, and the noise is {noise_words(diagnosis.fit)}.{named}"
+    )
