@@ -22,11 +22,10 @@ from artefact.touch_choice import (
     PlacementOptions,
     chosen_poses,
     chosen_touches_on,
-    clear_touches,
     each_at,
     face_grid,
     table_poses,
-    touches_at,
+    touches_to_choose_from,
 )
 from artefact.touchable import Probing, Requests, joined
 from sensitivity.blocks import Progress, silent
@@ -104,7 +103,7 @@ def place(
     progress("placement", 3, 6)
     poses = chosen_poses(aim, standard, all_poses, options)
     progress("placement", 4, 6)
-    tried = clear_touches(aim.probing, standard, touches_at(standard, poses, pitch=5))
+    tried = touches_to_choose_from(aim, standard, poses, options)
     requests = chosen_touches_on(aim, standard, tried, options)
     standard = _with_shares(aim, standard, requests)
     progress("placement", 5, 6)

@@ -14,6 +14,10 @@ from twin.errors import NotReachable
 from twin.frames import Array
 from twin.units import DEG, UM
 
+_PITCHES = (5, 9, 15)  # points each way on a face
+_CHOICE = (
+    2.0  # touches that can be made, for each that is wanted, on the coarsest grid that will do
+)
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face
 _OVERSHOOT = 6.0 * DEG  # left at the ends of a rotary travel, to approach readings from both sides
 _SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
@@ -130,6 +134,18 @@ def chosen_poses(
     chosen = best_groups(aim.purpose, aim.rows(tried), group.reshape(-1), options.poses, take)
     picked: Array = seen[sorted(chosen)]
     return picked
+
+
+def touches_to_choose_from(
+    aim: Criterion, standard: Standard, poses: Array, options: PlacementOptions
+) -> Requests:
+    """Touches that can be made at some poses, on grids as fine as a choice among them needs."""
+    tried = clear_touches(aim.probing, standard, touches_at(standard, poses, _PITCHES[0]))
+    for pitch in _PITCHES[1:]:
+        if len(tried) >= _CHOICE * options.touches:
+            break
+        tried = clear_touches(aim.probing, standard, touches_at(standard, poses, pitch))
+    return tried
 
 
 def chosen_touches_on(

@@ -1,0 +1,77 @@
+"""How fast and how good is the Monte Carlo?   python benchmarks/montecarlo.py [DRAWS] [POSES]
+
+Prints the time of mean, standard deviation, quantiles and recurrence of the volumetric error, the
+rate of the product it rests on against the plain matrix-product rate of the same run, the error of
+the histogram's quantile against sorting, and the sampling error that is stated beside it.
+"""
+
+import platform
+import resource
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from sensitivity.montecarlo import volumetric
+from sensitivity.sampling import Distributions, Population, coefficients, drawn_in_chunks
+from sensitivity.workspace import Workspace, latin_hypercube
+from twin.files.machine_file import read_machine
+from twin.touches import at_poses
+from twin.units import UM
+
+MACHINE = Path(__file__).parent.parent / "examples" / "hsm600u-machine.toml"
+LENGTH = 160.0
+
+
+def matrix_rate() -> float:
+    """float64 matrix products, GFLOP/s."""
+    a = np.random.default_rng(0).normal(size=(1500, 1500))
+    times = []
+    for _ in range(5):
+        start = time.perf_counter()
+        _ = a @ a
+        times.append(time.perf_counter() - start)
+    return 2 * 1500**3 / min(times) / 1e9
+
+
+def main(draws: int, poses: int) -> None:
+    """Print the figures."""
+    chain = read_machine(MACHINE)
+    q = latin_hypercube(Workspace(chain, {}, LENGTH), poses, np.random.default_rng(1))
+    rate = matrix_rate()
+    print(f"{platform.processor() or platform.machine()}, numpy {np.__version__}")
+    print(f"matrix product, float64: {rate:.0f} GFLOP/s")
+    for periods in ((1,), (1, 2, 3)):
+        population = Population(chain, distributions=Distributions(periods=periods))
+        start = time.perf_counter()
+        found = volumetric(population, q, LENGTH, draws, np.random.default_rng(2))
+        taken = time.perf_counter() - start
+        columns = len(population.model.parameters)
+        flops = 2.0 * 3 * poses * draws * columns
+        print(
+            f"{draws} machines x {poses} poses, {columns} columns: {taken:.2f} s, "
+            f"{flops / taken / 1e9:.0f} GFLOP/s = {flops / taken / 1e9 / rate:.0%} of the product"
+        )
+        print(f"  stated sampling error of the P95: {np.mean(found.p95_u) / UM:.2f} µm")
+    some = slice(0, 50)
+    theta = np.concatenate(
+        [
+            coefficients(population, lot)
+            for lot in drawn_in_chunks(population, draws, np.random.default_rng(2))
+        ]
+    )
+    G = population.model.tip_columns(at_poses(chain, q[some], LENGTH))
+    sorted_p95 = np.quantile(
+        np.linalg.norm(np.einsum("nik,sk->nsi", G, theta), axis=2), 0.95, axis=1
+    )
+    off = np.abs(found.p95[some] / sorted_p95 - 1.0)
+    print(
+        f"P95 by histogram against sorting, 50 poses: {off.mean():.1e} mean, {off.max():.1e} worst"
+    )
+    print(f"memory: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB")
+
+
+if __name__ == "__main__":
+    numbers = [int(word) for word in sys.argv[1:3]]
+    main(*(numbers + [2000, 2000][len(numbers) :]))
