@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.candidates import Complement, Signatures, projected
-from diagnosis.evidence import EffectSet, score_all
+from diagnosis.candidates import Signatures, Sized, projected
+from diagnosis.evidence import EffectSet, addition, score_all
 from diagnosis.refine import refined
 from twin.effect import Effect
 from twin.frames import Array
@@ -29,15 +29,20 @@ class Rival:
     """An effect that explains what another one explains.
 
     Attributes:
-        effect: With its inner parameters refined.
+        sized: With its inner parameters refined.
         log_odds: Evidence for the named effect against this one, in natural logarithms; small or
             negative where the run cannot tell them apart.
         overlap: Correlation of what the two explain, 1 where the signatures coincide.
     """
 
-    effect: Effect
+    sized: Sized
     log_odds: float
     overlap: float
+
+    @property
+    def effect(self) -> Effect:
+        """The effect itself."""
+        return self.sized.effect
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,14 +50,19 @@ class ConfusionClass:
     """A found effect with everything that the run cannot tell it from.
 
     Attributes:
-        effect: The named one: most evidence, ties broken by what is usual.
+        sized: The named one: most evidence, ties broken by what is usual.
         rivals: Not told apart, most likely first.
         told_apart: Next in line, but clearly behind.
     """
 
-    effect: Effect
+    sized: Sized
     rivals: tuple[Rival, ...]
     told_apart: tuple[Rival, ...]
+
+    @property
+    def effect(self) -> Effect:
+        """The named effect itself."""
+        return self.sized.effect
 
 
 def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float]:
@@ -90,41 +100,34 @@ def _own_sensor(effect: Effect, touches: Touches) -> float:
 
 def confusion_class(
     pool: Signatures,
-    effect: Effect,
-    others: Sequence[Effect],
+    found: Sized,
+    others: Sequence[Sized],
     fixed: Array | None = None,
 ) -> ConfusionClass:
     """Everything that explains what a found effect explains, with the other effects in place.
 
     Args:
         pool: Signatures of all candidates.
-        effect: The found one, refined.
+        found: The found one, refined.
         others: The other found ones.
         fixed: Columns that are in the model besides, (N + P, K).
     """
     complement = pool.complement
-    base = _columns(complement, others, fixed)
-    without = EffectSet(complement, base)
-    scores = score_all(without, pool)
-    top = EffectSet(complement, np.hstack([base, projected(complement, [effect])])).evidence
-    names = {effect.name} | {e.name for e in others}
-    found = [Rival(effect, 0.0, 1.0)]
-    explained = _explained(without, effect)
+    A = projected(complement, others)
+    base = EffectSet(complement, A if fixed is None else np.hstack([fixed, A]))
+    scores = score_all(base, pool)
+    top, _ = addition(base, projected(complement, [Sized(found.effect)]))
+    names = {found.effect.name} | {o.effect.name for o in others}
+    rivals = [Rival(found, 0.0, 1.0)]
+    explained = _explained(base, found)
     for variant in _ranked(pool, scores.evidence, top - WINDOW):
         candidate = pool.variants[variant]
         if candidate.name in names:
             continue
-        tuned, evidence = refined(complement, candidate, base, levels=2)
-        overlap = float(abs(explained @ _explained(without, tuned)))
-        found.append(Rival(tuned, float(top - evidence), overlap))
-    return _ordered(found, plausibility([r.effect for r in found], complement.touches))
-
-
-def _columns(complement: Complement, effects: Sequence[Effect], fixed: Array | None) -> Array:
-    blocks = [] if fixed is None else [fixed]
-    if effects:
-        blocks.append(projected(complement, effects))
-    return np.hstack(blocks) if blocks else np.zeros((len(complement.residual), 0))
+        sized, evidence = refined(base, candidate, levels=2)
+        overlap = float(abs(explained @ _explained(base, sized)))
+        rivals.append(Rival(sized, float(top - evidence), overlap))
+    return _ordered(rivals, plausibility([r.effect for r in rivals], complement.touches))
 
 
 def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
@@ -135,9 +138,9 @@ def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     return [int(v) for v in ranked if evidence[v] > least][:MOST_RIVALS]
 
 
-def _explained(without: EffectSet, effect: Effect) -> Array:
+def _explained(without: EffectSet, sized: Sized) -> Array:
     """Direction of what an effect explains beyond a set, (N + P,), of length 1."""
-    C = projected(without.complement, [effect])
+    C = projected(without.complement, [sized])
     whole = EffectSet(without.complement, np.hstack([without.A, C]))
     difference = without.residual - whole.residual
     return np.asarray(difference / max(float(np.linalg.norm(difference)), 1e-300))
@@ -151,6 +154,6 @@ def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:
 
     head = min(found, key=rank)
     rest = sorted((r for r in found if r is not head), key=rank)
-    shifted = [Rival(r.effect, r.log_odds - head.log_odds, r.overlap) for r in rest]
+    shifted = [Rival(r.sized, r.log_odds - head.log_odds, r.overlap) for r in rest]
     close = tuple(r for r in shifted if r.log_odds < CONFUSED)
-    return ConfusionClass(head.effect, close, tuple(r for r in shifted if r.log_odds >= CONFUSED))
+    return ConfusionClass(head.sized, close, tuple(r for r in shifted if r.log_odds >= CONFUSED))

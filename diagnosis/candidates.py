@@ -78,9 +78,26 @@ class Complement:
         return out
 
 
-def projected(complement: Complement, effects: Sequence[Effect]) -> Array:
+@dataclass(frozen=True, slots=True, eq=False)
+class Sized:
+    """An effect, and how many times larger than usual it is taken to be.
+
+    Attributes:
+        effect: With its inner parameters.
+        scale: Factor on the prior standard deviations of its parameters.
+    """
+
+    effect: Effect
+    scale: float = 1.0
+
+
+def projected(complement: Complement, sized: Sequence[Sized]) -> Array:
     """Projected, whitened, scaled columns of effects at their present tuning, (N + P, K)."""
-    return complement.project(complement.columns(effects))
+    if not sized:
+        return np.zeros((len(complement.residual), 0))
+    C = complement.columns([s.effect for s in sized])
+    scale = np.repeat([s.scale for s in sized], [len(s.effect.parameters) for s in sized])
+    return complement.project(C * scale)
 
 
 def tuned_variants(effect: Effect, touches: Touches) -> list[Effect]:

@@ -6,7 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.ambiguity import ConfusionClass, confusion_class
-from diagnosis.candidates import Complement, Progress, Signatures, projected, quiet, signatures
+from diagnosis.candidates import (
+    Complement,
+    Progress,
+    Signatures,
+    Sized,
+    projected,
+    quiet,
+    signatures,
+)
 from diagnosis.describe import reported
 from diagnosis.detectable import detectable
 from diagnosis.evidence import EffectSet
@@ -37,6 +45,10 @@ CLEARLY = 15.0
 """Log odds by which one pattern without a name must beat all library effects together to say that
 they only imitate it."""
 
+FREEDOM = 3.0
+"""Factor on the prior of a found effect in its last fit: being found tells more of its size than
+what is usual, and an estimate shall not be drawn to zero."""
+
 DEPENDENCES = 2
 """Patterns, one after the other, of which `depends_on` tells."""
 
@@ -51,13 +63,16 @@ class Task:
 
     def fit(
         self,
-        effects: Sequence[Effect] = (),
+        effects: Sequence[Sized] = (),
         gross: GrossErrors | None = None,
         free_inner: bool = False,
     ) -> Fit:
         """The model with further effects, fitted; twice where inner parameters are set free."""
-        model = Model(self.model.chain, (*self.model.effects, *effects))
-        prior = self.prior.joined(Prior.of_effects(effects)) if effects else self.prior
+        model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
+        prior = self.prior
+        for sized in effects:
+            usual = Prior.of_effects([sized.effect])
+            prior = prior.joined(usual.widened(FREEDOM * sized.scale))
         fit = fit_run(self.run, model, prior, gross=gross)
         if not free_inner or not effects:
             return fit
@@ -73,7 +88,7 @@ class _Round:
     pool: Signatures
     search: Search
     chosen: Chosen
-    effects: tuple[Effect, ...]
+    effects: tuple[Sized, ...]
     left: tuple[Structure, ...]
     nameless: tuple[Structure, ...]
 
@@ -113,13 +128,13 @@ def diagnose(
     task = Task(run, start, prior or Prior.of_effects(start.effects))
     library = proposals(run.touches) if candidates is None else list(candidates)
     added = _tuned(task, named, progress)
-    known = {e.name for e in (*start.effects, *added)}
+    known = {e.name for e in (*start.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     final = _rounds(task, added, library, progress)
     return _result(task, added, final, progress, rng)
 
 
-def _tuned(task: Task, named: Sequence[Effect], progress: Progress) -> tuple[Effect, ...]:
+def _tuned(task: Task, named: Sequence[Effect], progress: Progress) -> tuple[Sized, ...]:
     """Named effects with their inner parameters at the best point of their grids, refined."""
     if not named:
         return ()
@@ -129,13 +144,13 @@ def _tuned(task: Task, named: Sequence[Effect], progress: Progress) -> tuple[Eff
     chosen = search.chosen(())
     for _ in named:
         best = search.ranking(chosen)[0]
-        chosen = search.chosen((*chosen.members, search.member(best)))
+        chosen = search.chosen((*chosen.members, search.member(chosen, best)))
     ordered = sorted(search.polished(chosen).members, key=lambda m: m.candidate)
-    return tuple(refined_set(complement, [m.effect for m in ordered]))
+    return tuple(refined_set(complement, [Sized(m.effect, m.scale) for m in ordered]))
 
 
 def _rounds(
-    task: Task, added: tuple[Effect, ...], library: Sequence[Effect], progress: Progress
+    task: Task, added: tuple[Sized, ...], library: Sequence[Effect], progress: Progress
 ) -> _Round:
     """Gross errors and effects in turn, until the gross errors stay what they are."""
     base = task.fit(added)
@@ -145,7 +160,7 @@ def _rounds(
         again = task.fit((*added, *result.effects)).gross
         if np.array_equal(again.rows, base.gross.rows):
             break
-        base, found = task.fit(added, gross=again), tuple(e.name for e in result.effects)
+        base, found = task.fit(added, gross=again), tuple(s.effect.name for s in result.effects)
     return result
 
 
@@ -157,7 +172,7 @@ def _round(
     search = Search(pool, progress=progress)
     nothing = search.chosen(())
     ranked = search.ranking(nothing)
-    start = [search.member(v) for v in ranked if pool.variants[v].name in found]
+    start = [search.member(nothing, v) for v in ranked if pool.variants[v].name in found]
     chosen = search.run(start)
     left = find_structure(chosen.effects, progress)
     if not left and chosen.members:
@@ -169,7 +184,7 @@ def _round(
         search = Search(pool, fixed, progress)
         chosen = search.run(chosen.members)
         left = find_structure(chosen.effects, progress)
-    effects = refined_set(pool.complement, [m.effect for m in chosen.members])
+    effects = refined_set(pool.complement, [Sized(m.effect, m.scale) for m in chosen.members])
     return _Round(base, pool, search, chosen, tuple(effects), tuple(left), tuple(nameless))
 
 
@@ -186,7 +201,7 @@ def _beaten(at_start: Sequence[Structure], nothing: Chosen, chosen: Chosen) -> l
 
 def _result(
     task: Task,
-    added: tuple[Effect, ...],
+    added: tuple[Sized, ...],
     final: _Round,
     progress: Progress,
     rng: np.random.Generator | None,
@@ -207,7 +222,7 @@ def _result(
     start = _structures(Complement.of(task.fit(gross=gross)), progress)
     left = (*final.nameless, *final.left)
     progress(0.8, "what the run could have shown")
-    effects = EffectSet(final.pool.complement, _all_columns(final))
+    effects = EffectSet(final.pool.complement, projected(final.pool.complement, final.effects))
     return Diagnosis(
         task.run,
         verdict,
@@ -237,17 +252,9 @@ def _classes(final: _Round) -> list[ConfusionClass]:
     return out
 
 
-def _all_columns(final: _Round) -> Array:
-    """Projected columns of all found effects."""
-    complement = final.pool.complement
-    if not final.effects:
-        return np.zeros((len(complement.residual), 0))
-    return projected(complement, final.effects)
-
-
 def _steps(
     task: Task,
-    added: tuple[Effect, ...],
+    added: tuple[Sized, ...],
     final: _Round,
     classes: Sequence[ConfusionClass],
     verified: dict[str, Verified],
@@ -256,15 +263,16 @@ def _steps(
     """The error falling: the model to begin with, named effects, found effects by their worth."""
     p_values = [verified[m.effect.name].p_value for m in final.chosen.members]
     order = _by_worth(final)
-    heads = [classes[i].effect for i in order]
+    heads = [classes[i].sized for i in order]
     effects = [*added, *heads]
     last = task.fit(effects, gross, free_inner=True)
     out = [Step(None, task.fit((), gross), 1.0, (), None)]
-    for k, effect in enumerate(effects):
+    for k, sized in enumerate(effects):
         fit = last if k + 1 == len(effects) else task.fit(effects[: k + 1], gross)
         i = order[k - len(added)] if k >= len(added) else -1
         p = p_values[i] if i >= 0 else _named_probability(out[-1].fit, fit)
-        out.append(Step(effect, fit, p, reported(last, effect), classes[i] if i >= 0 else None))
+        confusion = classes[i] if i >= 0 else None
+        out.append(Step(sized.effect, fit, p, reported(last, sized.effect), confusion))
     return tuple(out)
 
 
@@ -303,7 +311,7 @@ def _candidates(final: _Round) -> tuple[Candidate, ...]:
     n = len(final.pool.complement.u)
     out = []
     for variant in search.ranking(nothing)[:LISTED]:
-        member = search.member(variant)
+        member = search.member(nothing, variant)
         effects = search.chosen((member,)).effects
         u = final.pool.complement.u
         out.append(
@@ -349,7 +357,7 @@ def _dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
 
 def _plans(
     task: Task,
-    added: tuple[Effect, ...],
+    added: tuple[Sized, ...],
     classes: Sequence[ConfusionClass],
     gross: GrossErrors,
     rng: np.random.Generator | None,
@@ -357,13 +365,13 @@ def _plans(
     """For every found effect the touches that would tell it from its likeliest distinct rival."""
     if rng is None:
         return ()
-    heads = [c.effect for c in classes]
+    heads = [c.sized for c in classes]
     out = []
     for i, confusion in enumerate(classes):
         for rival in confusion.rivals:
-            instead = [*heads[:i], rival.effect, *heads[i + 1 :]]
+            instead = [*heads[:i], rival.sized, *heads[i + 1 :]]
             fits = [task.fit((*added, *effects), gross) for effects in (heads, instead)]
-            found = plan(fits[0], fits[1], (heads[i].name, rival.effect.name), rng)
+            found = plan(fits[0], fits[1], (heads[i].effect.name, rival.effect.name), rng)
             if found is not None:
                 out.append(found)
                 break

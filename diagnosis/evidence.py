@@ -16,11 +16,16 @@ VISIBLE = 0.25
 """Squared signature per unit of prior, over the noise, below which a direction of an effect's
 parameters could not be seen even at its expected size; it is not counted as a degree of freedom."""
 
+SCALES = (1.0, 4.0, 16.0)
+"""How many times larger than usual an effect may be; the likeliest factor is taken."""
+
 SMALLEST = 1e-300
 """Probabilities are not told smaller than this."""
 
 
-def f_probability(drop: Array | float, k: Array | float, rest: Array | float, dof: float) -> Array:
+def f_probability(
+    drop: Array | float, k: Array | float, rest: Array | float, dof: Array | float
+) -> Array:
     """Probability of an F statistic at least as large: drop over k against rest over dof.
 
     Args:
@@ -159,17 +164,17 @@ class Scores:
     """What every variant would do if it came into a set of effects.
 
     Attributes:
-        drop: Fall of the objective with the prior in force, (V,).
         free_drop: Fall of the squared residual over visible directions, prior aside, (V,).
         freedom: Number of those directions, (V,).
         evidence: Log evidence of the set with the variant, (V,).
+        scale: Factor on its usual size that gives most evidence, (V,).
         p: Probability of such a fall by chance, one variant, no correction, (V,).
     """
 
-    drop: Array
     free_drop: Array
     freedom: Array
     evidence: Array
+    scale: Array
     p: Array
 
 
@@ -182,21 +187,48 @@ def score_all(effects: EffectSet, pool: Signatures) -> Scores:
     E = effects.whiten(pool.C)
     g = pool.along - E.T @ effects.along
     count = len(pool.variants)
-    drop, free, freedom, log_det = (np.zeros(count) for _ in range(4))
+    free, freedom, evidence = np.zeros(count), np.zeros(count), np.zeros(count)
+    scale = np.ones(count)
     for k, (which, cols) in pool.by_width.items():
         own = np.moveaxis(E[:, cols], 0, 1)  # (V_k, K, k)
         S = pool.gram[k] - np.einsum("vai,vaj->vij", own, own)
-        values, vectors = np.linalg.eigh(S)
-        values = np.maximum(values, 0.0)
-        along = np.einsum("vij,vi->vj", vectors, g[cols]) ** 2
-        drop[which] = (along / (1.0 + values)).sum(axis=1)
-        log_det[which] = np.log1p(values).sum(axis=1)
+        values, along = _principal(S, g[cols])
+        evidence[which], scale[which] = _scaled_evidence(effects, values, along)
         seen = values > VISIBLE
         free[which] = np.where(seen, along / np.where(seen, values, 1.0), 0.0).sum(axis=1)
         freedom[which] = seen.sum(axis=1)
     rest = np.maximum(effects.objective - free, 1e-9)
-    p = np.where(
-        freedom > 0, f_probability(free, freedom, rest, effects.dof - float(freedom.max())), 1.0
-    )
-    total = log_evidence(effects.complement, effects.objective - drop, effects.log_det + log_det)
-    return Scores(drop, free, freedom, total, p)
+    p = f_probability(free, freedom, rest, effects.dof - freedom)
+    return Scores(free, freedom, evidence, scale, np.where(freedom > 0, p, 1.0))
+
+
+def _principal(S: Array, g: Array) -> tuple[Array, Array]:
+    """Eigenvalues of S (V, k, k) and squared parts of g (V, k) along its eigenvectors."""
+    values, vectors = np.linalg.eigh(S)
+    return np.maximum(values, 0.0), np.einsum("vij,vi->vj", vectors, g) ** 2
+
+
+def _scaled_evidence(effects: EffectSet, values: Array, along: Array) -> tuple[Array, Array]:
+    """Log evidence (V,) at the likeliest scale (V,)."""
+    tried = []
+    for scale in SCALES:
+        wide = scale * scale * values
+        drop = (scale * scale * along / (1.0 + wide)).sum(axis=1)
+        log_det = effects.log_det + np.log1p(wide).sum(axis=1)
+        tried.append(log_evidence(effects.complement, effects.objective - drop, log_det))
+    best = np.argmax(tried, axis=0)
+    return np.max(tried, axis=0), np.array(SCALES)[best]
+
+
+def addition(effects: EffectSet, C: Array) -> tuple[float, float]:
+    """Log evidence of a set with one effect more, and the likeliest scale of the effect.
+
+    Args:
+        effects: The set without it.
+        C: Its projected columns at scale 1, (N + P, k).
+    """
+    E = effects.whiten(C)
+    S = C.T @ C - E.T @ E
+    g = C.T @ effects.complement.residual - E.T @ effects.along
+    evidence, scale = _scaled_evidence(effects, *_principal(S[None], g[None]))
+    return float(evidence[0]), float(scale[0])

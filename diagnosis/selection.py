@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.candidates import Complement, Progress, Signatures, quiet
-from diagnosis.evidence import EffectSet, Scores, f_probability, score_all
+from diagnosis.evidence import EffectSet, Scores, score_all
 from twin.effect import Effect
 from twin.frames import Array
 
@@ -45,11 +45,13 @@ class Member:
         variant: Index into the variants of the pool.
         candidate: Index into its names.
         effect: With its inner parameters.
+        scale: Factor on its usual size.
     """
 
     variant: int
     candidate: int
     effect: Effect
+    scale: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,7 +101,7 @@ def effect_set(
 ) -> EffectSet:
     """Set of members of a pool, with further fixed columns beside them."""
     blocks = [] if fixed is None else [fixed]
-    blocks += [pool.columns_of(m.variant) for m in members]
+    blocks += [m.scale * pool.columns_of(m.variant) for m in members]
     rows = len(complement.residual)
     return EffectSet(complement, np.hstack(blocks) if blocks else np.zeros((rows, 0)))
 
@@ -120,21 +122,22 @@ class Search:
         self.complement = pool.complement
         self.fixed = fixed
         self.progress = progress
-        self._scores: dict[tuple[int, ...], Scores] = {}
+        self._scores: dict[tuple[tuple[int, float], ...], Scores] = {}
 
     def chosen(self, members: Iterable[Member]) -> Chosen:
         """A set in the projection."""
         members = tuple(members)
         return Chosen(members, effect_set(self.complement, self.pool, members, self.fixed))
 
-    def member(self, variant: int) -> Member:
-        """A variant as a member of a set."""
-        effect = self.pool.variants[variant]
-        return Member(variant, int(self.pool.owner[variant]), effect)
+    def member(self, chosen: Chosen, variant: int) -> Member:
+        """A variant as an addition to a set, at its likeliest scale there."""
+        scale = float(self.scores(chosen).scale[variant])
+        owner = int(self.pool.owner[variant])
+        return Member(variant, owner, self.pool.variants[variant], scale)
 
     def scores(self, chosen: Chosen) -> Scores:
         """Scores of all variants as additions to a set, computed once."""
-        key = tuple(sorted(m.variant for m in chosen.members))
+        key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
         if key not in self._scores:
             self._scores[key] = score_all(chosen.effects, self.pool)
         return self._scores[key]
@@ -159,17 +162,17 @@ class Search:
             direction = self.explained(chosen, variant)
             if all(abs(direction @ d) < ALIKE for d in directions):
                 directions.append(direction)
-                out.append(self.chosen((*chosen.members, self.member(variant))))
+                out.append(self.chosen((*chosen.members, self.member(chosen, variant))))
         return out
 
     def explained(self, chosen: Chosen, variant: int) -> Array:
         """Direction of what a variant would explain beyond a set, (N + P,), of length 1."""
         effects = chosen.effects
-        C = self.pool.columns_of(variant)
+        C = self.scores(chosen).scale[variant] * self.pool.columns_of(variant)
         E = effects.whiten(C)
         S = C.T @ C - E.T @ E
-        g = self.pool.along[self.pool.start[variant] : self.pool.start[variant + 1]]
-        phi = np.linalg.solve(S + np.eye(len(S)), g - E.T @ effects.along)
+        g = C.T @ self.complement.residual - E.T @ effects.along
+        phi = np.linalg.solve(S + np.eye(len(S)), g)
         direction = C @ phi - effects.A @ _coefficients(effects, C @ phi)
         return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-300))
 
@@ -182,9 +185,9 @@ class Search:
                 others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
                 best = self.ranking(others)[0]
                 gain = self.scores(others).evidence[best] - chosen.effects.evidence
-                if gain > 1e-6 and best != chosen.members[i].variant:
+                if gain > 1e-6:
                     members = list(chosen.members)
-                    members[i] = self.member(best)
+                    members[i] = self.member(others, best)
                     chosen, improved = self.chosen(members), True
         return chosen
 
@@ -257,10 +260,3 @@ def _coefficients(effects: EffectSet, b: Array) -> Array:
         return np.zeros(0)
     G = effects.A.T @ effects.A + np.eye(effects.A.shape[1])
     return np.asarray(np.linalg.solve(G, effects.A.T @ b))
-
-
-def joint_probability(effects: EffectSet, without: EffectSet) -> float:
-    """Probability by chance of what the further columns of a set explain, uncorrected."""
-    k = effects.A.shape[1] - without.A.shape[1]
-    drop = without.objective - effects.objective
-    return float(f_probability(drop, k, effects.objective, effects.dof))
