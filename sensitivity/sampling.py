@@ -28,20 +28,22 @@ class Distributions:
     """What the errors of random machines look like over the readings of their axes.
 
     Attributes:
-        shapes: Drawn with equal chance for every component error.
+        shapes: Drawn with equal chance for every component error of a linear axis.
+        rotary_shapes: The same for a rotary axis, whose errors repeat every turn.
         periods: Numbers of periods of a sinusoidal error, drawn with equal chance; over the range
             of a linear axis, over a turn of a rotary one.
     """
 
     shapes: tuple[ShapeName, ...] = ("linear", "parabolic", "sinusoidal")
+    rotary_shapes: tuple[ShapeName, ...] = ("sinusoidal",)
     periods: tuple[int, ...] = (1,)
 
     def __post_init__(self) -> None:
-        unknown = [s for s in self.shapes if s not in SHAPES]
-        if unknown or not self.shapes:
-            raise DesignError(
-                f"shapes {list(self.shapes)}: expected at least one of {', '.join(SHAPES)}"
-            )
+        for shapes in (self.shapes, self.rotary_shapes):
+            if not shapes or any(s not in SHAPES for s in shapes):
+                raise DesignError(
+                    f"shapes {list(shapes)}: expected at least one of {', '.join(SHAPES)}"
+                )
         if not self.periods or min(self.periods) < 1:
             raise DesignError(f"periods {list(self.periods)}: expected whole numbers from 1 up")
 
@@ -66,8 +68,11 @@ class Population:
         Location and set-up errors are constants, and so are the errors of a spindle that stays at
         one angle.
         """
-        if symbol.family is not Family.COMPONENT or not self.chain.link(symbol.link).programmed:
+        link = self.chain.link(symbol.link)
+        if symbol.family is not Family.COMPONENT or not link.programmed:
             return ("constant",)
+        if link.kind == "rotary":
+            return self.distributions.rotary_shapes
         return self.distributions.shapes
 
     @property

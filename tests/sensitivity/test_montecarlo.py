@@ -13,8 +13,8 @@ from twin.touches import at_poses
 from twin.units import UM
 
 LENGTH = 160.0
-BIN = 2e-3
-"""The histogram is good to 0.1 % of the root mean square; twice that for the largest of many."""
+BIN = 5.0 / 2048
+"""A quantile lies in the bin that holds it: a 2048th of five times the root mean square."""
 
 
 @pytest.fixture(scope="module")
