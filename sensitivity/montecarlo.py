@@ -84,7 +84,7 @@ def volumetric(
     The deviations of all machines at all poses are one product of matrices, taken in blocks; of
     each block only sums and a histogram are kept. Memory: 24 K + 8 `DRAWS_A_CHILD` + 8192 bytes a
     pose, K the parameters of `Population.model`. Quantiles are read from 2048 bins up to five times
-    the root mean square, good to 0.1 % of it.
+    the root mean square, so they are off by a quarter of a percent of it at most.
 
     Args:
         population: What to draw from.
