@@ -3,14 +3,14 @@
 Nothing is tilted: X and Y are readings less the preset, Z is that of the ball's lowest point.
 """
 
-from dataclasses import astuple
 from pathlib import Path
 
 import numpy as np
 from ex06_step import standard
 
+from artefact.touchable import joined
 from probe_paths.interpreter import interpret
-from probe_paths.plan import TouchRequests, requests_at
+from probe_paths.plan import requests_at
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from probe_paths.program import make_programs
@@ -26,7 +26,7 @@ POSES = [("FF1", 0, 0), ("FF2", 0, 0), ("FF2", -40, 180), ("FF3", -50, -60), ("F
 def main():
     chain, made = read_machine(HERE / "hsm600u-machine.toml"), standard()
     each = [requests_at(made, name, UV, np.array([c, b]) * DEG) for name, b, c in POSES]
-    wanted = TouchRequests(*map(np.concatenate, zip(*map(astuple, each), strict=True)))
+    wanted = joined(each)
     programs = make_programs(plan_touches(made, chain, Probe(), Setup("a"), wanted))
     (program,) = programs.programs
     read = interpret(program.text.encode(), Path("MS_A_1.H"), programs.masks.get, chain)

@@ -4,7 +4,6 @@ The true ball meets the true surface, the log is read back; the proof is at pose
 """
 
 import tempfile
-from dataclasses import astuple
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -12,12 +11,13 @@ from pathlib import Path
 import numpy as np
 from ex06_step import standard
 
+from artefact.touchable import joined
 from diagnosis.fit import fit_run
 from diagnosis.proof import probed_volume, prove
 from diagnosis.proof_picture import write_proof_picture
 from probe_paths.campaign import simulate
 from probe_paths.contacts import VirtualMachine
-from probe_paths.plan import PlanOptions, TouchRequests, requests_at
+from probe_paths.plan import PlanOptions, requests_at
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from probe_paths.program import make_programs
@@ -37,7 +37,7 @@ def probed(population, errors, rng, noise=NOISE, **true):
     made, rotary = standard(), [np.array(p) * DEG for p in product(C_DEG, B_DEG)]
     sets = [(p.name, FACE) for p in made.patches] + [(s.name, BALL) for s in made.spheres]
     each = [requests_at(made, *one, pose) for one in sets for pose in rotary]
-    wanted = TouchRequests(*map(np.concatenate, zip(*map(astuple, each), strict=True)))
+    wanted = joined(each)
     options = PlanOptions(tolerated=len(wanted))  # leave out what the probe cannot reach
     plan = plan_touches(made, population.chain, Probe(), Setup("a"), wanted, options)
     caused = partial(contribution, errors)  # by all effects, at any touches

@@ -24,7 +24,7 @@ from diagnosis.proof import Proof, probed_volume, prove
 from matstd.project_file import Project
 from probe_paths.campaign import Campaign, simulate
 from probe_paths.contacts import VirtualMachine
-from probe_paths.plan import TouchPlan, TouchRequests
+from probe_paths.plan import TouchPlan
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from probe_paths.program import ProgramSet, make_programs
@@ -143,9 +143,9 @@ def _placement(
 
 def _plan(project: Project, placement: Placement) -> TouchPlan:
     """Touches that the placement wants, in the order of a cautious operator."""
-    wanted = placement.requests
-    requests = TouchRequests(wanted.feature, wanted.point, wanted.normal, wanted.rotary)
-    return plan_touches(placement.standard, project.chain, _probe(project), project.setup, requests)
+    return plan_touches(
+        placement.standard, project.chain, _probe(project), project.setup, placement.requests
+    )
 
 
 def _prove(

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from artefact.standard import Standard
+from artefact.touchable import Requests
 from probe_paths.clearance import TABLE_RADIUS
 from probe_paths.order import Visit
 from probe_paths.probe import Probe
@@ -55,31 +56,11 @@ class PlanOptions:
     tolerated: int = 0
 
 
-@dataclass(frozen=True, eq=False)
-class TouchRequests:
-    """Touches that somebody wants, in any order.
-
-    Attributes:
-        feature: Names of features, (N,).
-        point: Contact points, artefact frame, (N, 3), mm.
-        normal: Outward unit normals there, (N, 3).
-        rotary: Readings of the rotary axes in chain order, (N, R), rad.
-    """
-
-    feature: Labels
-    point: Array
-    normal: Array
-    rotary: Array
-
-    def __len__(self) -> int:
-        return len(self.point)
-
-
-def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> TouchRequests:
+def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> Requests:
     """Touches at parameters (N, 2) of one feature at rotary readings (N, R) or (R,), rad."""
     surface = standard.features[feature]
     rotary = np.broadcast_to(np.asarray(rotary, dtype=float), (len(uv), np.shape(rotary)[-1]))
-    return TouchRequests(np.full(len(uv), feature), surface.point(uv), surface.normal(uv), rotary)
+    return Requests(np.full(len(uv), feature), surface.point(uv), surface.normal(uv), rotary)
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from artefact.standard import Standard
+from artefact.touchable import Requests
 from probe_paths.clearance import Room, obstacles, readings_at, swing_height, top_height
 from probe_paths.frame import LINEAR, ProgramFrame
 from probe_paths.heading import rounded_setup
 from probe_paths.order import Visit, home_readings, nearest_neighbours, rotary_path, visits
-from probe_paths.plan import GRID, PlanOptions, Refusal, TouchPlan, TouchRequests
+from probe_paths.plan import GRID, PlanOptions, Refusal, TouchPlan
 from probe_paths.probe import Probe
 from twin.chain import Chain
 from twin.errors import DesignError, NotReachable, ShapeMismatch
@@ -42,7 +43,7 @@ def plan_touches(
     chain: Chain,
     probe: Probe,
     setup: Setup,
-    requests: TouchRequests,
+    requests: Requests,
     options: PlanOptions | None = None,
 ) -> TouchPlan:
     """Plan of all touches of one set-up.
@@ -84,7 +85,7 @@ def plan_touches(
     return replace(plan, refused=tuple(refused + failed))
 
 
-def _check_requests(standard: Standard, chain: Chain, requests: TouchRequests) -> None:
+def _check_requests(standard: Standard, chain: Chain, requests: Requests) -> None:
     n = len(requests)
     shapes = [(n, 3), (n, 3), (n, len(chain.rotary_axes))]
     found = [requests.point.shape, requests.normal.shape, requests.rotary.shape]

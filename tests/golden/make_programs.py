@@ -11,7 +11,8 @@ import numpy as np
 from artefact.datum import DatumSphere
 from artefact.freeform import FreeformPatch, graph_patch
 from artefact.standard import STEEL, Base, Standard
-from probe_paths.plan import PlanOptions, TouchPlan, TouchRequests, requests_at
+from artefact.touchable import Requests
+from probe_paths.plan import PlanOptions, TouchPlan, requests_at
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from probe_paths.program import ProgramSet, make_programs
@@ -70,7 +71,7 @@ def standard(spheres: tuple[DatumSphere, ...] | None = None) -> Standard:
     )
 
 
-def requests(of: Standard, each: int = 2) -> TouchRequests:
+def requests(of: Standard, each: int = 2) -> Requests:
     """Touches on every patch and sphere at every pose, as many of each."""
     parts = []
     rng = np.random.default_rng(1)
@@ -86,7 +87,7 @@ def requests(of: Standard, each: int = 2) -> TouchRequests:
                 continue
             assert np.all(surface.contains(uv))
             parts.append(requests_at(of, name, uv, np.array([c, b]) * DEG))
-    return TouchRequests(
+    return Requests(
         np.concatenate([p.feature for p in parts]),
         np.concatenate([p.point for p in parts]),
         np.concatenate([p.normal for p in parts]),

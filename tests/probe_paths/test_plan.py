@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from artefact.touchable import Requests
 from probe_paths.clearance import obstacles, swing_height, top_height
 from probe_paths.order import LONGEST_TURN, nearest_neighbours, visits, waypoints
-from probe_paths.plan import PlanOptions, TouchRequests, requests_at
+from probe_paths.plan import PlanOptions, requests_at
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from twin.errors import DesignError, NotReachable, ShapeMismatch
@@ -159,7 +160,7 @@ def test_refused_requests_are_kept_with_their_reason(golden):
     small = golden.standard()
     good = requests_at(small, "FF1", np.zeros((1, 2)), np.zeros(2))
     bad = requests_at(small, "SPH1", np.array([[0.0, -0.6]]), np.zeros(2))
-    both = TouchRequests(*(np.concatenate([getattr(good, k), getattr(bad, k)])
+    both = Requests(*(np.concatenate([getattr(good, k), getattr(bad, k)])
                            for k in ("feature", "point", "normal", "rotary")))  # fmt: skip
     plan = plan_touches(
         small, golden.machine(), Probe(), Setup("a"), both, PlanOptions(tolerated=1)
