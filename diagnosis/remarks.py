@@ -14,8 +14,8 @@ TOO_LOUD = 100.0
 FEW_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""
 
-LISTED = 30
-"""Gross errors that are listed one by one."""
+LISTED = 20
+"""Gross errors whose lines are told."""
 
 
 def remarks(fit: Fit) -> tuple[str, ...]:
@@ -87,7 +87,7 @@ def _noise(fit: Fit) -> list[str]:
 
 
 def _gross(fit: Fit) -> list[str]:
-    """Touches that were left out, one by one."""
+    """Touches that were left out."""
     gross = fit.gross
     if gross.too_many:
         return [
@@ -95,14 +95,15 @@ def _gross(fit: Fit) -> list[str]:
             "is treated as structure"
         ]
     rows = np.flatnonzero(gross.rows)
-    out = []
-    for i in rows[np.argsort(-np.abs(gross.score[rows]))][:LISTED]:
-        size = fit.residual[i] / UM
-        side = "outside" if size > 0 else "inside"
-        out.append(
-            f"line {fit.run.line[i]}: {abs(size):.1f} µm {side} what the other touches predict "
-            f"({abs(gross.score[i]):.0f} standard deviations): left out as a gross error"
-        )
-    if len(rows) > LISTED:
-        out.append(f"{len(rows) - LISTED} more gross errors were left out")
-    return out
+    if len(rows) == 0:
+        return []
+    rows = rows[np.argsort(-np.abs(gross.score[rows]))]
+    size = fit.residual[rows[0]] / UM
+    side = "outside" if size > 0 else "inside"
+    lines = ", ".join(str(line) for line in fit.run.line[rows[:LISTED]])
+    more = f" and {len(rows) - LISTED} more" if len(rows) > LISTED else ""
+    return [
+        f"{len(rows)} gross error{'s were' if len(rows) > 1 else ' was'} left out, the largest "
+        f"{abs(size):.1f} µm {side} what the other touches predict: "
+        f"line{'s' if len(rows) > 1 else ''} {lines}{more}"
+    ]

@@ -227,7 +227,7 @@ class Search:
         for size in range(len(best.members) + 1, MOST_EFFECTS + 1):
             grown = [s for c in carried for s in self.extensions(c, CARRIED)]
             carried = self.kept(self.polished(s) for s in grown[: CARRIED * CARRIED])
-            self.progress(size / MOST_EFFECTS, f"sets of {size} effects")
+            self.progress(size / MOST_EFFECTS, "sets of effects")
             standing = [c for c in carried if all(v.stands for v in self.verify(c))]
             better = [c for c in standing if c.effects.evidence > best.effects.evidence + WORTH]
             if not better:
