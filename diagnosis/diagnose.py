@@ -26,6 +26,7 @@ from diagnosis.refine import refined_set
 from diagnosis.regions import regions
 from diagnosis.remarks import remarks
 from diagnosis.selection import LISTED, Chosen, Member, Search, Verified
+from diagnosis.settle import settled
 from diagnosis.structure import Structure, find_structure
 from diagnosis.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from twin.effect import Effect
@@ -173,7 +174,8 @@ def _round(
     nothing = search.chosen(())
     ranked = search.ranking(nothing)
     start = [search.member(nothing, v) for v in ranked if pool.variants[v].name in found]
-    chosen = search.run(start)
+    search, chosen = settled(search, search.run(start))
+    pool = search.pool
     left = find_structure(chosen.effects, progress)
     if not left and chosen.members:
         left = _beaten(find_structure(nothing.effects, progress), nothing, chosen)

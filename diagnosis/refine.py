@@ -1,10 +1,11 @@
 """Inner parameters beyond the grid: a finer and finer scan around the best point."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.candidates import Complement, Sized, projected
+from diagnosis.candidates import Complement, Signatures, Sized, projected
 from diagnosis.evidence import EffectSet, addition
 from diagnosis.inner import continuous_inner, spacing
 from twin.effect import Effect, Tunable
@@ -14,6 +15,13 @@ POINTS = 9
 
 LEVELS = 4
 """Scans, each four times finer than the one before."""
+
+SWEEPS = 6
+"""Most turns through the inner parameters of an effect that has several: the best value of one
+depends on the others."""
+
+SETTLED = 0.01
+"""Gain of log evidence in one turn below which they are settled."""
 
 
 def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[Sized, float]:
@@ -25,7 +33,20 @@ def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[Size
         levels: Number of scans.
     """
     best, (top, scale) = effect, _addition(base, effect)
-    for index, inner, _ in continuous_inner(effect, base.complement.touches):
+    several = len(continuous_inner(effect, base.complement.touches)) > 1
+    for _ in range(SWEEPS if several else 1):
+        before = top
+        best, top, scale = _sweep(base, best, top, scale, levels)
+        if top - before < SETTLED:
+            break
+    return Sized(best, scale), top
+
+
+def _sweep(
+    base: EffectSet, best: Effect, top: float, scale: float, levels: int
+) -> tuple[Effect, float, float]:
+    """Every inner parameter in turn; the effect with its log evidence and its size."""
+    for index, inner, _ in continuous_inner(best, base.complement.touches):
         assert isinstance(best, Tunable)
         low, high = float(np.min(inner.grid)), float(np.max(inner.grid))
         for level in range(levels):
@@ -36,7 +57,7 @@ def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[Size
                 found, size = _addition(base, trial)
                 if found > top:
                     best, top, scale = trial, found, size
-    return Sized(best, scale), top
+    return best, top, scale
 
 
 def _moved(effect: Tunable, index: int, value: float) -> Tunable:
@@ -57,3 +78,20 @@ def refined_set(complement: Complement, chosen: Sequence[Sized], rounds: int = 2
             others = EffectSet(complement, projected(complement, out[:i] + out[i + 1 :]))
             out[i] = refined(others, out[i].effect)[0]
     return out
+
+
+def moved(pool: Signatures, to: Mapping[int, Effect]) -> Signatures:
+    """A pool with points of its grids moved, in the place of the old ones, which are lost.
+
+    Args:
+        pool: Signatures of all candidates.
+        to: New effect by the number of the variant.
+    """
+    variants = list(pool.variants)
+    for variant, effect in to.items():
+        raw = pool.complement.columns([effect])
+        place = slice(pool.start[variant], pool.start[variant + 1])
+        pool.C[:, place] = pool.complement.project(raw)
+        pool.size[place] = np.linalg.norm(raw, axis=0)
+        variants[variant] = effect
+    return replace(pool, variants=tuple(variants))
