@@ -166,13 +166,17 @@ def make(chain: Chain, arguments: Sequence[str]) -> ThermalLag:
 
 
 def propose(touches: Touches) -> Iterable[ThermalLag]:
-    """Every component of every axis that moved, with every drive that was recorded and varies."""
+    """Every component of every axis that moved, with every drive that was recorded and varies.
+
+    Where nothing moved, as in front of a nest of displacement probes, the axis next to the tool
+    stands for the machine.
+    """
     drives = ["", *sensors(touches)]
     if touches.spindle_rpm is not None and varies(touches.spindle_rpm):
         drives.append(SPINDLE)
     if not np.ptp(touches.time) > 0.0:
         return
-    axes = moving_axes(touches)
+    axes = moving_axes(touches) or touches.chain.axes[-1:]
     for drive in drives:
         for symbol in touches.chain.symbols:
             if symbol.family is Family.COMPONENT and symbol.link in axes:
