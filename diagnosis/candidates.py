@@ -19,10 +19,6 @@ IntArray = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 """Called with the share done and what is being done; only the command line shows it."""
 
-EXACT_BELOW = 4000
-"""Up to this many touches signatures are kept in double precision; beyond in single, which halves
-the memory and is enough once the model has been projected out in double precision."""
-
 BLOCK = 256
 """Columns that are projected at a time."""
 
@@ -64,6 +60,23 @@ class Complement:
         residual = np.concatenate([solution.residual, -solution.phi])
         u = fit.u[fit.used]
         return cls(fit.run.touches, fit.used, u, Q, residual, solution.dof, fit.groups)
+
+    def thinned(self, count: int) -> "Complement":
+        """The same model fitted to an even choice of so many of the touches."""
+        n = len(self.u)
+        rows = np.unique(np.linspace(0, n - 1, min(count, n)).astype(np.int64))
+        picked = np.concatenate([rows, np.arange(n, len(self.residual))])
+        Q = np.linalg.qr(self.Q[picked])[0]
+        residual = self.residual[picked]
+        residual = residual - Q @ (Q.T @ residual)
+        used = np.zeros_like(self.used)
+        used[np.flatnonzero(self.used)[rows]] = True
+        kept = len(rows)
+        dof = kept - float((Q[:kept] ** 2).sum())
+        place = np.full(n, -1)
+        place[rows] = np.arange(kept)
+        groups = tuple(g for g in (place[k][place[k] >= 0] for k in self.groups) if len(g))
+        return Complement(self.touches, used, self.u[rows], Q, residual, dof, groups)
 
     def columns(self, effects: Sequence[Effect]) -> Array:
         """Whitened columns of effects, scaled by their prior, (N, K)."""
@@ -122,6 +135,8 @@ class Signatures:
         C: Projected, whitened, scaled columns, (N + P, M).
         start: First column of every variant, (V + 1,).
         size: Norm of every column before the projection, (M,).
+        tries: Points of its grid that every candidate was tried at, here or in a screening.
+        tried: Number of candidates that were tried altogether.
     """
 
     complement: Complement
@@ -131,6 +146,8 @@ class Signatures:
     C: Array
     start: IntArray
     size: Array
+    tries: IntArray
+    tried: int
 
     @cached_property
     def width(self) -> IntArray:
@@ -161,56 +178,78 @@ class Signatures:
     @cached_property
     def along(self) -> Array:
         """Inner product of every column with the residual, (M,)."""
-        return np.asarray(self.C.T @ self.complement.residual.astype(self.C.dtype), dtype=float)
-
-    @cached_property
-    def grid_points(self) -> IntArray:
-        """Number of variants of every candidate."""
-        return np.bincount(self.owner, minlength=len(self.names))
+        return np.asarray(self.C.T @ self.complement.residual)
 
     def columns_of(self, variant: int) -> Array:
-        """Projected columns of one variant, (N + P, k), double precision."""
-        return np.asarray(self.C[:, self.start[variant] : self.start[variant + 1]], dtype=float)
+        """Projected columns of one variant, (N + P, k)."""
+        return self.C[:, self.start[variant] : self.start[variant + 1]]
 
 
 def _inner(C: Array, left: IntArray, right: IntArray) -> Array:
-    """Inner products of pairs of columns, in double precision, in blocks."""
+    """Inner products of pairs of columns, in blocks."""
     out = np.empty(len(left))
     for start in range(0, len(left), BLOCK):
         a, b = C[:, left[start : start + BLOCK]], C[:, right[start : start + BLOCK]]
-        out[start : start + BLOCK] = np.einsum("nv,nv->v", a, b, dtype=np.float64)
+        out[start : start + BLOCK] = np.einsum("nv,nv->v", a, b)
+    return out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """A candidate at the points of its grid.
+
+    Attributes:
+        effect: The candidate.
+        variants: At every point that is kept.
+        tries: Points that were tried, kept or not.
+    """
+
+    effect: Effect
+    variants: tuple[Effect, ...]
+    tries: int
+
+
+def whole_grids(candidates: Sequence[Effect], touches: Touches) -> list[Grid]:
+    """Candidates at every point of their grids."""
+    variants = [tuple(tuned_variants(effect, touches)) for effect in candidates]
+    return [Grid(e, v, len(v)) for e, v in zip(candidates, variants, strict=True)]
+
+
+def blocks(variants: Sequence[Effect]) -> list[tuple[int, int]]:
+    """First and last variant of blocks of about `BLOCK` columns."""
+    width = np.cumsum([len(e.parameters) for e in variants])
+    out = []
+    first = 0
+    while first < len(variants):
+        before = int(width[first - 1]) if first else 0
+        last = max(int(np.searchsorted(width, before + BLOCK, side="right")), first + 1)
+        out.append((first, last))
+        first = last
     return out
 
 
 def signatures(
-    complement: Complement, candidates: Sequence[Effect], progress: Progress = quiet
+    complement: Complement, grids: Sequence[Grid], tried: int, progress: Progress = quiet
 ) -> Signatures:
-    """Signatures of candidates at every point of their grids.
+    """Signatures of candidates at the points of their grids.
 
     Args:
         complement: What the fitted model leaves.
-        candidates: Effects that are not in the model.
+        grids: Candidates that are not in the model.
+        tried: Number of candidates that were tried altogether, those of a screening included.
         progress: Told after every block.
     """
-    variants: list[Effect] = []
-    owner: list[int] = []
-    for index, effect in enumerate(candidates):
-        own = tuned_variants(effect, complement.touches)
-        variants += own
-        owner += [index] * len(own)
-    start = np.concatenate([[0], np.cumsum([len(e.parameters) for e in variants])]).astype(np.int64)
-    rows = len(complement.residual)
-    kind = np.float64 if len(complement.u) <= EXACT_BELOW else np.float32
-    C = np.empty((rows, int(start[-1])), dtype=kind, order="F")
+    variants = [v for grid in grids for v in grid.variants]
+    owner = np.repeat(np.arange(len(grids)), [len(grid.variants) for grid in grids])
+    widths = [len(e.parameters) for e in variants]
+    start = np.concatenate([[0], np.cumsum(widths)]).astype(np.int64)
+    C = np.empty((len(complement.residual), int(start[-1])), order="F")
     size = np.empty(int(start[-1]))
-    first = 0
-    while first < len(variants):
-        last = int(np.searchsorted(start, start[first] + BLOCK, side="right")) - 1
-        last = max(last, first + 1)
+    for first, last in blocks(variants):
         raw = complement.columns(variants[first:last])
         size[start[first] : start[last]] = np.linalg.norm(raw, axis=0)
         C[:, start[first] : start[last]] = complement.project(raw)
-        first = last
-        progress(first / len(variants), "signatures of effects")
-    names = tuple(e.name for e in candidates)
-    return Signatures(complement, tuple(variants), np.array(owner), names, C, start, size)
+        progress(last / len(variants), "signatures of effects")
+    names = tuple(grid.effect.name for grid in grids)
+    tries = np.array([grid.tries for grid in grids], dtype=np.int64)
+    return Signatures(complement, tuple(variants), owner, names, C, start, size, tries, tried)

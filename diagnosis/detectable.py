@@ -38,7 +38,9 @@ class Detectable:
     survives: float
 
 
-def detectable(effects: EffectSet, pool: Signatures) -> tuple[Detectable, ...]:
+def detectable(
+    effects: EffectSet, pool: Signatures, touches: int | None = None
+) -> tuple[Detectable, ...]:
     """Smallest detectable size of every candidate, with the found effects in the model.
 
     The non-centrality that passes the corrected threshold in four of five runs, over the squared
@@ -47,7 +49,9 @@ def detectable(effects: EffectSet, pool: Signatures) -> tuple[Detectable, ...]:
     Args:
         effects: The final set.
         pool: Signatures of all candidates.
+        touches: Number of touches of the run, where set and pool are an even choice of them.
     """
+    share = 1.0 if touches is None else len(pool.complement.u) / touches
     E = effects.whiten(pool.C)
     n_variants = len(pool.variants)
     mean, whole = np.zeros(n_variants), np.zeros(n_variants)
@@ -57,7 +61,7 @@ def detectable(effects: EffectSet, pool: Signatures) -> tuple[Detectable, ...]:
         mean[which] = (diagonal - own).sum(axis=1) / k
         whole[which] = (pool.size[cols] ** 2).sum(axis=1) / k
     needed = _needed(pool)
-    scale = effects.objective / max(effects.dof, 1.0)
+    scale = share * effects.objective / max(effects.dof, 1.0)
     with np.errstate(divide="ignore"):
         length = np.sqrt(needed * scale / np.maximum(mean, 1e-300))
     out = []
@@ -73,7 +77,7 @@ def detectable(effects: EffectSet, pool: Signatures) -> tuple[Detectable, ...]:
 def _needed(pool: Signatures) -> Array:
     """Non-centrality that every variant needs, (V,)."""
     k = pool.width.astype(float)
-    threshold = chdtri(k, CHANCE / (pool.grid_points[pool.owner] * len(pool.names)))
+    threshold = chdtri(k, CHANCE / (pool.tries[pool.owner] * pool.tried))
     # k + L - POWER sqrt(2 k + 4 L) = threshold, a quadratic in sqrt(2 k + 4 L)
     root = 2.0 * POWER + np.sqrt(4.0 * POWER**2 + 4.0 * threshold - 2.0 * k)
     return np.asarray((root**2 - 2.0 * k) / 4.0)

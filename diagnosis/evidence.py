@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import cho_factor, solve_triangular
 from scipy.special import betainc
 
-from diagnosis.candidates import Complement, Signatures
+from diagnosis.candidates import Complement, IntArray, Signatures
 from diagnosis.linear import LeftOut, left_out
 from diagnosis.noise import PRIOR_DOF
 from twin.frames import Array
@@ -60,8 +60,8 @@ class EffectSet:
         return np.tril(cho_factor(G, lower=True)[0])
 
     def whiten(self, B: Array) -> Array:
-        """``L^-1 A^T B``: (K, M) from columns (N + P, M), whatever their precision."""
-        return self.lower_solve(np.asarray(self.A.T.astype(B.dtype) @ B, dtype=float))
+        """``L^-1 A^T B``: (K, M) from columns (N + P, M)."""
+        return self.lower_solve(self.A.T @ B)
 
     def lower_solve(self, inside: Array) -> Array:
         """``L^-1`` times inner products with the columns, (K, M)."""
@@ -138,14 +138,19 @@ class Reduced:
     along: Array
 
 
-def reduced(effects: EffectSet, F: Array) -> Reduced:
-    """Inner products of whitened features (N, K), with the model and the effects removed."""
+def reduced(effects: EffectSet, F: Array, rows: IntArray) -> Reduced:
+    """Inner products of whitened features, with the model and the effects removed.
+
+    Args:
+        effects: Model and effects in it.
+        F: Features at some of the touches in use, zero at the others, (R, K).
+        rows: Which of the touches in use, (R,).
+    """
     complement = effects.complement
-    n = len(F)
-    B = complement.Q[:n].T @ F
-    E = effects.lower_solve(effects.A[:n].T @ F)
+    B = complement.Q[rows].T @ F
+    E = effects.lower_solve(effects.A[rows].T @ F)
     gram = F.T @ F - B.T @ B - E.T @ E
-    return Reduced(gram, F.T @ complement.residual[:n] - E.T @ effects.along)
+    return Reduced(gram, F.T @ complement.residual[rows] - E.T @ effects.along)
 
 
 def log_evidence(complement: Complement, objective: Array | float, log_det: Array | float) -> Array:
@@ -185,13 +190,33 @@ def score_all(effects: EffectSet, pool: Signatures) -> Scores:
     each variant.
     """
     E = effects.whiten(pool.C)
-    g = pool.along - E.T @ effects.along
+    return _scores(effects, pool, E, pool.along - E.T @ effects.along, 1.0)
+
+
+def screen(effects: EffectSet, sample: EffectSet, pool: Signatures, along: Array) -> Scores:
+    """Score variants against a long run, with their own lengths from an even choice of touches.
+
+    What a variant has in common with the residual is counted over all touches; its length after
+    the projection, which is much more work, over the choice, and scaled up.
+
+    Args:
+        effects: The set over all touches.
+        sample: The same set over the choice.
+        pool: Signatures over the choice.
+        along: Inner product of every column with the residual of the set, all touches, (M,).
+    """
+    share = len(effects.complement.u) / len(sample.complement.u)
+    return _scores(effects, pool, sample.whiten(pool.C), along, share)
+
+
+def _scores(effects: EffectSet, pool: Signatures, E: Array, g: Array, share: float) -> Scores:
+    """Scores from inner products: E (K, M) with the set, g (M,) with its residual."""
     count = len(pool.variants)
     free, freedom, evidence = np.zeros(count), np.zeros(count), np.zeros(count)
     scale = np.ones(count)
     for k, (which, cols) in pool.by_width.items():
         own = np.moveaxis(E[:, cols], 0, 1)  # (V_k, K, k)
-        S = pool.gram[k] - np.einsum("vai,vaj->vij", own, own)
+        S = share * (pool.gram[k] - np.einsum("vai,vaj->vij", own, own))
         values, along = _principal(S, g[cols])
         evidence[which], scale[which] = _scaled_evidence(effects, values, along)
         seen = values > VISIBLE

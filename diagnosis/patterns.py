@@ -147,20 +147,18 @@ def patterns(touches: Touches) -> Iterator[Pattern]:
             yield Pattern((name,), direction, F * part[:, None], spectra)
 
 
-def thinned(complement: Complement) -> Array:
-    """Weights 0 or 1 of the touches in use, (N,): an even choice of a long run."""
+def thinned(complement: Complement) -> IntArray:
+    """Touches in use that are looked at, by number: all, or an even choice of a long run."""
     n = len(complement.u)
-    keep = np.zeros(n)
-    keep[np.unique(np.linspace(0, n - 1, min(n, FULL_BELOW)).astype(int))] = 1.0
-    return keep
+    return np.unique(np.linspace(0, n - 1, min(n, FULL_BELOW)).astype(np.int64))
 
 
-def whitened(complement: Complement, features: Array, keep: Array) -> Array:
-    """Features of all touches over the noise, for the touches in use, (N, K).
+def whitened(complement: Complement, features: Array, rows: IntArray) -> Array:
+    """Features over the noise, (R, K), for some of the touches in use.
 
     Args:
         complement: Says which touches are in use, and their noise.
         features: Of all touches of the run, (all, K), mm per mm.
-        keep: Weights of the touches in use, (N,).
+        rows: Which of the touches in use, (R,).
     """
-    return np.asarray(features[complement.used] * (keep / complement.u)[:, None])
+    return np.asarray(features[np.flatnonzero(complement.used)[rows]] / complement.u[rows, None])

@@ -135,6 +135,10 @@ class Search:
         owner = int(self.pool.owner[variant])
         return Member(variant, owner, self.pool.variants[variant], scale)
 
+    def name_of(self, variant: int) -> str:
+        """Name of the candidate of a variant."""
+        return self.pool.names[self.pool.owner[variant]]
+
     def scores(self, chosen: Chosen) -> Scores:
         """Scores of all variants as additions to a set, computed once."""
         key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
@@ -214,7 +218,7 @@ class Search:
 
     def corrected(self, candidate: int, p: float) -> float:
         """Probability with the scan of the grid and the number of candidates paid for."""
-        return float(min(1.0, p * self.pool.grid_points[candidate] * len(self.pool.names)))
+        return float(min(1.0, p * self.pool.tries[candidate] * self.pool.tried))
 
     def run(self, start: Sequence[Member] = ()) -> Chosen:
         """The best set of which every member stands; empty where nothing does.

@@ -69,17 +69,17 @@ def find_structure(
     """
     complement = effects.complement
     touches = complement.touches
-    keep = thinned(complement)
+    rows = thinned(complement)
     known = list(patterns(touches))
-    tested = [_tested(effects, pattern, keep) for pattern in known]
+    tested = [_tested(effects, pattern, rows) for pattern in known]
     progress(0.6, "structure left")
-    wave, neighbours = best_wave(effects, touches, keep), _neighbours(effects)
+    wave, neighbours = best_wave(effects, touches, rows), _neighbours(effects)
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
     found = [_as_structure(p, t, count) for p, t in zip(known, tested, strict=True)]
     found += [_wave_structure(effects, wave, count), *(_corrected(n, count) for n in neighbours)]
     found = sorted((f for f in found if f.p_value < CHANCE), key=lambda f: f.p_value)
     progress(1.0, "structure left")
-    return [_with_columns(effects, known, f, keep) for f in found[:most]] + found[most:]
+    return [_with_columns(effects, known, f, rows) for f in found[:most]] + found[most:]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,9 +91,9 @@ class _Tested:
     size: Array
 
 
-def _tested(effects: EffectSet, pattern: Pattern, keep: Array) -> _Tested:
+def _tested(effects: EffectSet, pattern: Pattern, rows: IntArray) -> _Tested:
     """Score tests of one pattern at every roughness."""
-    inner = reduced(effects, whitened(effects.complement, pattern.features, keep))
+    inner = reduced(effects, whitened(effects.complement, pattern.features, rows), rows)
     root = np.sqrt(pattern.spectra)[:, :, None]  # (L, K, 1)
     S = root * inner.gram * np.swapaxes(root, 1, 2)
     values, vectors = np.linalg.eigh(S)
@@ -139,15 +139,16 @@ def _words(names: tuple[str, ...], direction: str) -> str:
 
 
 def _with_columns(
-    effects: EffectSet, known: Iterable[Pattern], found: Structure, keep: Array
+    effects: EffectSet, known: Iterable[Pattern], found: Structure, rows: IntArray
 ) -> Structure:
     """A structure with its projected, scaled columns, ready to stand in a model as a nuisance."""
     for pattern in known if found.shape == "smooth" else ():
         if (pattern.variables, pattern.direction) == (found.variables, found.direction):
-            tested = _tested(effects, pattern, keep)
+            tested = _tested(effects, pattern, rows)
             best = int(np.argmax(tested.evidence))
             scale = np.sqrt(pattern.spectra[best] * tested.size[best])
-            F = whitened(effects.complement, pattern.features, np.ones_like(keep)) * scale
+            every = np.arange(len(effects.complement.u))
+            F = whitened(effects.complement, pattern.features, every) * scale
             C = effects.complement.project(F)
             return replace(found, columns=C)
     return found

@@ -7,7 +7,7 @@ import numpy as np
 from diagnosis.evidence import EffectSet, f_probability, reduced
 from diagnosis.patterns import directions
 from twin.frames import Array
-from twin.touches import Touches
+from twin.touches import IntArray, Touches
 
 SHORTEST = 4.0
 """Shortest period, in mean distances of touches."""
@@ -47,53 +47,55 @@ class Wave:
     columns: Array
 
 
-def best_wave(effects: EffectSet, touches: Touches, keep: Array) -> Wave:
+def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
     """Scan waves in time over every period that the touches can show, in every direction.
 
     Args:
         effects: Model and effects in it.
         touches: All of the run.
-        keep: Weights of the touches in use, (N,).
+        rows: Which of the touches in use are looked at, (R,).
     """
     complement = effects.complement
     time = touches.time[complement.used]
     span = float(np.ptp(time))
     if span <= 0.0:
         return Wave(0, 1.0, 0.0, np.inf, "normal", np.zeros((len(time), 0)))
-    highest = float(keep.sum()) / (SHORTEST * span)
+    highest = len(rows) / (SHORTEST * span)
     count = int(min(MOST, max(BLOCK, PER_LINE * highest * span)))
     frequency = np.linspace(0.5 / span, max(highest, 1.0 / span), count)
     along = directions(touches)
     best = (0.0, frequency[0], "normal")
     for name, part in along.items():
-        weight = part[complement.used] * keep / complement.u
-        best = max(best, (*_scan(effects, time, frequency, weight), name))
+        weight = part[complement.used] / complement.u
+        best = max(best, (*_scan(effects, time, frequency, weight, rows), name))
     weight = along[best[2]][complement.used] / complement.u
-    drop, found = _finer(effects, time, best[1], frequency[1] - frequency[0], weight * keep)
+    drop, found = _finer(effects, time, best[1], frequency[1] - frequency[0], weight, rows)
     p = float(f_probability(drop, 2.0, effects.objective - drop, effects.dof - 2.0))
     columns = _wave(time, np.array([found]), weight)
     scale = 10.0 / max(float(np.abs(columns).max()), 1e-300)
     return Wave(count * len(along), p, drop, 1.0 / found, best[2], columns * scale)
 
 
-def _scan(effects: EffectSet, time: Array, frequency: Array, weight: Array) -> tuple[float, float]:
+def _scan(
+    effects: EffectSet, time: Array, frequency: Array, weight: Array, rows: IntArray
+) -> tuple[float, float]:
     """Largest fall of the objective by a wave, and its frequency."""
     best = (0.0, float(frequency[0]))
     for block in np.array_split(frequency, -(-len(frequency) // BLOCK)):
-        drop = _drops(effects, _wave(time, block, weight))
+        drop = _drops(effects, _wave(time[rows], block, weight[rows]), rows)
         i = int(np.argmax(drop))
         best = max(best, (float(drop[i]), float(block[i])))
     return best
 
 
 def _finer(
-    effects: EffectSet, time: Array, frequency: float, step: float, weight: Array
+    effects: EffectSet, time: Array, frequency: float, step: float, weight: Array, rows: IntArray
 ) -> tuple[float, float]:
     """The same around the best frequency of the scan, finer and finer."""
     best = (0.0, frequency)
     for _ in range(TIMES):
         around = best[1] + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)
-        best = max(best, _scan(effects, time, around[around > 0.0], weight))
+        best = max(best, _scan(effects, time, around[around > 0.0], weight, rows))
         step /= FINER
     return best
 
@@ -104,9 +106,9 @@ def _wave(time: Array, frequency: Array, weight: Array) -> Array:
     return np.concatenate([np.sin(angle), np.cos(angle)], axis=1) * weight[:, None]
 
 
-def _drops(effects: EffectSet, F: Array) -> Array:
+def _drops(effects: EffectSet, F: Array, rows: IntArray) -> Array:
     """Fall of the objective by each pair of columns (i, K + i), (K,)."""
-    inner = reduced(effects, F)
+    inner = reduced(effects, F, rows)
     S, g = inner.gram, inner.along
     count = F.shape[1] // 2
     i = np.arange(count)
