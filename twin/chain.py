@@ -52,6 +52,11 @@ class Link:
     range: tuple[float, float]
     programmed: bool = True
 
+    @property
+    def own(self) -> int:
+        """Index in X Y Z of the letter's own direction, whatever the direction of the axis."""
+        return "XYZ".index(_SAME_DIRECTION[self.name[0]])
+
 
 @dataclass(frozen=True)
 class Axis:
@@ -158,10 +163,10 @@ def _location(link: Link) -> list[int]:
     its direction change nothing; a rotation about the axis's own direction is the zero position of
     a rotary axis and nothing for a linear one. For a free direction the letter decides.
     """
-    main = int(np.argmax(np.abs(link.direction)))
+    others = [i for i in range(3) if i != link.own]
     if link.kind == "linear":
-        return [main] + [3 + i for i in range(3) if i != main]
-    return [i for i in range(3) if i != main] + [3, 4, 5]
+        return [link.own] + [3 + i for i in others]
+    return [*others, 3, 4, 5]
 
 
 def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:

@@ -135,10 +135,11 @@ def place_as_twist(chain: Chain, q: Array) -> Array:
     """What a displaced line, workpiece or tool does, as twists of the same link, first order.
 
     With the reading q, direction d, body rotation R, s = +1 on the tool side and -1 on the
-    workpiece side, and (e, r) the displacement: a linear axis gives ``e' = d d.e + q r x d``; a
-    rotary one ``(e', r') = s (1 - R)(e, r)`` across its line and the zero position ``r' = d d.r``
-    along it; the tool ``(e, r)``; the workpiece ``-(e, r)``, since the twist is tool minus
-    workpiece.
+    workpiece side, (e, r) the displacement and k the component of the axis's own letter: a linear
+    axis gives ``e' = d e_k + q r x d``; a rotary one ``(e', r') = s (1 - R)(e, r)`` for the
+    components across its letter, and for its zero position ``r' = d r_k``, which adds to the
+    reading whatever the direction; the tool ``(e, r)``; the workpiece ``-(e, r)``, since the twist
+    is tool minus workpiece.
 
     Args:
         chain: The machine.
@@ -155,16 +156,15 @@ def place_as_twist(chain: Chain, q: Array) -> Array:
             out[:, i] = _sign(link) * np.eye(6)
             continue
         d, reading = link.direction, _readings_of(chain, link, q)
-        along = np.outer(d, d)
         if link.kind == "linear":
-            out[:, i, :3, :3] = along
+            out[:, i, link.own, :3] = d
             out[:, i, 3:, :3] = reading[:, None, None] * np.cross(np.eye(3), d)
         else:
-            across = np.eye(3) - along
             R = rotation((_sign(link) * reading)[:, None] * d)
-            moved = _sign(link) * (across - R @ across)
-            out[:, i, :3, :3] = np.swapaxes(moved, -1, -2)
-            out[:, i, 3:, 3:] = np.swapaxes(moved + along, -1, -2)
+            moved = np.swapaxes(_sign(link) * (np.eye(3) - R), -1, -2)
+            out[:, i, :3, :3] = moved
+            out[:, i, 3:, 3:] = moved
+            out[:, i, 3 + link.own, 3:] = d
     return out
 
 
@@ -209,10 +209,11 @@ def _exact_motion(link: Link, reading: Array, place: Array) -> Array:
     e, r = place[:, :3], place[:, 3:]
     d, s = link.direction, _sign(link)
     if link.kind == "linear":
-        travel = s * (reading + e @ d)
+        travel = s * (reading + e[:, link.own])
         return pose(t=travel[:, None] * np.einsum("nij,j->ni", rotation(r), d))
-    zero = r @ d
-    D = turned_about(link.point, rotation(r - zero[:, None] * d), e - (e @ d)[:, None] * d)
+    zero = r[:, link.own]
+    tilt = np.where(np.arange(3) == link.own, 0.0, r)
+    D = turned_about(link.point, rotation(tilt), e)
     M = turned_about(link.point, rotation((s * (reading + zero))[:, None] * d))
     return D @ M @ inverse(D)
 

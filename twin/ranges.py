@@ -42,8 +42,8 @@ def error_class(chain: Chain, symbol: Symbol) -> str:
         return "squareness" if symbol.is_angular else "linear_zero"
     if not symbol.is_angular:
         return "rotary_location"
-    main = max(range(3), key=lambda i: abs(chain.link(symbol.link).direction[i]))
-    return "rotary_zero" if symbol.component - 3 == main else "rotary_tilt"
+    own = chain.link(symbol.link).own
+    return "rotary_zero" if symbol.component - 3 == own else "rotary_tilt"
 
 
 @dataclass(frozen=True)

@@ -95,13 +95,14 @@ class Arm:
                 continue
             if what == "axis":
                 zero = added.place[row, i, 3:] if link.kind == "rotary" else added.place[row, i, :3]
-                values.append([reading + zero @ link.direction])
+                values.append([reading + zero["XYZABC".index(link.name[0]) % 3]])
                 continue
             vector = (added.twist if what == "twist" else added.place)[row, i].copy()
             if what.startswith("line"):
-                d = link.direction
-                vector[:3] -= (vector[:3] @ d) * d if link.kind == "rotary" else vector[:3]
-                vector[3:] -= (vector[3:] @ d) * d if link.kind == "rotary" else 0.0
+                if link.kind == "rotary":  # the zero position is in the reading already
+                    vector[3 + "ABC".index(link.name[0])] = 0.0
+                else:
+                    vector[:3] = 0.0
             pose = pin.SE3(pin.exp3(vector[3:]), vector[:3])
             # a displaced workpiece-side body comes up from behind: (D M D^-1)^-1 = D M^-1 D^-1
             if what == "line back" or (what == "place" and link.name == "w"):

@@ -212,6 +212,29 @@ def test_a_reading_moves_the_tool_relative_to_the_workpiece():
             )
 
 
+@pytest.mark.parametrize(
+    ("machine", "axis", "symbol"),
+    [("slanted linear axis", "Y", "EY0Y"), ("nutating table", "B", "EB0B")],
+)
+def test_a_zero_position_error_adds_to_the_reading_whatever_the_direction(machine, axis, symbol):
+    chain = MACHINES[machine]
+    q = random_readings(chain, 10)
+    size = 1e-4
+    read_wrong = q.copy()
+    read_wrong[:, chain.axis_index(axis)] += size
+    added = contribution_of(chain, 10, symbol, size)
+    np.testing.assert_allclose(
+        exact_tip(chain, q, 160.0, added), tip(chain, read_wrong, 160.0), rtol=0, atol=NM
+    )
+
+
+def test_the_letter_names_the_location_errors_of_a_steeply_inclined_axis():
+    steep = Axis(range=TURN.range, point=(0.0, 0.0, -400.0), direction=(0.0, 0.6, 0.8))
+    chain = make_chain("steep", "[w B' f X Y Z t]", TRAVEL | {"B": steep})
+    named = [s.name for s in chain.symbols if s.link == "B" and s.family is Family.LOCATION]
+    assert named == ["EX0B", "EZ0B", "EA0B", "EB0B", "EC0B"]
+
+
 ANGLE = st.floats(-3.0, 3.0)
 VECTOR = st.tuples(ANGLE, ANGLE, ANGLE).map(np.array)
 POINT = st.tuples(*[st.floats(-500.0, 500.0)] * 3).map(np.array)

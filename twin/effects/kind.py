@@ -111,11 +111,10 @@ def sensor_record(touches: Touches, sensor: str) -> Array:
 def own_component(chain: Chain, axis: str) -> int:
     """Index of the component along a linear axis, about a rotary one.
 
-    For a free direction the letter that it is nearest to decides.
+    For a free direction the axis's letter decides.
     """
     link = chain.link(axis)
-    main = int(np.argmax(np.abs(link.direction)))
-    return main if link.kind == "linear" else 3 + main
+    return link.own if link.kind == "linear" else 3 + link.own
 
 
 def checked_axis(usage: str, arguments: Sequence[str], axis: str, chain: Chain) -> str:
