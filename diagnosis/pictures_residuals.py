@@ -205,14 +205,15 @@ def _normalised_scale(axes: list[Any], fit: Fit) -> None:
         right.spines["right"].set_color(LINE)
 
 
-def draw_normal_plot(path: str | Path, fit: Fit) -> None:
+def draw_normal_plot(path: str | Path, fit: Fit, z: Array | None = None) -> None:
     """Histogram and normal plot of residuals in units of their uncertainty, outliers by line.
 
     Args:
         path: PNG.
         fit: Any fit.
+        z: Residuals over their standard uncertainty, (N,); None for `standardised(fit)`.
     """
-    z = standardised(fit)
+    z = standardised(fit) if z is None else z
     figure = new_figure(4.0)
     left, right = figure.subplots(1, 2)
     _histogram(left, z[fit.used], fit.noise.factor)

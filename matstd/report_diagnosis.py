@@ -11,10 +11,15 @@ from diagnosis.detectable import Detectable
 from diagnosis.ink import CLASSES
 from diagnosis.pictures import draw_on_standard, is_spread
 from diagnosis.pictures_effects import draw_candidates, draw_effect, draw_fall, draw_rivals
-from diagnosis.pictures_pattern import draw_pattern
 from diagnosis.verdict import Diagnosis, Step, Verdict
 from matstd.page import write_page
-from matstd.report_residuals import Picture, gross_rows, residual_pictures, setting
+from matstd.report_residuals import (
+    Picture,
+    gross_rows,
+    pattern_pictures,
+    residual_pictures,
+    setting,
+)
 from matstd.report_words import named_value, sizes, verdict_sentence
 from twin.files.pose_file import reading_columns
 from twin.library import kinds
@@ -30,7 +35,6 @@ NAMED = 8
 SAME = 0.1
 """Log odds below which two effects are the same as far as a picture can show."""
 
-_PATTERNS = 4
 _PLANNED = 24
 
 
@@ -48,7 +52,8 @@ def write_diagnosis_page(
     folder = Path(folder)
     place = folder / PICTURES
     place.mkdir(parents=True, exist_ok=True)
-    draw_fall(place / "fall.png", result)
+    if len(result.steps) > 1:
+        draw_fall(place / "fall.png", result)
     if result.candidates:
         draw_candidates(place / "candidates.png", result)
     write_page(
@@ -62,7 +67,7 @@ def write_diagnosis_page(
         um=UM,
         steps=[_step(result, i) for i in range(len(result.steps))],
         effects=[_effect(result, i, place) for i in range(1, len(result.steps))],
-        patterns=_patterns(result, place, rng),
+        patterns=pattern_pictures(place, result.fit, result.left, rng),
         before=residual_pictures(place, "before", result.start),
         after=residual_pictures(place, "after", result.fit) if len(result.steps) > 1 else [],
         on_standard=_on_standard(result, place),
@@ -132,20 +137,6 @@ def _rivals(step: Step, i: int, place: Path, colour: str) -> str:
         return ""  # signatures that coincide make a picture of nothing
     draw_rivals(place / f"rivals_{i}.png", confusion, colour)
     return f"rivals_{i}.png"
-
-
-def _patterns(result: Diagnosis, place: Path, rng: np.random.Generator) -> list[Picture]:
-    """Patterns that are left, of an unexplained run."""
-    out: list[Picture] = []
-    seen: set[str] = set()
-    for k, found in enumerate(result.left):
-        if found.words in seen or len(out) >= _PATTERNS:
-            continue
-        seen.add(found.words)
-        if draw_pattern(place / f"pattern_{k}.png", result.fit, found, rng):
-            words = f"What is left: {found.words} (p {found.p_value:.2g})."
-            out.append(Picture(f"pattern_{k}.png", words))
-    return out
 
 
 def _detectable(found: Sequence[Detectable]) -> list[dict[str, Any]]:

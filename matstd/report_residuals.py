@@ -1,5 +1,6 @@
 """What the pages of compare and diagnose share: pictures of residuals, outliers, what was run."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -7,7 +8,11 @@ import numpy as np
 
 from diagnosis.fit import Fit
 from diagnosis.pictures import draw_pose_arrows, has_poses
+from diagnosis.pictures_pattern import draw_pattern
 from diagnosis.pictures_residuals import draw_normal_plot, draw_over_variables, ranked_variables
+from diagnosis.structure import Structure
+from matstd.page import p_value
+from twin.frames import Array
 from twin.run import Run
 from twin.units import UM
 
@@ -16,6 +21,9 @@ FIRST = 12
 
 WHOLE = 40
 """Variables that are shown at most."""
+
+PATTERNS = 3
+"""Patterns that are drawn at most."""
 
 
 class Picture(NamedTuple):
@@ -32,13 +40,14 @@ class Picture(NamedTuple):
     folded: bool = False
 
 
-def residual_pictures(place: Path, name: str, fit: Fit) -> list[Picture]:
+def residual_pictures(place: Path, name: str, fit: Fit, z: Array | None = None) -> list[Picture]:
     """Pictures of what a fit leaves.
 
     Args:
         place: Folder of the pictures.
         name: First word of their names.
         fit: Any fit.
+        z: Residuals over their standard uncertainty where that is more than the touch's own, (N,).
     """
     out = []
     panels = ranked_variables(fit)
@@ -50,7 +59,7 @@ def residual_pictures(place: Path, name: str, fit: Fit) -> list[Picture]:
     if has_poses(fit):
         draw_pose_arrows(place / f"{name}_poses.png", fit)
         out.append(Picture(f"{name}_poses.png", _POSES))
-    draw_normal_plot(place / f"{name}_normal.png", fit)
+    draw_normal_plot(place / f"{name}_normal.png", fit, z)
     out.append(Picture(f"{name}_normal.png", _NORMAL))
     return out
 
@@ -70,6 +79,30 @@ _NORMAL = (
     "Residuals over their stated standard uncertainty, leverage allowed for, against the normal "
     "distribution. Touches that were left out stand at the edge, by line of the run file."
 )
+
+
+def pattern_pictures(
+    place: Path, fit: Fit, found: Sequence[Structure], rng: np.random.Generator
+) -> list[Picture]:
+    """Pictures of what a residual varies with, each beside the same residual shuffled.
+
+    Args:
+        place: Folder of the pictures.
+        fit: Any fit.
+        found: Patterns in its residual, the most certain first.
+        rng: Shuffles.
+    """
+    out: list[Picture] = []
+    seen: set[tuple[tuple[str, ...], float]] = set()
+    for k, one in enumerate(found):
+        if (one.variables, one.period) in seen or len(out) >= PATTERNS:
+            continue
+        seen.add((one.variables, one.period))
+        if draw_pattern(place / f"pattern_{k}.png", fit, one, rng):
+            words = one.words[0].upper() + one.words[1:]
+            words = f"{words}; probability by chance {p_value(one.p_value)}."
+            out.append(Picture(f"pattern_{k}.png", words))
+    return out
 
 
 def gross_rows(fit: Fit) -> list[dict[str, Any]]:

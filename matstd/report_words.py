@@ -4,8 +4,10 @@ import math
 
 from diagnosis.describe import Reported
 from diagnosis.fit import Fit
+from diagnosis.residuals import Comparison
 from diagnosis.verdict import Diagnosis, Step, Verdict
 from matstd.page import digits
+from twin.run import Run
 from twin.units import UM
 
 _UNITS = (
@@ -68,9 +70,19 @@ def microns(value: float) -> str:
     return f"{um:.2f} µm" if abs(um) >= 0.095 else f"{digits(um, 2)} µm"
 
 
+def stated_noise(run: Run) -> float:
+    """Stated standard uncertainty of a touch, root mean square, mm."""
+    return float((run.u**2).mean() ** 0.5)
+
+
+def _clause(words: str) -> str:
+    """Words on what a residual does, as a clause that stands after a colon."""
+    return f"it {words}" if words.startswith("varies") else words
+
+
 def noise_words(fit: Fit) -> str:
     """The noise as found, and as stated where that is another."""
-    stated = float((fit.run.u**2).mean() ** 0.5)
+    stated = stated_noise(fit.run)
     found = stated * fit.noise.factor
     if fit.noise.is_wrongly_stated:
         return f"{microns(found)} (stated: {microns(stated)})"
@@ -79,7 +91,7 @@ def noise_words(fit: Fit) -> str:
 
 def excess(fit: Fit) -> float:
     """Root mean square of what is left beyond the stated noise, mm."""
-    stated = float((fit.run.u**2).mean() ** 0.5)
+    stated = stated_noise(fit.run)
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
 
 
@@ -108,12 +120,12 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
             f"noise is {noise_words(diagnosis.fit)}."
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
-        words = "; ".join(dict.fromkeys(d.words for d in diagnosis.depends_on[:4]))
+        words = "; ".join(dict.fromkeys(_clause(d.words) for d in diagnosis.depends_on[:4]))
         named = f" Named were {'; '.join(added)}: {_fall(diagnosis)}." if added else ""
         return (
             f"Something is left that no effect of the library accounts for: "
             f"{microns(excess(diagnosis.fit))} rms beyond the stated noise of "
-            f"{microns(float((diagnosis.run.u**2).mean() ** 0.5))}. It is no noise: "
+            f"{microns(stated_noise(diagnosis.run))}. It is no noise: "
             f"{words or 'it varies with nothing that was recorded'}.{named}"
         )
     named = f" Added by name were {'; '.join(added)}: {_fall(diagnosis)}." if added else ""
@@ -121,3 +133,18 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         f"Nothing is missing that this run could have shown: the error of held-out touches is "
         f"{microns(diagnosis.fit.test_rms)}, and the noise is {noise_words(diagnosis.fit)}.{named}"
     )
+
+
+def comparison_words(found: Comparison) -> str:
+    """What a model leaves of a run, in one plain sentence with numbers."""
+    made = "predicts" if found.is_prediction else "fitted to the run explains"
+    worst = found.worst
+    text = (
+        f"Of {microns(found.rms_measured)} rms that were measured the model {made} all but "
+        f"{microns(found.rms)}; the noise is stated as {microns(stated_noise(found.run))}, "
+        f"chi-square per degree of freedom is {digits(found.chi2_ratio)}, and the worst touch "
+        f"(line {found.run.line[worst]}) is off by {microns(float(found.residual[worst]))}."
+    )
+    if not found.structure:
+        return f"{text} What is left looks like noise."
+    return f"{text} What is left is not noise: {_clause(found.structure[0].words)}."

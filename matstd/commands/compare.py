@@ -21,12 +21,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
     )
+    parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
 
 def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
+    import numpy as np
+
     from diagnosis.diagnosis_file import write_comparison, write_residuals
     from diagnosis.model_file import read_model
     from diagnosis.residuals import compare
@@ -51,6 +54,12 @@ def run(args: argparse.Namespace) -> int:
         )
         write_comparison(folder / "comparison.json", found)
         write_residuals(folder / "residuals.csv", found)
+        if not args.no_report:
+            from matstd.report_compare import write_compare_page
+
+            show("report", 0, 1)
+            title = Path(args.run_file).name
+            write_compare_page(found, folder, title, np.random.default_rng(0))
     _tell(args, found)
     return 0
 
@@ -71,4 +80,5 @@ def _tell(args: argparse.Namespace, found: Comparison) -> None:
         )
     for remark in found.remarks:
         console.print(f"- {remark}", markup=False)
-    console.print(f"{args.output}: look at comparison.json, residuals.csv", markup=False)
+    first = "" if args.no_report else "report.html, "
+    console.print(f"{args.output}: look at {first}comparison.json, residuals.csv", markup=False)

@@ -124,4 +124,5 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     found = len(result.steps) - 1 - len(args.add)
     if found and not args.auto:
         console.print("--auto puts what was found into model.toml; --add EFFECT one of them")
-    console.print(f"{args.output}: look at diagnosis.json, model.toml", markup=False)
+    first = "" if args.no_report else "report.html, "
+    console.print(f"{args.output}: look at {first}diagnosis.json, model.toml", markup=False)
