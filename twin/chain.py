@@ -180,33 +180,35 @@ def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:
     """
     tokens = notation.strip().removeprefix("[").removesuffix("]").split()
     if len(tokens) < 3 or tokens[0] != "w" or tokens[-1] != "t" or tokens.count("f") != 1:
-        raise DesignError(
-            f"chain '{notation}': expected one 'w' first, one 't' last and one 'f' between, "
-            "such as [w C' B' X' f Y Z (C1) t]"
-        )
+        expected = "one 'w' first, one 't' last and one 'f' between, such as [w X' f Y Z t]"
+        raise _no_machine("chain", f"'{notation}'", expected)
     foundation = tokens.index("f")
     axes: list[tuple[str, bool, bool]] = []
     for position, token in enumerate(tokens[1:-1], start=1):
         if token == "f":
             continue
         bracketed = token.startswith("(") and token.endswith(")")
-        match = _TOKEN.match(token.strip("()"))
+        match = _TOKEN.match(token[1:-1] if bracketed else token)
         if match is None:
-            raise DesignError(
-                f"chain '{notation}': unknown axis '{token}'; "
-                "expected a letter of X Y Z U V W A B C, a prime on the workpiece side"
-            )
+            expected = "a letter of X Y Z U V W A B C, a prime on the workpiece side"
+            raise _no_machine("chain", f"unknown axis '{token}' in '{notation}'", expected)
         name, prime = match.groups()
         if bool(prime) != (position < foundation):
-            raise DesignError(
-                f"chain '{notation}': axis '{token}' stands on the "
-                f"{'workpiece' if position < foundation else 'tool'} side of f, "
-                f"expected {'a' if position < foundation else 'no'} prime"
-            )
+            side, wanted = ("workpiece", "a") if position < foundation else ("tool", "no")
+            found = f"axis '{token}' on the {side} side of f in '{notation}'"
+            raise _no_machine("chain", found, f"{wanted} prime")
         if any(name == known for known, _, _ in axes):
-            raise DesignError(f"chain '{notation}': axis '{name}' stands twice, expected once")
+            raise _no_machine("chain", f"axis '{name}' twice in '{notation}'", "it once")
         axes.append((name, bool(prime), not bracketed))
+    if not axes:
+        raise _no_machine("chain", f"no axis in '{notation}'", "one at least")
     return axes
+
+
+def _no_machine(key: str, found: str, expected: str) -> DesignError:
+    """What does not fit together, with the key of the machine file that says so."""
+    message = f"{key}: found {found}, expected {expected}"
+    return DesignError(message, key=key, found=found, expected=expected)
 
 
 def make_chain(
@@ -246,12 +248,12 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
     kind: Kind = "linear" if name[0] in "XYZUVW" else "rotary"
     reach = axis.range if axis.range is not None or programmed else SPINDLE_RANGE
     if reach is None:
-        raise DesignError(f"axis {name}: no range given, expected its smallest and largest reading")
+        raise _no_machine(f"axis.{name}.range", "nothing", "its smallest and largest reading")
     if not reach[0] < reach[1]:
-        raise DesignError(f"axis {name}: range {reach} has its ends swapped or no width")
+        raise _no_machine(f"axis.{name}.range", str(list(reach)), "the smaller reading first")
     direction = np.array(axis.direction or DIRECTIONS[_SAME_DIRECTION[name[0]]], dtype=float)
     length = float(np.linalg.norm(direction))
     if not length > 0.0:
-        raise DesignError(f"axis {name}: direction has length zero, expected a unit vector")
+        raise _no_machine(f"axis.{name}.direction", "a vector of length zero", "a unit vector")
     point = np.array(axis.point or (0.0, 0.0, 0.0), dtype=float)
     return Link(name, kind, primed, direction / length, point, reach, programmed)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from twin.effects.geometric import ComponentError
-from twin.errors import BadFile
+from twin.errors import BadFile, DesignError
 from twin.files.error_file import errors_toml, read_errors
 from twin.files.machine_file import read_machine
 from twin.files.pose_file import read_poses
+from twin.files.whole import write_whole
 from twin.units import DEG, UM, URAD
 
 MACHINE = """format = "machine/1"
@@ -65,18 +66,19 @@ def test_machine_in_base_units(machine: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("[axis.B]", "[axis.Q]", "unknown axis 'Q'"),
-        ("f Y Z", "f Y Q", "unknown axis 'Q'"),
+        ("[axis.B]", "[axis.Q]", r"axis\.Q: found an unknown axis.*has C, B, X, Y, Z"),
+        ("f Y Z", "f Y Q", "chain: found unknown axis 'Q'"),
+        ("C' B' X' f Y Z (C1) t", "C' B' X' f Y Z (C1 t", r"chain: found unknown axis '\(C1'"),
         ("[-300.0, 300.0]", "[300.0, -300.0]", r"axis\.Y\.range.*smaller reading first"),
         ("[-300.0, 300.0]", "[nan, 300.0]", r"axis\.Y\.range.*finite"),
         ("[-300.0, 300.0]", '["a", 300.0]', r"axis\.Y\.range"),
         ("[-300.0, 300.0]", "[-300.0]", r"axis\.Y\.range"),
         ("point", "pivot", r"axis\.B\.pivot: found an unknown key"),
-        ("C' B' X' f Y", "C' B' X f Y", "stands on the workpiece side"),
-        ("C' B' X' f Y Z", "C' C' X' f Y Z", "stands twice"),
+        ("C' B' X' f Y", "C' B' X f Y", r"chain: found axis 'X' on the workpiece side.*a prime"),
+        ("C' B' X' f Y Z", "C' C' X' f Y Z", "chain: found axis 'C' twice"),
         ('"machine/1"', '"machine/2"', 'format.*expected "machine/1"'),
         ("[-500.0, 0.0]", "[-500.0, 0.0", "TOML"),
-        ("[axis.Z]\nrange = [-500.0, 0.0]\n", "", "axis Z: no range"),
+        ("[axis.Z]\nrange = [-500.0, 0.0]\n", "", r"axis\.Z\.range: found nothing"),
     ],
 )
 def test_bad_machine(machine: Path, old: str, new: str, expected: str) -> None:
@@ -124,6 +126,8 @@ def test_errors_in_base_units_and_back(machine: Path, tmp_path: Path) -> None:
         ('shape = "linear"\n', "", r"EXX\.shape: found nothing"),
         ("12.0", "nan", r"EXX\.amplitude.*finite"),
         ("12.0", "'12'", r"EXX\.amplitude"),
+        ("12.0", "1e300", r"EXX\.amplitude.*1000000"),
+        ("periods = 2", "periods = 0", r"EXC\[0\]\.periods.*greater than 0"),
         ("amplitude = 12.0", "amplitudes = 12.0", "EXX"),
         ("amplitude = 12.0", "amplitude = 12.0\nphase_deg = 3.0", "only with shape"),
     ],
@@ -149,6 +153,8 @@ def test_poses(machine: Path, tmp_path: Path) -> None:
         ("X_mm,Y_mm,Z_mm,B_deg\n1,2,-3,4\n", "line 1.*a column C_deg"),
         ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n1,2,-3,4,nan\n", "line 2, column C_deg.*finite"),
         ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n1,2,-3,4,\n", "line 2, column C_deg.*a number"),
+        ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n1_0,2,-3,4,5\n", "line 2, column X_mm: found '1_0'"),
+        ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n\u0661,2,-3,4,5\n", "line 2, column X_mm.*a number"),
         ("X_mm,Y_mm,Z_mm,B_deg,C_deg\n1,2,-3,4,5\n1,2\n", "line 3: found 2 cells"),
         ("X_mm,Y_mm,Z_mm,B_deg,C_deg,D\n1,2,-3,4,5,6\n", "line 1: found column 'D'"),
         ("X_mm,X_mm,Y_mm,Z_mm,B_deg,C_deg\n1,1,2,-3,4,5\n", "column X_mm twice"),
@@ -162,3 +168,10 @@ def test_bad_poses(machine: Path, tmp_path: Path, text: str, expected: str) -> N
     path.write_text(text)
     with pytest.raises(BadFile, match=expected):
         read_poses(path, read_machine(machine))
+
+
+def test_a_folder_in_the_way_of_an_output_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "out.csv").mkdir()
+    with pytest.raises(DesignError, match=r"out\.csv: cannot be written"):
+        write_whole(tmp_path / "out.csv", "text")
+    assert [p.name for p in tmp_path.iterdir()] == ["out.csv"]

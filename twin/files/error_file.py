@@ -4,6 +4,8 @@ import math
 from pathlib import Path
 from typing import Literal
 
+from pydantic import Field
+
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.effects.geometric import ComponentError
@@ -14,13 +16,16 @@ from twin.frames import Array
 from twin.symbols import Family, Symbol
 from twin.units import DEG, UM, URAD
 
+LARGEST = 1e6
+"""An amplitude beyond this (µm or µrad: a metre, a radian) is a slip of units, not an error."""
+
 
 class ErrorTable(Table):
     """One error in one shape; a location error has an amplitude alone."""
 
     shape: Literal["constant", "linear", "parabolic", "sinusoidal"] | None = None
-    amplitude: float
-    periods: float = 1.0
+    amplitude: float = Field(ge=-LARGEST, le=LARGEST)
+    periods: float = Field(default=1.0, gt=0.0, le=1e6)
     phase_deg: float = 0.0
 
 
@@ -41,7 +46,7 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
         try:
             symbol = chain.symbol(name)
         except UnknownSymbol as error:
-            raise BadFile(path, name, "an unknown error name", str(error).split("; ")[-1]) from None
+            raise BadFile(path, name, "an unknown error name", _known(error)) from None
         several = isinstance(tables, list)
         for i, table in enumerate(tables if several else [tables]):
             key = f"{name}[{i}]" if several else name
@@ -49,6 +54,11 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
             unit = URAD if symbol.is_angular else UM
             out.append((_effect(symbol, entry, path, key), np.array([entry.amplitude * unit])))
     return out
+
+
+def _known(error: UnknownSymbol) -> str:
+    """What is available instead of an unknown name."""
+    return "one of " + str(error).split("available: ")[-1]
 
 
 def _effect(symbol: Symbol, entry: ErrorTable, path: str | Path, key: str) -> Effect:

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Strict
 
 from twin.chain import Axis, Chain, make_chain
-from twin.errors import BadFile, DesignError
+from twin.errors import BadFile, DesignError, UnknownAxis
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.units import DEG
 
@@ -56,5 +56,9 @@ def read_machine(path: str | Path) -> Chain:
         axes[name] = Axis(reach, axis.point, axis.direction)
     try:
         return make_chain(table.name, table.chain, axes, table.workpiece.origin)
+    except UnknownAxis as error:
+        known = str(error).split("; ")[-1]
+        raise BadFile(path, f"axis.{error.facts['axis']}", "an unknown axis", known) from error
     except DesignError as error:
-        raise BadFile(path, "chain and axis", str(error), "a machine that fits together") from error
+        key, found, expected = (str(error.facts[k]) for k in ("key", "found", "expected"))
+        raise BadFile(path, key, found, expected) from error

@@ -90,7 +90,7 @@ class CsvTable:
                 out[i] = empty
                 continue
             try:
-                out[i] = float(cell)
+                out[i] = _plain(cell)
             except ValueError:
                 out[i] = math.nan
                 if finite or cell:
@@ -102,3 +102,10 @@ class CsvTable:
     def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:
         """The exception for a cell."""
         return BadFile(self.path, f"line {self.lines[row]}, column {name}", found, expected)
+
+
+def _plain(cell: str) -> float:
+    """Number of a cell; float() alone also reads 1_0 as ten, and digits of other scripts."""
+    if "_" in cell or not cell.isascii():
+        raise ValueError(cell)
+    return float(cell)

@@ -32,7 +32,10 @@ def written_whole(path: str | Path) -> Iterator[Path]:
     part = Path(name)
     try:
         yield part
-        part.replace(path)
+        try:
+            part.replace(path)
+        except OSError as error:
+            raise DesignError(f"{path}: cannot be written ({error.strerror})") from error
     finally:
         part.unlink(missing_ok=True)
 
@@ -46,7 +49,10 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
         newline: How lines end in the file: a control wants carriage return and line feed.
     """
     with written_whole(path) as part:
-        part.write_bytes(text.replace("\n", newline).encode("utf-8"))
+        try:
+            part.write_bytes(text.replace("\n", newline).encode("utf-8"))
+        except OSError as error:  # a full disk
+            raise DesignError(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:
