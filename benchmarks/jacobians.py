@@ -1,8 +1,8 @@
 """How fast are the Jacobians of all error parameters?   python benchmarks/jacobians.py
 
-Prints poses per second of `sensitivity.jacobian` (all 71 parameters of the HSM 600U), of central
-differences of the exact product, and of pinocchio's kinematic regressor where it is installed, with
-the matrix-product rate of the same run.
+Prints poses per second of `sensitivity.by_parameter` for the 71 parameters of the HSM 600U and for
+the 60 of the same machine without its spindle axis, beside two measures of the same run: central
+differences of the exact product, and filling an array of that size with a number.
 """
 
 import platform
@@ -12,8 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from sensitivity.by_parameter import jacobian_by_parameter
 from sensitivity.jacobian import jacobian
 from sensitivity.workspace import Workspace, latin_hypercube
+from twin.chain import Chain
 from twin.effect import Contribution
 from twin.files.machine_file import read_machine
 from twin.kinematics import exact_tip
@@ -56,17 +58,27 @@ def central_differences(chain, q):
 
 def main() -> None:
     """Print the figures."""
-    chain = read_machine(MACHINE)
-    q = latin_hypercube(Workspace(chain, {}, LENGTH), 20_000, np.random.default_rng(1))
     print(f"{platform.processor() or platform.machine()}, numpy {np.__version__}")
     print(f"matrix product, float64: {matrix_rate():.0f} GFLOP/s")
-    closed = best_of(lambda: jacobian(chain, q, LENGTH))
-    print(f"closed form, {len(chain.symbols)} parameters: {len(q) / closed:,.0f} poses/s")
+    whole = read_machine(MACHINE)
+    bare = tuple(link for link in whole.links if link.kind == "fixed" or link.programmed)
+    for chain in (whole, Chain(whole.name, "without spindle axis", bare, whole.table_origin)):
+        figures(chain)
+
+
+def figures(chain):
+    """Rates for one machine."""
+    q = latin_hypercube(Workspace(chain, {}, LENGTH), 10_000, np.random.default_rng(1))
+    shape = (len(chain.symbols), 3, len(q))
+    closed = best_of(lambda: jacobian_by_parameter(chain, q, LENGTH), repeats=15)
+    filled = best_of(lambda: np.empty(shape).fill(1.0), repeats=15)
     few = q[:500]
-    slow = best_of(lambda: central_differences(chain, few), repeats=2)
-    print(f"central differences: {len(few) / slow:,.0f} poses/s")
+    slow = best_of(lambda: central_differences(chain, few), repeats=2) * len(q) / len(few)
+    print(f"{len(chain.symbols)} parameters: {len(q) / closed:,.0f} poses/s")
+    print(f"  {closed / filled:.0f} times as long as filling the array once")
+    print(f"  central differences: {len(q) / slow:,.0f} poses/s, {slow / closed:.0f} times as long")
     worst = np.abs(central_differences(chain, few) - jacobian(chain, few, LENGTH)).max()
-    print(f"largest difference between the two: {worst:.1e} mm/rad")
+    print(f"  largest difference between the two: {worst:.1e} mm/rad")
 
 
 if __name__ == "__main__":

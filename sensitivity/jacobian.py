@@ -4,13 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sensitivity.blocks import blocks
+from sensitivity.by_parameter import jacobian_by_parameter
 from twin.chain import Chain
 from twin.frames import Array
-from twin.kinematics import checked_readings, reach
-from twin.symbols import Family, Symbol
-
-_POSES_A_BLOCK = 1000  # keeps the intermediate arrays of one block in the processor's cache
+from twin.symbols import Symbol
 
 
 def jacobian(
@@ -19,8 +16,8 @@ def jacobian(
     """First-order deviation of the tool point per unit of every error parameter.
 
     ``dp/dE`` in closed form: a component error by the twist of its axis, a location or set-up
-    error by the displacement of its link (`twin.kinematics.reach`). A component error counts with
-    the value it has at the reading of the pose, whatever its distribution.
+    error by the displacement of its link (`sensitivity.by_parameter`). A component error counts
+    with the value it has at the reading of the pose, whatever its distribution.
 
     Args:
         chain: The machine.
@@ -34,18 +31,7 @@ def jacobian(
     Reference:
         D-MT paper, eq. (3); the influence matrix of Bringmann and Knapp.
     """
-    q = checked_readings(chain, q)
-    symbols = chain.symbols if symbols is None else symbols
-    length = np.broadcast_to(np.asarray(length, dtype=float), (len(q),))
-    is_twist = np.array([s.family is Family.COMPONENT for s in symbols], dtype=bool)
-    link = np.array([chain.link_index(s.link) for s in symbols], dtype=int)
-    component = np.array([s.component for s in symbols], dtype=int)
-    out = np.empty((len(q), len(symbols), 3))
-    for rows in blocks(len(q), _POSES_A_BLOCK):
-        reached = reach(chain, q[rows], length[rows])
-        out[rows, is_twist] = reached.twist[:, link[is_twist], component[is_twist]]
-        out[rows, ~is_twist] = reached.place[:, link[~is_twist], component[~is_twist]]
-    return out
+    return np.moveaxis(jacobian_by_parameter(chain, q, length, symbols), -1, 0)
 
 
 def sensitivity(

@@ -3,15 +3,23 @@
 import numpy as np
 import pytest
 
+from sensitivity.by_parameter import jacobian_by_parameter
 from sensitivity.jacobian import jacobian, sensitivity
 from sensitivity.workspace import latin_hypercube
+from twin.chain import Axis, make_chain
 from twin.effect import Contribution
-from twin.kinematics import exact_tip
+from twin.kinematics import exact_tip, reach
 from twin.symbols import Family
 from twin.units import DEG, NM
 
 LENGTH = 160.0
 RELATIVE = 1e-6
+MACHINES = {
+    "[w C' B' X' f Y Z (C1) t]": {"B": (0.0, 0.0, -420.0), "C": (3.0, -2.0, 1.0)},
+    "[w Y' f X Z C A t]": {"C": (12.0, -3.0, 0.0), "A": (12.0, -3.0, -80.0)},
+    "[w C' X' f Y Z B t]": {"C": (30.0, 40.0, -600.0), "B": (0.0, 5.0, 150.0)},
+    "[w f X Y Z t]": {},
+}
 STEP = {False: 0.1, True: 1e-4}  # mm, rad
 
 
@@ -80,7 +88,30 @@ def test_blocks_and_selections_change_nothing(chain, workspace, monkeypatch):
     q = latin_hypercube(workspace, 50, np.random.default_rng(2))
     length = np.linspace(100.0, 200.0, 50)
     whole = jacobian(chain, q, length)
-    monkeypatch.setattr("sensitivity.jacobian._POSES_A_BLOCK", 7)
+    monkeypatch.setattr("sensitivity.by_parameter._POSES_A_BLOCK", 7)
     np.testing.assert_array_equal(jacobian(chain, q, length), whole)
     some = [chain.symbols[i] for i in (70, 3, 40)]
     np.testing.assert_array_equal(jacobian(chain, q, length, some), whole[:, [70, 3, 40]])
+
+
+@pytest.mark.parametrize("notation", MACHINES)
+@pytest.mark.parametrize("slanting", [False, True])
+def test_the_fast_walk_says_what_the_matrices_say(notation, slanting):
+    # `reach` multiplies 4x4 matrices from the foundation outwards and shares nothing with the walk
+    points = MACHINES[notation]
+    axes = {n: Axis((-400.0, 400.0), (1.0, 2.0, 3.0)) for n in "XYZ"}
+    slant = (0.2, 1.0, -1.0) if slanting else None
+    axes |= {n: Axis((-3.0, 3.0), point, slant) for n, point in points.items()}
+    if slanting:
+        axes["Y"] = Axis((-400.0, 400.0), direction=(0.1, -1.0, 0.2))
+    chain = make_chain("m", notation, axes, (10.0, 20.0, -500.0))
+    rng = np.random.default_rng(8)
+    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    q, length = rng.uniform(low, high, (40, len(low))), rng.uniform(50.0, 300.0, 40)
+    reached = reach(chain, q, length)
+    found = jacobian_by_parameter(chain, q, length)
+    assert found.shape == (len(chain.symbols), 3, 40)
+    for p, symbol in enumerate(chain.symbols):
+        part = reached.twist if symbol.family is Family.COMPONENT else reached.place
+        expected = part[:, chain.link_index(symbol.link), symbol.component]
+        np.testing.assert_allclose(found[p].T, expected, rtol=0, atol=NM, err_msg=symbol.name)
