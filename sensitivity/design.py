@@ -5,8 +5,10 @@ over the poses that the user cares about,
 
     value = trace(K M^-1),   M = 1 + sum over the chosen rows of w w^T,   K = mean of G^T G,
 
-for parameters in units of their prior. With K the unit matrix it is A-optimality. A greedy choice
-is mended by exchanges until no exchange helps; that is a local optimum and is called nothing else.
+for parameters in units of their prior. With K the unit matrix it is A-optimality. D-optimality
+takes ``det(M)^(-1/R)``, the geometric mean of the posterior variances, which the same row-by-row
+updates serve with K = M. A greedy choice is mended by exchanges until no exchange helps; that is a
+local optimum and is called nothing else. `sensitivity.certificate` says how near it is to the best.
 """
 
 from dataclasses import dataclass
@@ -19,6 +21,7 @@ from twin.frames import Array
 from twin.touches import IntArray
 
 _REFRESH = 40  # updates after which rounding is swept out
+_WORTH = 1e-6  # relative gain below which an exchange is not made
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,10 +31,12 @@ class Purpose:
     Attributes:
         directions: Orthonormal columns, (P, R): everything that a tool point or a touch can feel.
         K: Mean square of the tool point's deviation as a form in these directions, (R, R), mm^2.
+        is_determinant: Whether the volume of what stays unknown counts (D) instead of K (I, A).
     """
 
     directions: Array
     K: Array
+    is_determinant: bool = False
 
     def rows(self, W: Array) -> Array:
         """Whitened rows (N, P) in the directions that matter, (N, R)."""
@@ -39,8 +44,13 @@ class Purpose:
         return reduced
 
     def value(self, information: Array) -> float:
-        """Mean predicted variance of the tool point, mm^2, for W^T W (R, R) of some rows."""
+        """Criterion for W^T W (R, R) of some rows; smaller is better.
+
+        Mean predicted variance of the tool point, mm^2, or ``det(M)^(-1/R)`` for D.
+        """
         M = np.eye(len(self.K)) + information
+        if self.is_determinant:
+            return float(np.exp(-np.linalg.slogdet(M)[1] / len(M)))
         return float(np.trace(np.linalg.solve(M, self.K)))
 
 
@@ -69,7 +79,7 @@ class Selection:
 
     Attributes:
         chosen: Which rows are in, (N,).
-        value: Mean predicted variance of the tool point, mm^2.
+        value: The criterion, smaller is better (`Purpose.value`).
     """
 
     def __init__(self, aim: Purpose, W: Array, chosen: NDArray[np.bool_] | None = None) -> None:
@@ -83,15 +93,20 @@ class Selection:
         self._inverse = np.linalg.solve(
             np.eye(self.W.shape[1]) + kept.T @ kept, np.eye(self.W.shape[1])
         )
-        self.value = float(np.sum(self._inverse * self.aim.K))
+        self.value = self.aim.value(kept.T @ kept)
         reach = self.W @ self._inverse
         self._leverage = np.einsum("nr,nr->n", reach, self.W)
-        self._gain = np.einsum("nr,rs,ns->n", reach, self.aim.K, reach, optimize=True)
+        self._gain = self._leverage
+        if not self.aim.is_determinant:
+            self._gain = np.einsum("nr,nr->n", reach @ self.aim.K, reach)
         self._updates = 0
 
     @property
     def gains(self) -> Array:
-        """How much less the value is with each row in, (N,); for a row that is in: once more."""
+        """How much less the value is with each row in, (N,); for a row that is in: once more.
+
+        For D ``h / (1 + h)``, which ranks rows as ``log(1 + h)`` does.
+        """
         return self._gain / (1.0 + self._leverage)
 
     @property
@@ -119,6 +134,12 @@ class Selection:
         self._updates += 1
         a = self._inverse @ self.W[row]
         c = sign / (1.0 + sign * self._leverage[row])
+        if self.aim.is_determinant:
+            self.value *= float((1.0 + sign * self._leverage[row]) ** (-1.0 / len(a)))
+            self._inverse -= c * np.outer(a, a)
+            self._leverage -= c * (self.W @ a) ** 2
+            self._gain = self._leverage
+            return
         b = self._inverse @ (self.aim.K @ a)
         kappa = float(a @ self.aim.K @ a)
         along_a, along_b = self.W @ a, self.W @ b
@@ -198,7 +219,7 @@ def exchange(
         free = _open(quotas, selection.chosen)
         best = int(np.argmax(np.where(free, selection.gains, -np.inf)))
         selection.add(best)
-        if best == worst or selection.value > before * (1.0 - 1e-6):
+        if best == worst or selection.value > before * (1.0 - _WORTH):
             selection.drop(best)
             selection.add(worst)
             return made

@@ -70,8 +70,11 @@ class _Groups:
         for k in chosen:
             M = M + self.brought[k]
         reach = np.asarray(np.linalg.solve(M, self.W.T).T, dtype=np.float64)
-        gain = np.einsum("nr,rs,ns->n", reach, self.aim.K, reach, optimize=True)
-        gain /= 1.0 + np.einsum("nr,nr->n", reach, self.W)
+        leverage = np.einsum("nr,nr->n", reach, self.W)
+        gain = leverage
+        if not self.aim.is_determinant:
+            gain = np.einsum("nr,nr->n", reach @ self.aim.K, reach)
+        gain = gain / (1.0 + leverage)
         free = np.all(fits[chosen], axis=0) if chosen else np.ones(self.count, dtype=bool)
         free[chosen] = False
         open_groups = np.flatnonzero(free & (np.diff(self.edges) > 0))
@@ -99,11 +102,14 @@ class _Groups:
     def _drops(self, top: IntArray, reach: Array) -> Array:
         """``trace(K M^-1) - trace(K (M + w^T w)^-1)`` of every group, by Woodbury, (groups,).
 
-        ``trace((1 + w M^-1 w^T)^-1  w M^-1 K M^-1 w^T)`` with reach = w M^-1.
+        ``trace((1 + w M^-1 w^T)^-1  w M^-1 K M^-1 w^T)`` with reach = w M^-1; for D the logarithm
+        of ``det(1 + w M^-1 w^T)``.
         """
         there = (top >= 0)[:, :, None]
         w, v = np.where(there, self.W[top], 0.0), np.where(there, reach[top], 0.0)
         inner = np.eye(self.take) + v @ np.swapaxes(w, 1, 2)
+        if self.aim.is_determinant:
+            return np.asarray(np.linalg.slogdet(inner)[1], dtype=np.float64)
         spread = v @ self.aim.K @ np.swapaxes(v, 1, 2)
         drops: Array = np.trace(np.linalg.solve(inner, spread), axis1=1, axis2=2)
         return drops

@@ -1,0 +1,103 @@
+"""Bounds against all possibilities and against a foreign optimiser of the relaxed problem."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from scipy.optimize import LinearConstraint, minimize
+
+from sensitivity.certificate import bound_at, certificate, relaxed, rounded
+from sensitivity.design import Purpose, Selection, exchange, fill
+from twin.errors import DesignError
+
+ROUNDING = 1e-9
+GAP = 1e-3
+"""To which relaxed problems are solved here."""
+
+
+def case(seed, rows, columns, is_determinant):
+    rng = np.random.default_rng(seed)
+    W = rng.normal(size=(rows, columns)) * np.linspace(3.0, 0.5, columns)
+    half = rng.normal(size=(columns, columns))
+    return Purpose(np.eye(columns), half @ half.T, is_determinant), W
+
+
+def value_of(aim, W, weight):
+    """By the definition, with nothing of the code that is tested."""
+    M = np.eye(W.shape[1]) + W.T @ np.diag(weight) @ W
+    if aim.is_determinant:
+        return float(np.prod(np.linalg.eigvalsh(M)) ** (-1.0 / len(M)))
+    return float(np.trace(np.linalg.inv(M) @ aim.K))
+
+
+@pytest.mark.parametrize("is_determinant", [False, True])
+def test_no_choice_beats_the_bound(is_determinant):
+    rng = np.random.default_rng(5)
+    for seed in range(10):
+        aim, W = case(seed, 11, 4, is_determinant)
+        best = min(value_of(aim, W, np.isin(np.arange(11), c)) for c in combinations(range(11), 5))
+        chosen = np.arange(11) < 5
+        found = relaxed(aim, W, 5, chosen, GAP)
+        assert found.bound <= best * (1.0 + ROUNDING)
+        # the tangent at any information is a bound, tight or not
+        x = rng.random(11)
+        assert bound_at(aim, W, W.T @ np.diag(x) @ W, 5)[0] <= best * (1.0 + ROUNDING)
+
+
+@pytest.mark.parametrize("is_determinant", [False, True])
+def test_fractions_are_those_of_a_foreign_optimiser(is_determinant):
+    aim, W = case(3, 30, 5, is_determinant)
+    found = relaxed(aim, W, 12, np.arange(30) < 12, GAP)
+    assert found.gap <= GAP
+    assert found.weight.sum() == pytest.approx(12.0, abs=ROUNDING)
+    assert found.weight.min() >= 0.0
+    assert found.weight.max() <= 1.0
+    assert found.value == pytest.approx(value_of(aim, W, found.weight), rel=ROUNDING)
+    other = minimize(
+        lambda x: np.log(value_of(aim, W, x)),
+        np.full(30, 0.4),
+        method="SLSQP",
+        bounds=[(0.0, 1.0)] * 30,
+        constraints=LinearConstraint(np.ones((1, 30)), 12.0, 12.0),
+        options={"maxiter": 500, "ftol": 1e-12},
+    )
+    best = float(np.exp(other.fun))
+    assert found.value == pytest.approx(best, rel=2.0 * GAP)
+    assert found.bound <= best * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize("is_determinant", [False, True])
+def test_certified_efficiency_of_a_good_and_of_a_bad_choice(is_determinant):
+    aim, W = case(7, 2000, 10, is_determinant)
+    selection = Selection(aim, W)
+    fill(selection, 40)
+    exchange(selection)
+    good = certificate(aim, W, selection.chosen)
+    assert 0.97 < good.efficiency <= 1.0
+    assert good.value == pytest.approx(value_of(aim, W, selection.chosen), rel=1e-6)
+    bad = certificate(aim, W, np.arange(2000) < 40)
+    assert bad.efficiency < 0.6
+    assert bad.bound == pytest.approx(good.bound, rel=5e-3)  # the same bound from another start
+    best = relaxed(aim, W, 40, selection.chosen)
+    whole = rounded(aim, W, best.weight, 40)
+    assert int(whole.chosen.sum()) == 40
+    assert best.bound / whole.value > 0.97
+    assert "40 of 2000 candidate touches: at least 9" in str(good)
+
+
+def test_determinant_by_updates_is_the_determinant():
+    aim, W = case(2, 60, 6, True)
+    selection = Selection(aim, W)
+    fill(selection, 20)
+    assert selection.value == pytest.approx(value_of(aim, W, selection.chosen), rel=ROUNDING)
+    selection.drop(int(np.flatnonzero(selection.chosen)[3]))
+    assert selection.value == pytest.approx(value_of(aim, W, selection.chosen), rel=ROUNDING)
+    gain = np.argmax(np.where(selection.chosen, -np.inf, selection.gains))
+    by_hand = [value_of(aim, W, selection.chosen | (np.arange(60) == i)) for i in range(60)]
+    assert gain == np.argmin(np.where(selection.chosen, np.inf, by_hand))
+
+
+def test_a_start_of_another_size_is_refused():
+    aim, W = case(1, 10, 3, False)
+    with pytest.raises(DesignError, match="4 of 10 touches to start from, 5 wanted"):
+        relaxed(aim, W, 5, np.arange(10) < 4)
