@@ -81,7 +81,8 @@ class Complement:
     def columns(self, effects: Sequence[Effect]) -> Array:
         """Whitened columns of effects, scaled by their prior, (N, K)."""
         sd = np.array([p.sd for e in effects for p in e.parameters])
-        return columns(effects, self.touches)[self.used] * (sd / self.u[:, None])
+        C = columns(effects, self.touches)
+        return (C if self.used.all() else C[self.used]) * sd / self.u[:, None]
 
     def project(self, C: Array) -> Array:
         """Columns (N, K) freed of what the model can imitate, (N + P, K)."""

@@ -126,13 +126,15 @@ def left_out(Q: Array, residual: Array, groups: Sequence[NDArray[np.int64]]) -> 
     for rows in groups:
         part, here = Q[rows], residual[rows]
         if len(rows) <= Q.shape[1]:
-            M = np.eye(len(rows)) - part @ part.T
-            C = np.linalg.inv(M)  # the covariance itself is wanted, not the solution of a system
-            error[rows], variance = C @ here, np.diag(C)
+            L = np.linalg.cholesky(np.eye(len(rows)) - part @ part.T)
+            root = solve_triangular(L, np.eye(len(rows)), lower=True, check_finite=False)
+            error[rows] = root.T @ (root @ here)
+            variance = (root**2).sum(axis=0)
         else:  # the same by the matrix of the other rows, which is the smaller one
-            M = np.eye(Q.shape[1]) - part.T @ part
-            error[rows] = here + part @ np.linalg.solve(M, part.T @ here)
-            variance = 1.0 + np.einsum("np,pn->n", part, np.linalg.solve(M, part.T))
+            L = np.linalg.cholesky(np.eye(Q.shape[1]) - part.T @ part)
+            root = solve_triangular(L, part.T, lower=True, check_finite=False)
+            error[rows] = here + root.T @ (root @ here)
+            variance = 1.0 + (root**2).sum(axis=0)
         inflation[rows] = np.sqrt(np.maximum(variance, 1.0))
-        surprise += float(here @ error[rows]) - float(np.linalg.slogdet(M)[1])
+        surprise += float(here @ error[rows]) - 2.0 * float(np.log(np.diag(L)).sum())
     return LeftOut(error, inflation, surprise)

@@ -202,7 +202,8 @@ def _neighbour_pairs(touches: Touches) -> list[tuple[tuple[str, ...], IntArray, 
     tree = cKDTree(np.column_stack([touches.point, FAR * label]))
     distance, index = tree.query(tree.data, k=2)
     near = np.sort(np.column_stack([np.arange(len(label)), index[:, 1]]), axis=1)
-    near = np.unique(near[distance[:, 1] < FAR], axis=0)
+    # a touch repeated at one point may come first in its own list: it is no neighbour of itself
+    near = np.unique(near[(distance[:, 1] < FAR) & (near[:, 0] < near[:, 1])], axis=0)
     if len(near):
         out.append((("px_mm", "py_mm", "pz_mm"), near[:, 0], near[:, 1]))
     return out

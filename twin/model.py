@@ -122,7 +122,7 @@ def columns(effects: Sequence[Effect], touches: Touches) -> Array:
     Returns:
         Shape (N, P), mm per base unit of each parameter.
     """
-    out = np.zeros((len(touches), sum(len(e.parameters) for e in effects)))
+    out = np.zeros((len(touches), sum(len(e.parameters) for e in effects)), order="F")
     signature = touches.signature
     start = 0
     for effect in effects:
