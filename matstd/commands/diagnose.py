@@ -20,7 +20,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--model", metavar="MODEL.toml", help="begin with this one, not the ordinary geometric one"
     )
     parser.add_argument(
-        "--add", metavar="EFFECT", action="append", default=[], help="put this effect in"
+        "--add",
+        metavar="EFFECT",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="put these effects in",
     )
     parser.add_argument(
         "--auto", action="store_true", help="put in whatever the diagnosis finds, step by step"
