@@ -2,8 +2,8 @@
 
 One walk along the chain from the table to the tool. A workpiece-carrying axis moves its body by
 minus its reading, so seen from the table every axis turns by plus its reading, and both sides of
-the foundation are one product. With R the rotation of a body in the table frame, p the tip and c the
-lever point of an axis, a component error e or r of it moves the tip by ``R e`` and
+the foundation are one product. With R the rotation of a body in the table frame, p the tip and c
+the lever point of an axis, a component error e or r of it moves the tip by ``R e`` and
 ``(R r) x (p - c)``. Whatever does not depend on the pose has a last dimension of one and is
 broadcast. `twin.kinematics.reach` says the same in 4x4 matrices and shares nothing with this file.
 """

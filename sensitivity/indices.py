@@ -1,12 +1,18 @@
 """Which error makes how much of the volumetric deviation: exact for independent errors."""
 
+from itertools import groupby
+
 import numpy as np
 
+from sensitivity.by_parameter import jacobian_blocks
 from sensitivity.jacobian import jacobian
 from sensitivity.sampling import Population
 from twin.frames import Array
 from twin.kinematics import checked_readings
 from twin.shapes import ShapeName, shape
+from twin.symbols import Family, Symbol
+
+_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # entries of a symmetric matrix
 
 
 def mean_squares(population: Population, q: Array) -> Array:
@@ -81,6 +87,34 @@ def rms(population: Population, q: Array, length: Array | float) -> Array:
 
 
 def covariance(population: Population, q: Array, length: Array | float) -> Array:
-    """Covariance of the deviation vector at every pose, (N, 3, 3), mm^2, first order."""
-    J = jacobian(population.chain, q, length)
-    return np.einsum("npi,np,npj->nij", J, mean_squares(population, q), J)
+    """Covariance of the deviation vector at every pose, (N, 3, 3), mm^2, first order.
+
+    ``C = sum_p E[e_p^2] J_p J_p^T``. The mean square of an error is a constant of the parameter
+    times a function of the reading of its axis, so the sums run over the parameters of each axis.
+    """
+    chain = population.chain
+    q = checked_readings(chain, q)
+    order = sorted(chain.symbols, key=lambda s: (s.link, s.family is not Family.COMPONENT))
+    weight = np.array([population.ranges.sd(chain, s) ** 2 for s in order])
+    over = [_over(population, symbol) for symbol in order]
+    lots = [list(lot) for _, lot in groupby(range(len(order)), key=over.__getitem__)]
+    out = np.empty((6, len(q)))
+    for rows, J in jacobian_blocks(chain, q, length, order):
+        total = np.zeros((6, J.shape[-1]))
+        for lot in lots:
+            columns = J[lot[0] : lot[-1] + 1]
+            scaled = columns * weight[lot[0] : lot[-1] + 1, None, None]
+            sums = np.stack([np.einsum("pn,pn->n", columns[:, i], scaled[:, j]) for i, j in _PAIRS])
+            axis, shapes = over[lot[0]]
+            total += sums * _mean_square(population, q[rows], axis, shapes) if axis else sums
+        out[:, rows] = total
+    C = np.empty((len(q), 3, 3))
+    for k, (i, j) in enumerate(_PAIRS):
+        C[:, i, j] = C[:, j, i] = out[k]
+    return C
+
+
+def _over(population: Population, symbol: Symbol) -> tuple[str, tuple[ShapeName, ...]]:
+    """Axis and shapes over whose reading an error varies; no axis for a constant."""
+    shapes = population.shapes_of(symbol)
+    return ("", shapes) if shapes == ("constant",) else (symbol.link, shapes)
