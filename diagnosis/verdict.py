@@ -123,10 +123,10 @@ def sentence(diagnosis: Diagnosis) -> str:
     noise = diagnosis.fit.noise
     u = float(np.median(diagnosis.run.u)) / UM
     if diagnosis.verdict is Verdict.UNEXPLAINED:
-        words = "; ".join(d.words for d in diagnosis.depends_on[:2]) or "no variable of the run"
+        patterns = list(dict.fromkeys(d.words for d in diagnosis.depends_on))[:2]
         return (
-            f"unexplained: residuals of {diagnosis.fit.rms / UM:.2f} µm are not noise, and no "
-            f"effect of the library accounts for them; they depend on {words}"
+            f"unexplained: a residual of {diagnosis.fit.rms / UM:.2f} µm is not noise, and no "
+            f"effect of the library accounts for it; it {' and '.join(patterns) or 'has no pattern'}"
         )
     if diagnosis.verdict is Verdict.NONE:
         text = f"no missing effect: residuals of {diagnosis.fit.rms / UM:.2f} µm are white"
