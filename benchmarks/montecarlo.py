@@ -13,6 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from sensitivity.indices import rms
+from sensitivity.lengths import BINS, count_lengths
 from sensitivity.montecarlo import volumetric
 from sensitivity.sampling import Distributions, Population, coefficients, drawn_in_chunks
 from sensitivity.workspace import Workspace, latin_hypercube
@@ -35,24 +37,40 @@ def matrix_rate() -> float:
     return 2 * 1500**3 / min(times) / 1e9
 
 
+def engine(population, q, draws):
+    """Seconds that the product with its counting takes, compiled and in numpy."""
+    G = population.model.tip_columns(at_poses(population.chain, q, LENGTH))
+    lots = drawn_in_chunks(population, draws, np.random.default_rng(2))
+    theta = np.concatenate([coefficients(population, lot) for lot in lots]).T.copy()
+    width = rms(population, q, LENGTH) * (5.0 / BINS)
+    count_lengths(G[:2], theta, width[:2])  # compiles
+    taken = {}
+    for what, compiled in (("compiled", True), ("numpy", False)):
+        start = time.perf_counter()
+        count_lengths(G, theta, width, compiled=compiled)
+        taken[f"product and counting, {what}"] = time.perf_counter() - start
+    return taken
+
+
 def main(draws: int, poses: int) -> None:
     """Print the figures."""
     chain = read_machine(MACHINE)
     q = latin_hypercube(Workspace(chain, {}, LENGTH), poses, np.random.default_rng(1))
-    rate = matrix_rate()
     print(f"{platform.processor() or platform.machine()}, numpy {np.__version__}")
-    print(f"matrix product, float64: {rate:.0f} GFLOP/s")
-    for periods in ((1,), (1, 2, 3)):
-        population = Population(chain, distributions=Distributions(periods=periods))
-        start = time.perf_counter()
-        found = volumetric(population, q, LENGTH, draws, np.random.default_rng(2))
-        taken = time.perf_counter() - start
+    print(f"matrix product, float64: {matrix_rate():.0f} GFLOP/s, all BLAS threads of this run")
+    for shapes in (("constant",), ("linear", "parabolic", "sinusoidal")):
+        turning = shapes if len(shapes) == 1 else ("sinusoidal",)
+        population = Population(chain, distributions=Distributions(shapes, turning))
         columns = len(population.model.parameters)
-        flops = 2.0 * 3 * poses * draws * columns
-        print(
-            f"{draws} machines x {poses} poses, {columns} columns: {taken:.2f} s, "
-            f"{flops / taken / 1e9:.0f} GFLOP/s = {flops / taken / 1e9 / rate:.0%} of the product"
-        )
+        print(f"{draws} machines x {poses} poses, {columns} columns")
+        rows = engine(population, q, draws)
+        start = time.perf_counter()
+        found = volumetric(population, q, LENGTH, draws, np.random.default_rng(2), recurrence=False)
+        rows["everything, columns and draws included"] = time.perf_counter() - start
+        for what, taken in rows.items():
+            speed = 2.0 * 3 * poses * draws * columns / taken / 1e9
+            now = matrix_rate()
+            print(f"  {what}: {taken:.2f} s, {speed:.0f} GFLOP/s = {speed / now:.0%} of {now:.0f}")
         print(f"  stated sampling error of the P95: {np.mean(found.p95_u) / UM:.2f} µm")
     some = slice(0, 50)
     theta = np.concatenate(

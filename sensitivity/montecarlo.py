@@ -6,7 +6,14 @@ import numpy as np
 
 from sensitivity.blocks import Progress, blocks, silent
 from sensitivity.indices import rms
-from sensitivity.sampling import Population, coefficients, draw, drawn_in_chunks
+from sensitivity.lengths import BINS, count_lengths
+from sensitivity.sampling import (
+    DRAWS_A_CHILD,
+    Population,
+    coefficients,
+    draw,
+    drawn_in_chunks,
+)
 from twin.errors import DesignError
 from twin.frames import Array
 from twin.model import Model
@@ -16,11 +23,12 @@ QUANTILES = (0.5, 0.95, 0.99)
 WORST = 0.05
 """Share of the poses that counts as the worst ones of a machine."""
 
-_BINS = 2048
 _SPAN = 5.0
 """The histogram of |d| at a pose reaches to this multiple of its root mean square. A sum of many
 independent errors exceeds it in less than one case of a million, and then sits in the last bin."""
 _POSES_A_BLOCK = 128
+_DRAWS_A_LOT = 10 * DRAWS_A_CHILD
+_FIRST_LOOK = 2000  # draws before it is asked whether they are enough
 _NOTHING = 1e-12  # mm: scale of the histogram where no machine has an error
 
 
@@ -38,6 +46,9 @@ class Volumetric:
         mean_u: Standard error of the mean by sampling, (N,).
         quantile_u: Standard error of the quantiles by sampling, (Q, N).
         recurrence_u: Standard error of the recurrence by sampling, (N,).
+        tolerance: Volumetric error that users allow, mm; infinite where they said nothing.
+        exceedance: Share of the machines beyond the tolerance, (N,).
+        exceedance_u: Standard error of the exceedance by sampling, (N,).
     """
 
     draws: int
@@ -49,13 +60,16 @@ class Volumetric:
     mean_u: Array
     quantile_u: Array
     recurrence_u: Array
+    tolerance: float
+    exceedance: Array
+    exceedance_u: Array
 
     def __getitem__(self, rows: slice) -> "Volumetric":
         """The statistics of some poses."""
         each = {
             f.name: getattr(self, f.name)[..., rows]
             for f in fields(self)
-            if f.name not in ("draws", "levels")
+            if f.name not in ("draws", "levels", "tolerance")
         }
         return replace(self, **each)
 
@@ -63,6 +77,11 @@ class Volumetric:
     def p95(self) -> Array:
         """95 % of the machines stay below this, (N,), mm."""
         return self.quantile[self.levels.index(0.95)]
+
+    @property
+    def achieved(self) -> float:
+        """Twice the largest standard error of mean and 95 % quantile at any pose, mm."""
+        return 2.0 * float(max(self.mean_u.max(), self.p95_u.max()))
 
     @property
     def p95_u(self) -> Array:
@@ -78,6 +97,9 @@ def volumetric(
     rng: np.random.Generator,
     progress: Progress = silent,
     reference: int | None = None,
+    tolerance: float = np.inf,
+    precision: float = 0.0,
+    recurrence: bool = True,
 ) -> Volumetric:
     """Statistics of the volumetric error over random machines, at every pose.
 
@@ -86,15 +108,24 @@ def volumetric(
     pose, K the parameters of `Population.model`. Quantiles are read from 2048 bins up to five times
     the root mean square, so they are off by a quarter of a percent of it at most.
 
+    With a precision it stops as soon as twice the standard error of mean and 95 % quantile is below
+    it at every pose: the statistics have stabilised (JCGM 101, 7.9.4, with the standard errors of
+    all draws in place of those of batches). `Volumetric.achieved` says what all `draws` reached.
+
     Args:
         population: What to draw from.
         q: Readings, shape (N, A).
         length: Tool length, scalar or (N,), mm.
-        draws: S; the result for a seed does not depend on how the work is cut.
+        draws: S, or at most S; the result for a seed does not depend on how the work is cut.
         rng: Source of the random numbers.
         progress: Told how many machines are done.
         reference: The worst 5 % are those of the first so many poses, and a later pose counts as
             affected where it reaches their limit; None for all poses.
+        tolerance: For the exceedance, mm.
+        precision: Half width of mean and 95 % quantile with a coverage of 95 % at which enough is
+            known, mm; 0 for all draws.
+        recurrence: Whether to look for the worst poses of every machine, which takes longer than
+            all the rest; they are not a number otherwise.
 
     Raises:
         DesignError: Fewer than two draws, or no pose.
@@ -104,18 +135,32 @@ def volumetric(
             f"{draws} draws at {len(q)} poses; expected two draws and a pose at least"
         )
     G = _first_order(population.model, q, length)
-    tally = _Tally(rms(population, q, length), len(q) if reference is None else reference)
-    done = 0
-    for lot in drawn_in_chunks(population, draws, rng):
-        theta = coefficients(population, lot).T.copy()  # (K, s)
-        size = np.empty((len(q), len(lot)))
-        for rows in blocks(len(q), _POSES_A_BLOCK):
-            d = (G[rows].reshape(-1, len(theta)) @ theta).reshape(-1, 3, len(lot))
-            size[rows] = np.sqrt(np.einsum("nis,nis->ns", d, d))
-        tally.add(size)
-        done += len(lot)
-        progress("random machines", done, draws)
-    return tally.result()
+    tally = _Tally(rms(population, q, length), reference or len(q), tolerance)
+    a_lot = DRAWS_A_CHILD if recurrence else _DRAWS_A_LOT
+    next_look = float(_FIRST_LOOK)
+    while tally.count < draws:
+        chunk = min(a_lot, draws - tally.count)
+        lots = drawn_in_chunks(population, chunk, rng)
+        theta = np.concatenate([coefficients(population, lot) for lot in lots]).T.copy()
+        if recurrence:
+            tally.add(_sizes(G, theta))
+        else:
+            tally.count_only(G, theta)
+        progress("random machines", tally.count, draws)
+        if precision > 0.0 and tally.count >= next_look:
+            if (found := tally.result(recurrence)).achieved <= precision:
+                return found
+            next_look *= 1.5
+    return tally.result(recurrence)
+
+
+def _sizes(G: Array, theta: Array) -> Array:
+    """|d| of every machine at every pose, (N, s), by blocks."""
+    size = np.empty((len(G), theta.shape[1]))
+    for rows in blocks(len(G), _POSES_A_BLOCK):
+        d = (G[rows].reshape(-1, len(theta)) @ theta).reshape(-1, 3, theta.shape[1])
+        size[rows] = np.sqrt(np.einsum("nis,nis->ns", d, d))
+    return size
 
 
 def _first_order(model: Model, q: Array, length: Array | float) -> Array:
@@ -130,12 +175,13 @@ def _first_order(model: Model, q: Array, length: Array | float) -> Array:
 class _Tally:
     """Sums, histogram and recurrence of |d|, lot by lot."""
 
-    def __init__(self, scale: Array, reference: int) -> None:
+    def __init__(self, scale: Array, reference: int, tolerance: float) -> None:
         n = len(scale)
-        self.width = np.maximum(scale, _NOTHING) * (_SPAN / _BINS)
+        self.width = np.maximum(scale, _NOTHING) * (_SPAN / BINS)
         self.count = 0
         self.sum, self.squares, self.worst = np.zeros(n), np.zeros(n), np.zeros(n)
-        self.histogram = np.zeros((n, _BINS), dtype=np.int32)
+        self.above, self.tolerance = np.zeros(n), tolerance
+        self.histogram = np.zeros((n, BINS), dtype=np.int32)
         self.reference = reference
         self.allowed = max(1, round(WORST * reference))
 
@@ -145,18 +191,28 @@ class _Tally:
         self.count += s
         self.sum += size.sum(axis=1)
         self.squares += np.einsum("ns,ns->n", size, size)
+        self.above += (size > self.tolerance).sum(axis=1)
         for rows in blocks(n, _POSES_A_BLOCK):
             width = self.width[rows, None]
-            index = np.minimum(size[rows] / width, _BINS - 1).astype(np.int64)
-            index += _BINS * np.arange(len(index))[:, None]
-            found = np.bincount(index.ravel(), minlength=_BINS * len(index))
-            self.histogram[rows] += found.reshape(-1, _BINS).astype(np.int32)
+            index = np.minimum(size[rows] / width, BINS - 1).astype(np.int64)
+            index += BINS * np.arange(len(index))[:, None]
+            found = np.bincount(index.ravel(), minlength=BINS * len(index))
+            self.histogram[rows] += found.reshape(-1, BINS).astype(np.int32)
         by_machine = np.ascontiguousarray(size.T)
         place = self.reference - self.allowed
         limit = np.partition(by_machine[:, : self.reference], place, axis=1)[:, place]
         self.worst += (by_machine >= limit[:, None]).sum(axis=0)
 
-    def result(self) -> Volumetric:
+    def count_only(self, G: Array, theta: Array) -> None:
+        """Count |G theta| of s machines without asking for their worst poses."""
+        found = count_lengths(G, theta, self.width, self.tolerance)
+        self.count += theta.shape[1]
+        self.sum += found.sum
+        self.squares += found.squares
+        self.above += found.above
+        self.histogram += found.histogram
+
+    def result(self, recurrence_known: bool) -> Volumetric:
         """Statistics of all that was counted."""
         s = self.count
         mean = self.sum / s
@@ -172,7 +228,8 @@ class _Tally:
             )
             quantile.append(middle)
             spread.append(0.5 * (high - low))
-        recurrence = self.worst / s
+        recurrence = self.worst / s if recurrence_known else np.full(len(mean), np.nan)
+        exceedance = self.above / s
         return Volumetric(
             draws=s,
             mean=mean,
@@ -183,6 +240,9 @@ class _Tally:
             mean_u=sd / np.sqrt(s),
             quantile_u=np.stack(spread),
             recurrence_u=np.sqrt(recurrence * (1.0 - recurrence) / s),
+            tolerance=self.tolerance,
+            exceedance=exceedance,
+            exceedance_u=np.sqrt(exceedance * (1.0 - exceedance) / s),
         )
 
     def _quantile(self, below: Array, level: float) -> Array:
