@@ -41,6 +41,7 @@ class Conformity:
         solids: In the STEP file.
         is_valid: The kernel finds no fault in the solid it has read.
         is_closed: All its shells are closed.
+        shells: One, or more where the solid has closed pockets inside.
         is_millimetre: The file's length unit.
         volume: Of the solid that was read, mm^3.
         volume_built: Of the solid that was built, mm^3.
@@ -63,6 +64,7 @@ class Conformity:
     solids: int
     is_valid: bool
     is_closed: bool
+    shells: int
     is_millimetre: bool
     volume: float
     volume_built: float
@@ -106,6 +108,10 @@ class Conformity:
             (self.solids == 1, f"{self.solids} solids in the STEP file, expected 1"),
             (self.is_valid, "the solid in the STEP file is not valid"),
             (self.is_closed, "the shell in the STEP file is not closed"),
+            (
+                self.shells == self.solids,
+                f"{self.shells} shells in {self.solids} solid: closed pockets inside",
+            ),
             (self.is_millimetre, "the STEP file is not in millimetres"),
             (not self.missing, f"faces without their name: {', '.join(self.missing)}"),
             (drift <= VOLUME_LIMIT, f"the volume changes by {drift:.1e} on re-reading"),
@@ -152,6 +158,7 @@ def measure(
         solids=found["solids"],
         is_valid=found["is_valid"],
         is_closed=found["is_closed"],
+        shells=found["shells"],
         is_millimetre=file_unit_is_millimetre(folder / STEP),
         volume=found["volume"],
         volume_built=built,

@@ -29,7 +29,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTo
 from OCP.XSControl import XSControl_WorkSession
 
 from artefact.standard import Standard
-from cad_out.faces import faces_of, is_closed, is_valid, solids_of, volume
+from cad_out.faces import faces_of, is_closed, is_valid, shells_of, solids_of, volume
 from cad_out.solid import Solid
 from twin.errors import NotBuildable
 from twin.frames import Array
@@ -55,6 +55,7 @@ class Reread:
     solids: int
     is_valid: bool
     is_closed: bool
+    shells: int
     volume: float
     names: tuple[str, ...]
 
@@ -109,6 +110,7 @@ def read_step(path: Path) -> Reread:
         solids=len(solids),
         is_valid=all(is_valid(solid) for solid in solids),
         is_closed=all(is_closed(solid) for solid in solids),
+        shells=sum(len(shells_of(solid)) for solid in solids),
         volume=sum(volume(solid) for solid in solids),
         names=tuple(sorted(names)),
     )

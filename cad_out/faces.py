@@ -47,6 +47,16 @@ def solids_of(shape: Any) -> list[Any]:
     return found
 
 
+def shells_of(shape: Any) -> list[Any]:
+    """Shells of a shape: the outer one of every solid, and one around every closed pocket."""
+    found = []
+    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SHELL)
+    while explorer.More():
+        found.append(TopoDS.Shell(explorer.Current()))
+        explorer.Next()
+    return found
+
+
 def is_valid(shape: Any) -> bool:
     """Whether the kernel finds no fault in topology and geometry."""
     return bool(BRepCheck_Analyzer(shape).IsValid())
@@ -54,12 +64,8 @@ def is_valid(shape: Any) -> bool:
 
 def is_closed(shape: Any) -> bool:
     """Whether every shell of the shape is closed."""
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SHELL)
-    closed = []
-    while explorer.More():
-        closed.append(bool(BRep_Tool.IsClosed_s(explorer.Current())))
-        explorer.Next()
-    return bool(closed) and all(closed)
+    shells = shells_of(shape)
+    return bool(shells) and all(bool(BRep_Tool.IsClosed_s(shell)) for shell in shells)
 
 
 def named_faces(standard: Standard, solid: Any, surfaces: dict[str, Any]) -> dict[str, Any]:

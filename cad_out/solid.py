@@ -8,8 +8,10 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Common, BRepAlgoAPI_Cut, BRepAlgoAPI_Fus
 from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeEdge,
     BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakeSolid,
     BRepBuilderAPI_MakeWire,
 )
+from OCP.BRepClass3d import BRepClass3d
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeBox,
     BRepPrimAPI_MakeCone,
@@ -26,7 +28,7 @@ from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 from artefact.datum import DatumSphere, MountingHole
 from artefact.freeform import FreeformPatch
 from artefact.standard import Base, Standard
-from cad_out.faces import is_valid, named_faces, solids_of, volume
+from cad_out.faces import is_valid, named_faces, shells_of, solids_of, volume
 from twin.errors import NotBuildable
 from twin.frames import Array, apply
 
@@ -223,7 +225,18 @@ def _only_solid(shape: Any, name: str) -> Any:
         )
     if not is_valid(solids[0]):
         raise NotBuildable(f"standard '{name}': the CAD kernel calls its own solid invalid")
-    return solids[0]
+    return without_pockets(solids[0])
+
+
+def without_pockets(solid: Any) -> Any:
+    """The solid with its closed pockets filled; one without any comes back as it is.
+
+    Columns that lean together above the plate can enclose a small wedge of air, which no tool
+    reaches and nobody could probe or clean.
+    """
+    if len(shells_of(solid)) == 1:
+        return solid
+    return BRepBuilderAPI_MakeSolid(BRepClass3d.OuterShell_s(solid)).Solid()
 
 
 def _point(p: Array) -> Any:

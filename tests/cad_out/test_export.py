@@ -156,6 +156,7 @@ def test_same_standard_gives_the_same_bytes(small, built, tmp_path, monkeypatch)
         ({"solids": 2}, "2 solids in the STEP file, expected 1"),
         ({"is_valid": False}, "not valid"),
         ({"is_closed": False}, "not closed"),
+        ({"shells": 2}, "2 shells in 1 solid: closed pockets inside"),
         ({"is_millimetre": False}, "not in millimetres"),
         ({"missing": ("FF2",)}, "faces without their name: FF2"),
         ({"volume": 1.0}, "the volume changes"),
