@@ -4,22 +4,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.candidates import smooth_heights
-from artefact.constraints import Limits
 from artefact.criterion import Criterion, random_touches
-from artefact.freeform import graph_patch
+from artefact.rivals import rivals
+from artefact.sites import Frame
+from artefact.touch_choice import (
+    PlacementOptions,
+    chosen_poses,
+    pose_quota,
+    some_touches,
+)
 from artefact.touchable import Requests, joined
-from sensitivity.design import Selection, exchange, fill
+from artefact.visibility import Visibility
+from sensitivity.design import Purpose, Selection, exchange, fill
 from sensitivity.information import Posterior, prior_sd_of_tip
-from twin.frames import Array, pose
+from twin.frames import Array
 
-_TRIED = 3000  # touches that each artefact may choose from
+_TRIED = 3000  # touches that the ideal scatter may choose from
 _DRAWS = 5  # of random touches, averaged
 
 
 @dataclass(frozen=True)
 class Rival:
-    """One artefact at the same number of touches and the same table poses.
+    """One artefact at the same number of touches and of table poses, under the same rules.
 
     Attributes:
         name: What it is.
@@ -27,19 +33,27 @@ class Rival:
             after chosen touches, mm.
         p95: 95 % of the poses stay below this, mm.
         rms_user: The same as `rms` over the user's workspace, mm.
+        p95_user: The same as `p95` over the user's workspace, mm.
         rms_random: As `rms`, after touches taken at random on the same artefact, mm.
         estimable: Combinations of parameters that are determined (effective degrees of freedom).
+        visible: Effects of the library, of those that any touches could show, that these show.
+        could_be_visible: Number of effects that any touches could show.
     """
 
     name: str
     rms: float
     p95: float
     rms_user: float
+    p95_user: float
     rms_random: float
     estimable: float
+    visible: int
+    could_be_visible: int
 
 
-def judged(name: str, aim: Criterion, chosen: Requests, random: list[Requests]) -> Rival:
+def judged(
+    name: str, aim: Criterion, chosen: Requests, random: list[Requests], library: Visibility
+) -> Rival:
     """Figures of one artefact after its touches.
 
     Args:
@@ -47,17 +61,22 @@ def judged(name: str, aim: Criterion, chosen: Requests, random: list[Requests]) 
         aim: Criterion.
         chosen: Its touches.
         random: Lots of touches taken at random on it, as many in each.
+        library: Effects of the library that touches could show.
     """
     after = _posterior(aim, chosen)
     over = after.predicted_sd(aim.tip_volume)
+    of_user = after.predicted_sd(aim.tip_user)
     by_chance = [_rms(_posterior(aim, lot).predicted_sd(aim.tip_volume)) for lot in random]
     return Rival(
         name=name,
         rms=_rms(over),
         p95=float(np.quantile(over, 0.95)),
-        rms_user=_rms(after.predicted_sd(aim.tip_user)),
+        rms_user=_rms(of_user),
+        p95_user=float(np.quantile(of_user, 0.95)),
         rms_random=float(np.sqrt(np.mean(np.square(by_chance)))),
         estimable=after.degrees_of_freedom,
+        visible=library.shown(aim, chosen),
+        could_be_visible=len(library.effects),
     )
 
 
@@ -81,29 +100,43 @@ def before(aim: Criterion) -> tuple[float, float]:
 
 
 def compare(
-    aim: Criterion, poses: Array, count: int, limits: Limits, rng: np.random.Generator
+    aim: Criterion,
+    all_poses: Array,
+    poses: Array,
+    frame: Frame,
+    options: PlacementOptions,
+    library: Visibility,
+    rng: np.random.Generator,
 ) -> tuple[Rival, ...]:
-    """Four spheres, one freeform face and a random scatter of points and normals.
+    """Other artefacts at as many touches: bodies that people have, and scatter that nobody has.
 
-    Each may choose its touches from 3000 reachable ones by the same greedy choice and exchange, at
-    the same table poses. Room for the probe is not asked of them, which favours them.
+    Bodies choose their own table poses and touches as the standard does, and the probe needs the
+    same angle, travel, room and free way on them; only the share of the spheres is not limited.
+    The ideal scatter has points anywhere in the volume and any normal, and nothing is in its way.
 
     Args:
         aim: Criterion.
-        poses: Table poses, (K, R), rad.
-        count: Number of touches.
-        limits: Of the freeform face.
+        all_poses: Table poses that bodies choose from, (K, R), rad.
+        poses: Table poses of the scatter.
+        frame: Base, blank and limits of the standard.
+        options: Numbers of touches and poses.
+        library: Effects of the library that touches could show.
         rng: Source of the random numbers.
     """
-    artefacts = {
-        "four calibrated spheres": _four_spheres(aim, poses, rng),
-        "one freeform face": _one_face(aim, poses, limits, rng),
-        "random points and normals": _scatter(aim, poses, rng),
-    }
-    return tuple(
-        judged(name, aim, chosen_touches(aim, tried, count), random_lots(tried, count, rng))
-        for name, tried in artefacts.items()
-    )
+    out = []
+    for name, body in rivals(aim.volume, frame, rng).items():
+        own = chosen_poses(aim, body, all_poses, options)
+        tried = some_touches(aim, body, own, options, rng)
+        lots = random_lots(tried, options.touches, rng)
+        chosen = chosen_touches(aim, aim.purpose, tried, options)
+        out.append(judged(name, aim, chosen, lots, library))
+    tried = _scatter(aim, poses, rng)
+    lots = random_lots(tried, options.touches, rng)
+    for name, what_for in (("I", aim.purposes["I"]), ("D", aim.purposes["D"])):
+        chosen = chosen_touches(aim, what_for, tried, options)
+        out.append(judged(f"ideal scatter, chosen by {name}", aim, chosen, lots, library))
+    out.append(judged("ideal scatter, at random", aim, lots[0], lots, library))
+    return tuple(out)
 
 
 def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[Requests]:
@@ -112,49 +145,16 @@ def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[R
     return [tried[rng.choice(len(tried), size, replace=False)] for _ in range(_DRAWS)]
 
 
-def chosen_touches(aim: Criterion, tried: Requests, count: int) -> Requests:
-    """Touches chosen greedily and mended by exchange, without any quota."""
-    selection = Selection(aim.purpose, aim.rows(tried))
-    fill(selection, min(count, len(tried)))
-    exchange(selection, most=count // 4)
-    return tried[selection.chosen]
-
-
-def _at_poses(
-    aim: Criterion, point: Array, normal: Array, poses: Array, rng: np.random.Generator
+def chosen_touches(
+    aim: Criterion, what_for: Purpose, tried: Requests, options: PlacementOptions
 ) -> Requests:
-    """Reachable touches at points, each at every pose, thinned to the number that may be tried."""
-    n, k = len(point), len(poses)
-    wanted = Requests(
-        np.full(n * k, "artefact"),
-        np.repeat(point, k, axis=0),
-        np.repeat(normal, k, axis=0),
-        np.tile(poses, (n, 1)),
-    )
-    good = np.flatnonzero(aim.probing.is_reachable(wanted))
-    return wanted[rng.permutation(good)[:_TRIED]]
-
-
-def _four_spheres(aim: Criterion, poses: Array, rng: np.random.Generator) -> Requests:
-    """Spheres of 25 mm at the corners of the volume, at different heights."""
-    (x0, y0, z0), (x1, y1, z1) = aim.volume
-    heights = np.linspace(z0 + 25.0, z1, 4)
-    centres = np.array([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]])
-    centres[:, 2] = heights[[0, 2, 1, 3]]
-    normal = rng.normal(size=(120, 3))
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    point = (centres[:, None] + 12.5 * normal).reshape(-1, 3)
-    return _at_poses(aim, point, np.tile(normal, (4, 1)), poses, rng)
-
-
-def _one_face(aim: Criterion, poses: Array, limits: Limits, rng: np.random.Generator) -> Requests:
-    """One smooth face over the whole volume, as steep as the limits allow, in mid-height."""
-    (x0, y0, z0), (x1, y1, z1) = aim.volume
-    half = (0.5 * (x1 - x0), 0.5 * (y1 - y0))
-    place = pose(t=np.array([0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1)]))
-    face = graph_patch("face", place, half, smooth_heights(half, limits, rng, tallest=40.0))
-    uv = rng.uniform(-1.0, 1.0, (300, 2)) * np.array(half)
-    return _at_poses(aim, face.point(uv), face.normal(uv), poses, rng)
+    """Touches chosen greedily and mended by exchange, with no quota but that of the poses."""
+    count = min(options.touches, len(tried))
+    quotas = (pose_quota(tried, options.touches),)
+    selection = Selection(what_for, what_for.rows(aim.whitened(tried)))
+    fill(selection, count, quotas)
+    exchange(selection, quotas, most=count // 4)
+    return tried[selection.chosen]
 
 
 def _scatter(aim: Criterion, poses: Array, rng: np.random.Generator) -> Requests:

@@ -1,6 +1,7 @@
 """What touches on a standard are worth: how well the tool point can be predicted after them."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from sensitivity.blocks import blocks
 from sensitivity.design import Purpose, purpose
 from sensitivity.information import whitened
 from sensitivity.workspace import Box, Workspace, latin_hypercube
+from twin.errors import DesignError
 from twin.frames import Array
 from twin.model import Model
 from twin.symbols import Family
@@ -18,6 +20,13 @@ from twin.touches import at_poses
 SETUP_SD = (1.0, 5e-3)
 """How far the standard may stand from where it is believed to stand, mm and rad. It is never known,
 so the set-up of the workpiece is free and the tool point is predicted relative to the standard."""
+
+CRITERIA = {
+    "I": "mean variance of the predicted tool point over probed volume and workspace",
+    "D": "volume of what stays unknown of the parameters, in units of what is expected",
+    "A": "mean variance of the parameters, in units of what is expected",
+}
+"""What touches can be chosen for."""
 
 _POSES = 400  # over which predictions are judged, in the probed volume and as many of the user's
 _SCATTER = 3000  # random touches that span all that touches can show
@@ -38,7 +47,8 @@ class Criterion:
         tip_volume: Deviation of the tip per unit of every parameter at poses over the probed
             volume, (M, 3, P).
         tip_user: The same at poses over the user's workspace, (M, 3, P).
-        purpose: To predict both.
+        purposes: What touches can be chosen for, by the names in `CRITERIA`.
+        name: The one that they are chosen for.
     """
 
     probing: Probing
@@ -49,7 +59,13 @@ class Criterion:
     volume: Box
     tip_volume: Array
     tip_user: Array
-    purpose: Purpose
+    purposes: Mapping[str, Purpose]
+    name: str = "I"
+
+    @property
+    def purpose(self) -> Purpose:
+        """What touches are chosen for."""
+        return self.purposes[self.name]
 
     def whitened(self, wanted: Requests) -> Array:
         """Rows of touches in units of noise and prior, (N, P)."""
@@ -71,6 +87,7 @@ def criterion(
     workspace: Workspace,
     noise: float,
     rng: np.random.Generator,
+    name: str = "I",
 ) -> Criterion:
     """Criterion of a machine, a blank and a user's workspace.
 
@@ -81,7 +98,13 @@ def criterion(
         workspace: Where the user works; the limits of its rotary axes are those of table poses.
         noise: Standard deviation of one touch, mm.
         rng: Draws the poses.
+        name: One of `CRITERIA`.
+
+    Raises:
+        DesignError: Another name.
     """
+    if name not in CRITERIA:
+        raise DesignError(f"criterion '{name}', expected one of {', '.join(CRITERIA)}")
     chain = probing.chain
     half, top = frame.base.half_size, frame.blank_height
     volume: Box = (
@@ -101,6 +124,7 @@ def criterion(
     prior_sd = _with_free_setup(model)
     scatter = random_touches(probing, volume, rotary, _SCATTER, rng)
     W = whitened(model.columns(probing.touches(scatter)), prior_sd, noise)
+    to_predict = purpose(np.concatenate(tips), W, prior_sd)
     return Criterion(
         probing=probing,
         model=model,
@@ -110,7 +134,12 @@ def criterion(
         volume=volume,
         tip_volume=tips[0],
         tip_user=tips[1],
-        purpose=purpose(np.concatenate(tips), W, prior_sd),
+        purposes={
+            "I": to_predict,
+            "D": replace(to_predict, is_determinant=True),
+            "A": replace(to_predict, K=np.eye(len(to_predict.K))),
+        },
+        name=name,
     )
 
 

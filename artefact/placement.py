@@ -15,7 +15,7 @@ from artefact.attribution import error_shares, parameter_symbols
 from artefact.candidates import neighbours_fit, random_sites
 from artefact.comparison import Rival, before, compare, judged, random_lots
 from artefact.constraints import Constraint
-from artefact.criterion import Criterion, criterion
+from artefact.criterion import Criterion, criterion, random_touches
 from artefact.sites import Frame, Site, patch_of_site, standard_from_sites
 from artefact.standard import Base, Standard
 from artefact.touch_choice import (
@@ -28,7 +28,9 @@ from artefact.touch_choice import (
     touches_to_choose_from,
 )
 from artefact.touchable import Probing, Requests, joined
+from artefact.visibility import visibility
 from sensitivity.blocks import Progress, silent
+from sensitivity.certificate import Certificate, certificate
 from sensitivity.groups import best_groups
 from sensitivity.information import Identifiability, identifiability, whitened
 from sensitivity.sampling import Population
@@ -39,6 +41,7 @@ from twin.ranges import Ranges
 
 __all__ = ["Placement", "PlacementOptions", "place"]
 
+_FREE = 480  # free touches, at least, by which an effect is judged visible at all
 _REBUILDS = 15  # choices of sites tried before giving up
 
 
@@ -53,6 +56,8 @@ class Placement:
         before: Expected deviation of the tool point before any touch, rms, mm: over the probed
             volume, over the user's workspace.
         rivals: This standard first, then other artefacts at as many touches.
+        certificate: How near the touches are to the best choice among all that could be made on the
+            standard at its table poses, with no share for spheres and patches.
         identifiability: What the touches cannot separate.
     """
 
@@ -61,6 +66,7 @@ class Placement:
     criterion: Criterion
     before: tuple[float, float]
     rivals: tuple[Rival, ...]
+    certificate: Certificate
     identifiability: Identifiability
 
     @property
@@ -96,7 +102,7 @@ def place(
     """
     options = options or PlacementOptions()
     model = Population(probing.chain, ranges or Ranges()).model
-    aim = criterion(probing, model, frame, workspace, options.noise, rng)
+    aim = criterion(probing, model, frame, workspace, options.noise, rng, options.criterion)
     progress("placement", 1, 6)
     all_poses = table_poses(aim, options.poses)
     standard = _standard(aim, frame, all_poses, options, rng)
@@ -104,11 +110,16 @@ def place(
     poses = chosen_poses(aim, standard, all_poses, options)
     progress("placement", 4, 6)
     tried = touches_to_choose_from(aim, standard, poses, options)
-    requests = chosen_touches_on(aim, standard, tried, options)
+    chosen = chosen_touches_on(aim, standard, tried, options)
+    requests = tried[chosen]
+    nearness = certificate(aim.purpose, aim.rows(tried), chosen)
     standard = _with_shares(aim, standard, requests)
     progress("placement", 5, 6)
-    own = judged(f"standard {options.name}", aim, requests, random_lots(tried, len(requests), rng))
-    rivals = compare(aim, poses, len(requests), frame.limits, rng)
+    free = random_touches(probing, aim.volume, aim.rotary, max(options.touches, _FREE), rng)
+    library = visibility(aim, free)
+    lots = random_lots(tried, len(requests), rng)
+    own = judged(f"standard {options.name}", aim, requests, lots, library)
+    rivals = compare(aim, all_poses, poses, frame, options, library, rng)
     W = aim.whitened(requests)
     progress("placement", 6, 6)
     return Placement(
@@ -117,6 +128,7 @@ def place(
         criterion=aim,
         before=before(aim),
         rivals=(own, *rivals),
+        certificate=nearness,
         identifiability=identifiability(W, aim.prior_sd, model.names),
     )
 

@@ -7,7 +7,8 @@ import numpy as np
 from artefact.criterion import Criterion
 from artefact.patch import Surface
 from artefact.standard import Standard
-from artefact.touchable import Probing, Requests, joined
+from artefact.touchable import Mask, Probing, Requests, joined
+from sensitivity.blocks import blocks
 from sensitivity.design import Quota, Selection, exchange, fill
 from sensitivity.groups import best_groups
 from twin.errors import NotReachable
@@ -18,6 +19,8 @@ _PITCHES = (5, 9, 15)  # points each way on a face
 _CHOICE = (
     2.0  # touches that can be made, for each that is wanted, on the coarsest grid that will do
 )
+_DRAWN = 1000  # touches looked at together
+_CROWDED = 1.6  # even shares of the touches that one table pose may have
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face
 _OVERSHOOT = 6.0 * DEG  # left at the ends of a rotary travel, to approach readings from both sides
 _SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
@@ -35,6 +38,7 @@ class PlacementOptions:
         poses: Number of table poses.
         sites: Number of random sites to choose from.
         noise: Standard deviation of one touch, mm.
+        criterion: What sites, poses and touches are chosen for (`artefact.criterion.CRITERIA`).
         sphere_share: Part of the touches that goes to the datum spheres, at least and at most. They
             would take two thirds if they could, but a standard of spheres is no news, and faces
             are what a freeform standard calibrates.
@@ -48,6 +52,7 @@ class PlacementOptions:
     poses: int = 18
     sites: int = 400
     noise: float = 1.0 * UM
+    criterion: str = "I"
     sphere_share: tuple[float, float] = (0.15, 0.3)
     least_on_patch: float = 0.4
 
@@ -148,10 +153,44 @@ def touches_to_choose_from(
     return tried
 
 
+def some_touches(
+    aim: Criterion,
+    standard: Standard,
+    poses: Array,
+    options: PlacementOptions,
+    rng: np.random.Generator,
+) -> Requests:
+    """Touches that can be made, drawn from the finest grid until a choice has enough."""
+    tried = touches_at(standard, poses, _PITCHES[-1])
+    tried = tried[aim.probing.is_reachable(tried)]
+    tried = tried[rng.permutation(len(tried))]
+    found: list[Requests] = []
+    for rows in blocks(len(tried), _DRAWN):
+        found.append(tried[rows][aim.probing.is_clear(standard, tried[rows])])
+        if sum(map(len, found)) >= _CHOICE * options.touches:
+            break
+    if sum(map(len, found)) < options.touches:
+        raise NotReachable(
+            f"{sum(map(len, found))} touches can be made on '{standard.name}', "
+            f"{options.touches} are wanted"
+        )
+    return joined(found)
+
+
+def pose_quota(tried: Requests, count: int) -> Quota:
+    """No table pose may have much more than its even share of the touches, if all can be had."""
+    pose = tried.pose
+    there = np.bincount(pose)
+    most = int(np.ceil(_CROWDED * count / len(there)))
+    while np.minimum(there, most).sum() < min(count, len(tried)):
+        most += 1
+    return Quota(pose, np.full(len(there), most))
+
+
 def chosen_touches_on(
     aim: Criterion, standard: Standard, tried: Requests, options: PlacementOptions
-) -> Requests:
-    """Single touches: spheres in every pose, every patch, then whatever tells most."""
+) -> Mask:
+    """Single touches: spheres in every pose, every patch, then whatever tells most, (N,)."""
     n = options.touches
     if len(tried) < n:
         raise NotReachable(f"{len(tried)} touches can be made on the standard, {n} are wanted")
@@ -160,7 +199,7 @@ def chosen_touches_on(
     pose, poses = tried.pose, int(tried.pose.max()) + 1
     is_sphere = feature >= len(standard.patches)
     aside = np.where(is_sphere, pose * len(names) + feature, poses * len(names))
-    per_pose = Quota(pose, np.full(poses, int(np.ceil(1.6 * n / poses))))
+    per_pose = pose_quota(tried, n)
     selection = Selection(aim.purpose, aim.rows(tried))
     # one touch on every sphere in every pose that allows it, up to the share of the spheres
     first = Quota(aside, np.append(np.ones(poses * len(names), dtype=np.int64), 0))
@@ -175,4 +214,4 @@ def chosen_touches_on(
     quotas = (per_pose, Quota(is_sphere.astype(np.int64), np.array([n, most])))
     fill(selection, n, quotas)
     exchange(selection, quotas, kept, most=n // 2)
-    return tried[selection.chosen]
+    return selection.chosen

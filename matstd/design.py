@@ -135,7 +135,12 @@ def _placement(
         rng,
         project.ranges,
         PlacementOptions(
-            wanted.name, wanted.serial, wanted.patches, wanted.touches, noise=project.noise
+            wanted.name,
+            wanted.serial,
+            wanted.patches,
+            wanted.touches,
+            noise=project.noise,
+            criterion=wanted.criterion,
         ),
         progress,
     )

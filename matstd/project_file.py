@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -47,6 +47,7 @@ class StandardTable(Table):
     expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
     patches: int = Field(default=10, ge=8, le=16)
     touches: int = Field(default=480, ge=100, le=2000)
+    criterion: Literal["I", "D", "A"] = "I"
 
 
 class SetupTable(Table):
@@ -93,7 +94,7 @@ class Project:
         poses: Number of poses for the maps.
         draws: Number of random machines for the maps.
         ranges: Expected amplitudes of the errors.
-        standard: Name, material, expansion, number of patches and touches.
+        standard: Name, material, expansion, number of patches and touches, criterion.
         setup: Where the standard stands on the table.
         noise: Standard deviation of one simulated touch, mm.
         machines: Number of random machines of the proof.

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from artefact.constraints import max_slope, min_concave_radius
+from artefact.criterion import CRITERIA
 from artefact.freeform import FreeformPatch
 from cad_out.picture import draw_standard
 from diagnosis.estimable import shown_value
@@ -89,6 +90,8 @@ def _standard(design: Design) -> dict[str, Any]:
     faces = max(c.face_deviation.values()) / UM
     return {
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
+        "certificate": design.placement.certificate,
+        "criterion": CRITERIA[design.placement.criterion.name],
         "comparison": [
             {
                 "name": r.name,
@@ -97,6 +100,9 @@ def _standard(design: Design) -> dict[str, Any]:
                 "rms_um": r.rms / UM,
                 "p95_um": r.p95 / UM,
                 "rms_user_um": r.rms_user / UM,
+                "p95_user_um": r.p95_user / UM,
+                "visible": r.visible,
+                "could_be_visible": r.could_be_visible,
                 "rms_random_um": r.rms_random / UM,
                 "estimable": r.estimable,
             }

@@ -135,12 +135,13 @@ def test_05_an_ideal_scatter_leaves_what_the_noise_leaves_and_one_face_leaves_mo
     # along their normals has the variance k/160 um^2 (the trace of the projection). Points and
     # normals at will represent the volume: with three directions sqrt(3 k/160) um, and up to half
     # as much again, because no surface that looks down can be touched.
-    scatter = "random points and normals"
+    scatter = "ideal scatter, chosen by I"
     expected = np.sqrt(3.0 * result["combinations determined"][scatter] / 160.0)
     assert 0.8 * expected < left[scatter] < 1.6 * expected
     # One smooth face holds hardly more than one direction, so it leaves at least twice as much as
     # four spheres do, and as the standard does.
-    own, spheres, face, _ = left.values()
+    own, spheres = left["standard FFS"], left["four calibrated spheres"]
+    face = left["one freeform face"]
     assert face > 2.0 * max(own, spheres)
 
 

@@ -126,9 +126,26 @@ def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
     assert own.rms < 0.9 * own.rms_random
     assert own.rms < own.p95
     by_name = {r.name: r for r in placement.rivals}
-    assert len(by_name) == 4
+    assert len(by_name) == 7
     assert own.rms < 0.6 * by_name["one freeform face"].rms
-    assert by_name["random points and normals"].rms < own.rms  # an honest yardstick
+    assert own.rms < 0.6 * by_name["five-sided block"].rms
+    ideal = by_name["ideal scatter, chosen by I"]
+    assert ideal.rms < own.rms  # an honest yardstick
+    assert ideal.rms < by_name["ideal scatter, at random"].rms
+    assert by_name["ideal scatter, chosen by D"].estimable > ideal.estimable - 0.5
+    for rival in placement.rivals:
+        assert rival.rms < rival.p95
+        assert rival.rms_user < rival.p95_user
+        assert 0 < rival.visible <= rival.could_be_visible
+    assert own.visible > by_name["one freeform face"].visible
+
+
+def test_certificate_is_of_the_choice(placement):
+    found, aim = placement.certificate, placement.criterion
+    rows = aim.rows(placement.requests)
+    assert found.count == 160
+    assert found.value == pytest.approx(aim.purpose.value(rows.T @ rows), rel=1e-6)
+    assert 0.5 < found.efficiency <= 1.0
 
 
 def test_figures_are_those_of_the_information(placement):
