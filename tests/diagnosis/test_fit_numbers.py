@@ -1,0 +1,229 @@
+"""The fit in numbers: by hand, by brute force, by leaving out, and on noise that is not as stated.
+
+The brute force here builds normal equations and inverts them, which the code never does.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.fit import fit_run
+from diagnosis.linear import left_out, solve
+from diagnosis.remarks import remarks
+from diagnosis.setup_error import SHIFT_SD, TURN_SD, setup_errors
+from twin.errors import NotEnoughData
+from twin.model import columns
+from twin.ordinary import ordinary_model
+from twin.units import NM, UM
+
+ROUNDING = 1e-12
+"""Numbers of size 1 out of sums of two products."""
+SAME = 1e-4
+"""Share of a standard uncertainty: normal equations square a condition of some 1e5, so that brute
+force keeps 6 of 16 digits, of estimates that are up to some hundred times their uncertainty."""
+SIGMAS = 4.0
+"""A sample statistic off by more than this has a probability of 6e-5."""
+
+
+def test_two_parameters_by_hand() -> None:
+    """X = [1 0; 1 1], y = (5, 10), unit prior: X'X + 1 = [3 1; 1 2] with determinant 5."""
+    X, y = np.array([[1.0, 0.0], [1.0, 1.0]]), np.array([5.0, 10.0])
+    s = solve(X, y)
+    np.testing.assert_allclose(s.phi, [4.0, 3.0], atol=ROUNDING)
+    np.testing.assert_allclose(s.covariance, [[0.4, -0.2], [-0.2, 0.6]], atol=ROUNDING)
+    np.testing.assert_allclose(s.residual, [1.0, 3.0], atol=ROUNDING)
+    np.testing.assert_allclose(s.leverage, [2 / 5, 3 / 5], atol=ROUNDING)
+    assert s.effective_parameters == pytest.approx(1.0, abs=ROUNDING)
+    assert s.dof == pytest.approx(1.0, abs=ROUNDING)
+    # 1 + 9 of the residual, 16 + 9 of the distance from the prior
+    assert s.objective == pytest.approx(35.0, abs=35.0 * ROUNDING)
+    out = left_out(s.Q, s.residual, [np.array([0]), np.array([1])])
+    # without row 0: phi = (10/3, 10/3); without row 1: phi = (5/2, 0); each against its y
+    np.testing.assert_allclose(out.error, [5.0 - 10 / 3, 10.0 - 5 / 2], atol=10 * ROUNDING)
+    np.testing.assert_allclose(out.inflation**2, [5 / 3, 5 / 2], atol=10 * ROUNDING)
+
+
+def brute_force(fit, rows):
+    """Estimates and covariance in base units by normal equations over some rows."""
+    A = columns(fit.effects, fit.run.touches)[rows]
+    W = 1.0 / fit.u[rows]
+    sd = np.array([p.sd for e in fit.effects for p in e.parameters])
+    X = A * W[:, None] * sd
+    covariance = np.linalg.inv(X.T @ X + np.eye(len(sd)))
+    phi = covariance @ (X.T @ (fit.run.deviation[rows] * W))
+    return sd * phi, covariance * np.outer(sd, sd), A
+
+
+@pytest.mark.parametrize("machine", ["hsm600u", "hmc1995"])
+def test_estimates_are_those_of_the_normal_equations(fitted, machine) -> None:
+    fit = fitted(1, machine)
+    assert fit.widened == 1.0
+    theta, covariance, A = brute_force(fit, fit.used)
+    u = np.sqrt(np.diag(covariance))
+    assert np.max(np.abs(fit.theta - theta) / u) < SAME
+    assert np.max(np.abs(fit.covariance - covariance) / np.outer(u, u)) < SAME
+    np.testing.assert_allclose(
+        fit.residual[fit.used], fit.run.deviation[fit.used] - A @ theta, atol=0.1 * NM
+    )
+
+
+def test_set_ups_are_free(fitted) -> None:
+    fit = fitted(1, "hmc1995")
+    assert [e.name for e in fit.setups] == [f"setup({c})" for c in "abcde"]
+    wanted = [SHIFT_SD] * 3 + [TURN_SD] * 3
+    for e in fit.setups:
+        assert list(fit.prior.sd[fit.of_effect(e.name)]) == pytest.approx(wanted)
+
+
+def test_left_out_poses_are_what_a_refit_predicts(fitted) -> None:
+    fit = fitted(1, "hmc1995")
+    used = np.flatnonzero(fit.used)
+    assert sum(map(len, fit.groups)) == len(used)
+    for group in fit.groups[::7]:
+        rows = used[group]
+        others = np.setdiff1d(used, rows)
+        theta, covariance, _ = brute_force(fit, others)
+        A = columns(fit.effects, fit.run.touches[rows])
+        error = (fit.run.deviation[rows] - A @ theta) / fit.u[rows]
+        spread = np.einsum("np,pq,nq->n", A, covariance, A) / fit.u[rows] ** 2
+        np.testing.assert_allclose(fit.held_out.error[group], error, atol=SAME)
+        np.testing.assert_allclose(fit.held_out.inflation[group] ** 2, 1.0 + spread, rtol=SAME)
+
+
+def test_rows_marked_as_held_out_teach_nothing(case) -> None:
+    """Nonsense in held-out rows leaves the estimates as they are, to the last digit."""
+    run, _ = case(1, "hmc1995")
+    split = np.where(run.touches.pose % 5 == 0, "test", "train")
+    spoilt = np.where(split == "test", run.deviation + 1.0, run.deviation)
+    model = ordinary_model(run.touches.chain)
+    fits = [fit_run(replace(run, split=split, deviation=d), model) for d in (run.deviation, spoilt)]
+    np.testing.assert_array_equal(fits[0].theta, fits[1].theta)
+    n = int((split == "test").sum())
+    # the held-out error is the noise, within the scatter of n squares (prediction allowed for)
+    assert fits[0].test_rms == pytest.approx(0.6 * UM, rel=SIGMAS / np.sqrt(2.0 * n))
+
+
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_chips_are_found_told_and_kept_out(case, fitted, seed) -> None:
+    """Chips of 15 to 60 um at a noise below 0.85 um: all of them, and hardly ever another row."""
+    run, truth = case(seed, "hsm600u", (), True)
+    fit = fitted(seed, "hsm600u", (), True)
+    assert np.flatnonzero(fit.gross.rows).tolist() == truth["chips"]
+    np.testing.assert_array_equal(fit.used, ~fit.gross.rows)
+    assert np.min(fit.residual[truth["chips"]]) > 10.0 * UM
+    told = [line for line in remarks(fit) if "gross error" in line]
+    assert len(told) == 1
+    for line in run.line[truth["chips"]]:
+        assert str(line) in told[0].partition(": line")[2]
+
+
+def test_nothing_is_dropped_where_nothing_stands_out(fitted) -> None:
+    fit = fitted(1, "hsm600u")
+    assert fit.used.all()
+    assert not any("left out" in line for line in remarks(fit))
+
+
+def test_too_many_outliers_are_structure_and_stay(case) -> None:
+    """Every tenth touch 20 um off is no accident: all are kept, and it is told."""
+    run, _ = case(1, "hmc1995")
+    off = np.where(np.arange(len(run)) % 10 == 0, 20.0 * UM, 0.0)
+    model = ordinary_model(run.touches.chain)
+    fit = fit_run(replace(run, deviation=run.deviation + off), model)
+    assert fit.used.all()
+    assert any("more touches stand out" in line for line in remarks(fit))
+
+
+@pytest.mark.parametrize("factor", [0.45 / 0.6, 0.85 / 0.6])
+def test_noise_wrongly_stated_is_recognised(case, factor) -> None:
+    """The simulator's 0.6 um stated as 0.8 or as 0.424 um: a true noise of 0.45 or 0.85 per 0.6."""
+    run, _ = case(1, "hmc1995")
+    fit = fit_run(replace(run, u=run.u / factor), ordinary_model(run.touches.chain))
+    assert fit.noise.factor == pytest.approx(factor, rel=SIGMAS / np.sqrt(2.0 * fit.noise.dof))
+    assert fit.noise.is_wrongly_stated
+    assert any("not" in line and "as stated" in line for line in remarks(fit))
+
+
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_noise_of_hard_cases_is_found_beside_chips(case, fitted, seed) -> None:
+    truth, noise = case(seed, "hsm600u", (), True)[1], fitted(seed, "hsm600u", (), True).noise
+    assert noise.factor * 0.6 == pytest.approx(
+        truth["noise_um"], rel=SIGMAS / np.sqrt(2.0 * noise.dof)
+    )
+
+
+def test_noise_rightly_stated_is_left_alone(fitted) -> None:
+    fit = fitted(1, "hsm600u")
+    assert fit.noise.factor == pytest.approx(1.0, abs=SIGMAS / np.sqrt(2.0 * fit.noise.dof))
+    assert not any("as stated" in line for line in remarks(fit))
+
+
+def test_the_machine_does_not_depend_on_where_the_standard_was_clamped(case, fitted) -> None:
+    """Every set-up moved by 0.2 mm and 1 mrad more: the machine's estimates stay.
+
+    The wide prior of a set-up (1 mm, 5 mrad) holds back a millionth of what the run shows; what a
+    machine parameter can imitate is shared by the squares of the prior deviations, 10 um : 1 mm,
+    so that 1e-4 of 0.2 mm, 20 nm, may go there. Uncertainties of such parameters are micrometres.
+    """
+    run, _ = case(1, "hmc1995")
+    before = fitted(1, "hmc1995")
+    move = np.tile([0.2, -0.2, 0.2, 1e-3, -1e-3, 1e-3], len(before.setups))
+    moved = run.deviation + columns(setup_errors(run.touches), run.touches) @ move
+    after = fit_run(replace(run, deviation=moved), before.model)
+    machine = len(before.model.parameters)
+    u = np.sqrt(np.diag(before.covariance))
+    assert np.max(np.abs(after.theta - before.theta)[:machine] / u[:machine]) < 0.1
+    np.testing.assert_allclose(after.residual, before.residual, atol=20.0 * NM)
+    # the set-ups themselves follow, up to what the machine's own set-up parameters keep
+    np.testing.assert_allclose((after.theta - before.theta)[machine:], move, rtol=0.1)
+
+
+def test_fewer_touches_than_parameters(case) -> None:
+    """60 touches, 155 parameters: estimates kept by the prior, uncertainties that hold.
+
+    Machines are drawn from the prior; the scaled error of every parameter then has a mean square
+    of 1. The 40 machines are independent, the parameters of one are not: their scatter decides.
+    """
+    run, _ = case(1, "hsm600u")
+    few = run[np.arange(0, len(run), 13)]
+    model = ordinary_model(few.touches.chain)
+    effects = (*model.effects, *setup_errors(few.touches))
+    A, sd = columns(effects, few.touches), np.array([p.sd for e in effects for p in e.parameters])
+    assert len(few) < len(sd)
+    rng = np.random.default_rng(7)
+    squares = []
+    for _ in range(40):
+        theta = sd * rng.normal(size=len(sd))
+        fit = fit_run(replace(few, deviation=A @ theta + rng.normal(0.0, few.u)), model)
+        u = np.sqrt(np.diag(fit.covariance))
+        assert np.all(u <= sd * fit.widened * (1.0 + SAME))
+        squares.append(np.mean(((fit.theta - theta) / u) ** 2))
+    assert any("the prior decides the rest" in line for line in remarks(fit))
+    assert fit.solution.effective_parameters < len(few)
+    error = np.std(squares) / np.sqrt(len(squares))
+    assert np.mean(squares) == pytest.approx(1.0, abs=SIGMAS * error)
+    assert error < 0.05  # else the line above would pass anything
+
+
+def test_so_few_touches_are_refused(case) -> None:
+    run, _ = case(1, "hmc1995")
+    with pytest.raises(NotEnoughData, match="5 touches, expected at least 8"):
+        fit_run(run[:5], ordinary_model(run.touches.chain))
+
+
+def test_replicates_tell_noise_from_what_the_model_lacks(case) -> None:
+    """Every touch twice, 0.9 um apart by chance, beside 0.6 um that both share."""
+    run, _ = case(1, "hmc1995")
+    twice = run[np.repeat(np.arange(len(run)), 2)]
+    rng = np.random.default_rng(9)
+    scatter = rng.normal(0.0, 0.9 * UM, len(twice))
+    fit = fit_run(
+        replace(twice, deviation=twice.deviation + scatter), ordinary_model(run.touches.chain)
+    )
+    assert fit.noise.replicates_dof == len(run)
+    assert fit.noise.replicates == pytest.approx(0.9 / 0.6, rel=SIGMAS / np.sqrt(2.0 * len(run)))
+    # the residual holds both
+    both = np.hypot(0.9, 0.6) / 0.6
+    assert fit.noise.factor == pytest.approx(both, rel=SIGMAS / np.sqrt(2.0 * len(run)))
+    assert any("as large as the scatter of" in line for line in remarks(fit))
+    assert fit_run(run, fit.model).noise.replicates is None
