@@ -9,6 +9,7 @@ from artefact.freeform import ErrorShare
 from twin.effect import Effect
 from twin.effects.geometric import ComponentError
 from twin.effects.location import LocationError
+from twin.errors import NotBuildable
 from twin.frames import Array
 from twin.model import Model
 from twin.symbols import Family, parse_symbol
@@ -47,12 +48,19 @@ def error_shares(
         W: Whitened rows of all touches on patches, (N, P).
         patch: Name of the feature of every touch, (N,).
         symbols: Error parameter of every column, (P,).
+
+    Raises:
+        NotBuildable: Every error has the amplitude zero.
     """
     machine = [p for p, s in enumerate(symbols.tolist()) if not _is_setup(s)]
     names, column = np.unique(symbols[machine], return_inverse=True)
     by_error = np.zeros((len(W), len(names)))
     for p, i in zip(machine, column, strict=True):
         by_error[:, i] += W[:, p] ** 2
+    if not by_error.any():
+        raise NotBuildable(
+            "no error of the machine shows in any patch: the expected amplitudes are all zero"
+        )
     labels = np.asarray(patch)
     overall = by_error.mean(axis=0) / by_error.mean(axis=0).sum()
     out = {}

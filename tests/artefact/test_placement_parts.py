@@ -11,6 +11,7 @@ from artefact.freeform import graph_patch
 from artefact.sites import Frame, Site
 from artefact.touchable import Probing, Requests, joined
 from twin.chain import Axis, make_chain
+from twin.errors import NotBuildable
 from twin.frames import fixed_xyz, pose
 from twin.kinematics import inverse_linear
 from twin.touches import Setup
@@ -127,3 +128,8 @@ def test_shares_name_what_stands_out():
     assert (first.name, first.share) == ("EXX", pytest.approx(25 / 27, abs=1e-4))
     assert (second.name, second.share) == ("EYX", pytest.approx(25 / 28, abs=1e-4))
     assert "EX0w" not in {e.name for e in shares["FF1"]}
+
+
+def test_a_machine_with_amplitudes_all_zero_is_refused_in_one_line():
+    with pytest.raises(NotBuildable, match="amplitudes are all zero"):
+        error_shares(np.zeros((2, 2)), ["FF1", "FF2"], np.array(["EXX", "EYY"]))
