@@ -1,0 +1,479 @@
+"""Files of a diagnosis as the contract states them, and the commands on good and on bad input."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from simulator_case import simulate_case
+
+from diagnosis.diagnosis_file import write_diagnosis
+from diagnosis.fit import fit_run
+from diagnosis.model_file import read_model, write_model
+from diagnosis.remarks import remarks
+from matstd.cli import main
+from twin.errors import BadFile
+from twin.ordinary import ordinary_model
+from twin.units import NM
+
+NUMBER = (int, float)
+DIGITS = 2e-6
+"""Numbers in json files have six significant digits."""
+
+STEP = {"effect", "kind", "parameters", "uncertainty", "p_value", "rms_um", "test_rms_um"}
+STEP |= {"chi2_ratio", "cannot_be_told_from"}
+KEYS = {
+    "candidates": {"effect", "kind", "p_value", "rms_um", "test_rms_um"},
+    "where": {"region", "mean_um", "rms_um", "touches"},
+    "depends_on": {"variable", "p_value"},
+    "next_measurement": {"tells_apart", "touches"},
+}
+HOSE = """
+from dataclasses import dataclass
+from twin.effect import Parameter, Term, Where
+from twin.library import Kind
+
+@dataclass(frozen=True)
+class Hose:
+    name = kind = "tested-hose"
+    parameters = (Parameter("lift", "mm", 0.01),)
+
+    def terms(self, touches):
+        push = 1.0 * (touches.reading("Y") > 0.0)
+        return (Term(0, Where("twist", touches.chain.link_index("Z"), 2), push),)
+
+KIND = Kind("tested-hose", "", "EZZ = a for Y > 0", "a: µm", "some µm", "seen",
+            lambda chain, arguments: Hose(), lambda touches: (Hose(),), (Hose,))
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A run with a hidden reversal of Y, and its machine."""
+    place = tmp_path_factory.mktemp("run")
+    run, machine, _ = simulate_case(
+        np.random.default_rng(21), "hmc1995", ("backlash(Y)",), with_alike=False
+    )
+    (place / "run.csv").write_text(run, encoding="utf-8")
+    (place / "machine.toml").write_text(machine, encoding="utf-8")
+    return place
+
+
+@pytest.fixture
+def changed(folder, tmp_path):
+    """A function (change of rows, change of head) that writes the run so changed; its path."""
+
+    def write(change, head=lambda lines: lines):
+        lines = (folder / "run.csv").read_text(encoding="utf-8").splitlines()
+        n = next(i for i, line in enumerate(lines) if not line.startswith("#"))
+        columns = lines[n].split(",")
+        rows = [dict(zip(columns, line.split(","), strict=True)) for line in lines[n + 1 :]]
+        rows = change(rows)
+        table = [",".join(rows[0]), *(",".join(row.values()) for row in rows)]
+        (tmp_path / "run.csv").write_text("\n".join([*head(lines[:n]), *table]) + "\n")
+        (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text())
+        return str(tmp_path / "run.csv")
+
+    return write
+
+
+# diagnosis.json
+
+
+@pytest.fixture(scope="module")
+def table(diagnosed, tmp_path_factory):
+    """diagnosis.json of a run with a lag, which has rivals and thus a next measurement."""
+    path = tmp_path_factory.mktemp("json") / "diagnosis.json"
+    write_diagnosis(path, diagnosed(5, "hsm600u", ("thermal-lag(EXC)",)))
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def test_keys_and_types_are_those_of_the_contract(table) -> None:
+    assert list(table) == [
+        "format",
+        "touches",
+        "u_um",
+        "verdict",
+        "steps",
+        "candidates",
+        "where",
+        "depends_on",
+        "detectable",
+        "next_measurement",
+    ]
+    assert table["format"] == "diagnosis/1"
+    assert table["touches"] == 780
+    assert table["u_um"] == pytest.approx(0.6, rel=DIGITS)
+    assert table["verdict"] == "missing effect"
+    for name, keys in KEYS.items():
+        assert table[name] or name == "where", name  # a lag may fail everywhere alike
+        for entry in table[name]:
+            assert set(entry) == keys, name
+
+
+def test_steps_of_the_contract(table) -> None:
+    first, step = table["steps"]
+    assert set(first) == {"effect", "rms_um", "test_rms_um", "chi2_ratio"}
+    assert first["effect"] is None
+    assert set(step) == STEP
+    assert step["kind"] == "thermal-lag"
+    assert set(step["parameters"]) == {"tau_min", "amplitude_um"}
+    assert set(step["uncertainty"]) <= set(step["parameters"])
+    assert all(isinstance(v, NUMBER) for v in step["parameters"].values())
+    assert 0.0 <= step["p_value"] < 1e-6
+    names = [step["effect"], *step["cannot_be_told_from"]]
+    assert "thermal-lag(EXC)" in names
+    assert len(set(names)) == len(names)
+    assert step["rms_um"] < first["rms_um"]
+
+
+def test_limits_and_regions_of_the_contract(table) -> None:
+    """A length has its size in smallest_um alone; anything else beside it in its own unit."""
+    for entry in table["detectable"]:
+        assert {"effect", "smallest_um"} <= set(entry)
+        assert len(entry) <= 3
+        assert all(v is None or v > 0.0 for k, v in entry.items() if k != "effect")
+    by_name = {e["effect"]: set(e) for e in table["detectable"]}
+    assert by_name["backlash(X)"] == {"effect", "smallest_um"}
+    assert by_name["backlash(B)"] == {"effect", "smallest_um", "smallest_urad"}
+    assert all(0 < w["touches"] <= 780 and w["region"] for w in table["where"])
+
+
+def test_next_measurement_is_a_run_plan(table, case) -> None:
+    """Touches with the columns of a run file, within the travels, on points that are known."""
+    run = case(5, "hsm600u", ("thermal-lag(EXC)",)).run
+    (plan,) = table["next_measurement"]
+    assert len(plan["tells_apart"]) == 2
+    assert plan["touches"]
+    known = np.round(run.touches.point, 6)
+    for touch in plan["touches"]:
+        assert list(touch)[:4] == ["feature", "setup", "pose", "time_s"]
+        for axis, unit in zip("XYZBC", ("mm", "mm", "mm", "deg", "deg"), strict=True):
+            low, high = run.touches.chain.link(axis).range
+            scale = 1.0 if unit == "mm" else np.pi / 180.0
+            assert low - NM <= touch[f"{axis}_{unit}"] * scale <= high + NM
+        point = [touch[f"p{c}_mm"] for c in "xyz"]
+        assert np.min(np.linalg.norm(known - point, axis=1)) < 2.0 * NM
+        normal = [touch[f"n{c}"] for c in "xyz"]
+        assert np.linalg.norm(normal) == pytest.approx(1.0, abs=1e-8)
+    times = [touch["time_s"] for touch in plan["touches"]]
+    assert times == sorted(times)
+
+
+# model.toml
+
+
+@pytest.fixture(scope="module")
+def saved(fitted, tmp_path_factory):
+    fit = fitted(1, "hmc1995")
+    path = tmp_path_factory.mktemp("model") / "model.toml"
+    write_model(path, fit, "run.csv")
+    return fit, path
+
+
+def test_a_model_read_back_predicts_the_same(saved, case) -> None:
+    fit, path = saved
+    again = read_model(path)
+    assert again.source.touches == len(fit.run)
+    assert [e.name for e in again.model.effects] == [e.name for e in fit.model.effects]
+    P = len(fit.model.parameters)
+    touches = case(22, "hmc1995").run.touches  # another run altogether
+    before = fit.model.columns(touches)
+    after = again.model.columns(touches)
+    np.testing.assert_allclose(after @ again.estimates.mean, before @ fit.theta[:P], atol=0.01 * NM)
+    u_before = np.sqrt(np.einsum("np,pq,nq->n", before, fit.covariance[:P, :P], before))
+    u_after = np.linalg.norm(after @ again.estimates.root, axis=1)
+    np.testing.assert_allclose(u_after, u_before, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("model/1", "model/2", "format.*model/2"),
+        ('name = "geometric(EXX,linear)"', 'name = "wobble(EXX)"', "wobble"),
+        ("amplitude_um", "amplitude_mm", "amplitude_um"),
+        ("[source]", "[sauce]", "sauce|source"),
+    ],
+)
+def test_a_model_file_that_is_not_one_is_refused(saved, tmp_path, old, new, expected) -> None:
+    text = saved[1].read_text(encoding="utf-8")
+    assert old in text
+    (tmp_path / "model.toml").write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(BadFile, match=expected):
+        read_model(tmp_path / "model.toml")
+
+
+def test_a_model_file_that_was_cut_off_is_refused(saved, tmp_path) -> None:
+    text = saved[1].read_text(encoding="utf-8")
+    (tmp_path / "model.toml").write_text(text[: len(text) // 2], encoding="utf-8")
+    with pytest.raises(BadFile, match=r"model\.toml"):
+        read_model(tmp_path / "model.toml")
+
+
+# matstd compare
+
+
+def test_compare_writes_what_the_model_leaves(folder, tmp_path, capsys) -> None:
+    out = tmp_path / "out"
+    assert main(["compare", str(folder / "run.csv"), "-o", str(out), "--no-report"]) == 0
+    assert "what is left is not noise" in " ".join(capsys.readouterr().out.split())
+    told = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
+    assert told["format"] == "comparison/1"
+    assert told["rms_um"] < told["measured_rms_um"]
+    assert told["chi2_ratio"] > 1.1
+    assert sorted(p.name for p in out.iterdir()) == ["comparison.json", "residuals.csv"]
+    rows = (out / "residuals.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) == told["touches"] + 1
+    names = rows[0].split(",")
+    numbers = [dict(zip(names, row.split(","), strict=True)) for row in rows[1:]]
+    residual = np.array([float(r["residual_um"]) for r in numbers])
+    for r, left in zip(numbers, residual, strict=True):
+        # each of the three is rounded to 0.0001 um
+        assert float(r["measured_um"]) - float(r["predicted_um"]) == pytest.approx(left, abs=2e-4)
+    kept = np.array([r["gross_error"] == "0" for r in numbers])
+    assert np.sqrt(np.mean(residual[kept] ** 2)) == pytest.approx(told["rms_um"], abs=2e-4)
+
+
+def test_compare_with_a_model_of_the_same_machine(folder, tmp_path) -> None:
+    """Learnt from one half of the poses, it predicts the other to noise and uncertainty."""
+    lines = (folder / "run.csv").read_text(encoding="utf-8").splitlines()
+    head = [line for line in lines if line.startswith("#")]
+    columns, *rows = lines[len(head) :]
+    place = columns.split(",").index("pose")
+    for name, part in (("a", 0), ("b", 1)):
+        kept = [r for r in rows if int(r.split(",")[place]) % 2 == part]
+        (tmp_path / f"{name}.csv").write_text("\n".join([*head, columns, *kept]) + "\n")
+    (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text())
+    a, b, m, c = (str(tmp_path / n) for n in ("a.csv", "b.csv", "m", "c"))
+    add = ["--add", "backlash(Y)"]
+    assert main(["diagnose", a, *add, "-o", m, "--no-report"]) == 0
+    assert main(["compare", b, "--model", f"{m}/model.toml", "-o", c, "--no-report"]) == 0
+    told = json.loads((tmp_path / "c" / "comparison.json").read_text(encoding="utf-8"))
+    # 1 within 4 deviations of 390 squares, which share the errors of the model: twice that
+    assert told["chi2_ratio"] == pytest.approx(1.0, abs=8.0 * np.sqrt(2.0 / 390))
+
+
+# matstd diagnose
+
+
+def test_auto_finds_puts_in_and_goes_on_from_its_own_model(folder, tmp_path, capsys) -> None:
+    """What was found goes into model.toml; begun with that, nothing is missing any more."""
+    run, out, again = str(folder / "run.csv"), tmp_path / "out", tmp_path / "again"
+    assert main(["diagnose", run, "--auto", "-o", str(out), "--no-report"]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "missing effect: backlash(Y)" in printed
+    told = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+    assert [s["effect"] for s in told["steps"]] == [None, "backlash(Y)"]
+    model = out / "model.toml"
+    assert 'name = "backlash(Y)"' in model.read_text(encoding="utf-8")
+    assert main(["diagnose", run, "--model", str(model), "-o", str(again), "--no-report"]) == 0
+    told = json.loads((again / "diagnosis.json").read_text(encoding="utf-8"))
+    assert told["verdict"] == "no missing effect"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["again", "out"]  # nothing half-written
+
+
+def test_plans_stand_beside_the_diagnosis(tmp_path, table) -> None:
+    """Where effects are confused, a table of touches that has the columns of a run file."""
+    run_file, machine, _ = simulate_case(
+        np.random.default_rng(5), "hsm600u", ("thermal-lag(EXC)",), with_alike=False
+    )
+    (tmp_path / "run.csv").write_text(run_file, encoding="utf-8")
+    (tmp_path / "machine.toml").write_text(machine, encoding="utf-8")
+    out = tmp_path / "out"
+    assert main(["diagnose", str(tmp_path / "run.csv"), "-o", str(out), "--no-report"]) == 0
+    assert json.loads((out / "diagnosis.json").read_text(encoding="utf-8")) == table
+    lines = (out / "next_measurement_1.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("# to tell thermal-lag(")
+    wanted = run_file.splitlines()
+    header = next(line for line in wanted if not line.startswith("#")).split(",")
+    assert set(lines[1].split(",")) <= set(header)
+    assert len(lines) - 2 == len(table["next_measurement"][0]["touches"])
+    # without --auto and --add the model is the one to begin with
+    assert "thermal-lag" not in (out / "model.toml").read_text(encoding="utf-8")
+
+
+def test_named_effects_and_effects_of_ones_own(folder, tmp_path, monkeypatch) -> None:
+    import twin.library as library
+
+    monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
+    (tmp_path / "mine.py").write_text(HOSE, encoding="utf-8")
+    out = tmp_path / "out"
+    own = ["--effects", str(tmp_path / "mine.py"), "--add", "tested-hose", "backlash(Y)"]
+    command = ["diagnose", str(folder / "run.csv"), *own, "-o", str(out), "--no-report"]
+    assert main(command) == 0
+    told = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+    assert [s["effect"] for s in told["steps"]] == [None, "tested-hose", "backlash(Y)"]
+    assert told["verdict"] == "no missing effect"
+    hose = told["steps"][1]
+    assert abs(hose["parameters"]["lift_um"]) < 4.0 * hose["uncertainty"]["lift_um"]
+    assert told["steps"][2]["p_value"] < 1e-6
+    assert 'name = "tested-hose"' in (out / "model.toml").read_text(encoding="utf-8")
+
+
+def test_the_page_stands_with_the_files(tmp_path, changed) -> None:
+    """With pictures: a comparison of a part of the run."""
+    out = tmp_path / "out"
+    path = changed(lambda rows: rows[:260])
+    assert main(["compare", path, "-o", str(out)]) == 0
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "run.csv" in page
+    assert list((out / "pictures").glob("*.png"))
+
+
+# bad input
+
+
+def one_line(capsys, command):
+    error = capsys.readouterr().err
+    assert error.startswith(f"matstd {command}: ")
+    assert error.count("\n") == 1, error
+    return error
+
+
+@pytest.mark.parametrize("command", ["compare", "diagnose"])
+def test_results_of_an_earlier_run_are_not_replaced(changed, tmp_path, capsys, command) -> None:
+    path, out = changed(lambda rows: rows[:200]), tmp_path / "out"
+    out.mkdir()
+    (out / "mine.txt").write_text("mine")
+    assert main([command, path, "-o", str(out), "--no-report"]) == 2
+    assert "--force" in one_line(capsys, command)
+    assert [p.name for p in out.iterdir()] == ["mine.txt"]
+
+
+def test_force_replaces_results_and_nothing_else(changed, tmp_path) -> None:
+    path, out = changed(lambda rows: rows[:200]), tmp_path / "out"
+    out.mkdir()
+    (out / "mine.txt").write_text("mine")
+    (out / "comparison.json").write_text("old")
+    assert main(["compare", path, "-o", str(out), "--no-report", "--force"]) == 0
+    assert (out / "mine.txt").read_text() == "mine"
+    assert json.loads((out / "comparison.json").read_text())["format"] == "comparison/1"
+
+
+def with_value(column, value, row=3):
+    def change(rows):
+        rows[row][column] = value
+        return rows
+
+    return change
+
+
+def without(column):
+    return lambda rows: [{k: v for k, v in row.items() if k != column} for row in rows]
+
+
+@pytest.mark.parametrize("command", ["compare", "diagnose"])
+@pytest.mark.parametrize(
+    ("change", "phrases"),
+    [
+        (without("nz"), ("nz",)),
+        (without("X_mm"), ("X_mm",)),
+        (with_value("Y_mm", "12,5"), ("line",)),
+        (with_value("px_mm", "nan"), ("line", "px_mm")),
+        (with_value("Z_mm", "abc"), ("line", "Z_mm", "abc")),
+        (with_value("setup", "q"), ("setup", "q")),
+        (lambda rows: rows[:5], ("5 touches", "at least 8")),
+    ],
+    ids=["no nz", "no X", "comma", "nan", "word", "set-up", "five touches"],
+)
+def test_bad_rows_are_one_clear_line(changed, tmp_path, capsys, command, change, phrases) -> None:
+    path, out = changed(change), tmp_path / "out"
+    assert main([command, path, "-o", str(out), "--no-report"]) == 2
+    error = one_line(capsys, command)
+    for phrase in phrases:
+        assert phrase in error
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["machine.toml", "run.csv"]
+
+
+def test_a_file_that_was_cut_off(changed, tmp_path, capsys) -> None:
+    path = tmp_path / "run.csv"
+    changed(lambda rows: rows)
+    text = path.read_text()
+    path.write_text(text[: len(text) // 2].rsplit(",", 3)[0] + ",")
+    assert main(["diagnose", str(path), "-o", str(tmp_path / "out"), "--no-report"]) == 2
+    assert "line" in one_line(capsys, "diagnose")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "phrase"),
+    [
+        (["--add", "wobble(X)"], "wobble"),
+        (["--add", "backlash(Q)"], "Q"),
+        (["--model", "nowhere.toml"], "nowhere.toml"),
+        (["--effects", "nowhere.py"], "nowhere.py"),
+    ],
+)
+def test_bad_arguments_are_one_clear_line(changed, tmp_path, capsys, arguments, phrase) -> None:
+    path = changed(lambda rows: rows[:100])
+    assert main(["diagnose", path, *arguments, "-o", str(tmp_path / "out")]) == 2
+    assert phrase in one_line(capsys, "diagnose")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["machine.toml", "run.csv"]
+
+
+def test_no_such_run(tmp_path, capsys) -> None:
+    assert main(["compare", str(tmp_path / "no.csv"), "-o", str(tmp_path / "out")]) == 2
+    assert "no.csv" in one_line(capsys, "compare")
+
+
+# odd input: used, and told
+
+
+def told_of(changed, tmp_path, change, head=lambda lines: lines):
+    """Remarks in comparison.json of the changed run."""
+    path = changed(change, head)
+    assert main(["compare", path, "-o", str(tmp_path / "out"), "--no-report"]) == 0
+    return json.loads((tmp_path / "out" / "comparison.json").read_text(encoding="utf-8"))
+
+
+def with_all(column, value):
+    return lambda rows: [{**row, column: value(i, row)} for i, row in enumerate(rows)]
+
+
+def backwards(rows):
+    rows[10]["time_s"] = "0.0"
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("change", "phrase"),
+    [
+        (with_all("T_spindle_degC", lambda i, row: "20.0"), "T_spindle_degC is constant at 20"),
+        (with_value("T_spindle_degC", "nan"), "the sensor is left out"),
+        (lambda rows: [rows[0], *rows], "1 rows stand twice; the copies are left out"),
+        (backwards, "time_s goes back"),
+        (lambda rows: rows[:26], "1 table pose only"),
+        (lambda rows: rows[:60], "60 touches for"),
+    ],
+    ids=["constant sensor", "gap in a sensor", "copy", "clock", "one pose", "few touches"],
+)
+def test_odd_runs_are_used_and_the_oddity_told(changed, tmp_path, change, phrase) -> None:
+    told = told_of(changed, tmp_path, change)
+    assert any(phrase in line for line in told["remarks"]), told["remarks"]
+
+
+def test_millimetres_in_a_column_of_micrometres(case) -> None:
+    """Deviations a thousand times too small, and an uncertainty a thousand times too small.
+
+    Deviations of tens of micrometres, as before a standard is aligned, are then still some share of
+    their uncertainty, but their noise is none.
+    """
+    run = case(1, "hmc1995").run
+    fit = fit_run(replace(run, deviation=run.deviation / 1e3), ordinary_model(run.touches.chain))
+    assert any("the noise looks like" in line and "as stated" in line for line in remarks(fit))
+    small = replace(run, deviation=run.deviation / 1e4)
+    fit = fit_run(small, ordinary_model(run.touches.chain))
+    assert any("in mm in a column of µm" in line for line in remarks(fit))
+    fit = fit_run(replace(run, u=run.u / 1e3), ordinary_model(run.touches.chain))
+    assert any("is u_um in mm" in line for line in remarks(fit))
+
+
+def test_millimetres_in_a_file(changed, tmp_path) -> None:
+    """The same end to end: a head that states 0.0006 µm."""
+    told = told_of(
+        changed,
+        tmp_path,
+        lambda rows: rows,
+        lambda lines: [line.replace("u_um = 0.6", "u_um = 0.0006") for line in lines],
+    )
+    assert any("is u_um in mm" in line for line in told["remarks"])
