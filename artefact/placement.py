@@ -97,10 +97,12 @@ def place(
         progress: Told what is being done.
 
     Raises:
-        NotBuildable: No choice of sites meets every limit; the message names what binds.
+        NotBuildable: The blank is larger than the table, or no choice of sites meets every limit;
+            the message names what binds.
         NotReachable: The machine reaches too few touches on the standard.
     """
     options = options or PlacementOptions()
+    _check_blank(frame.base, probing)
     model = Population(probing.chain, ranges or Ranges()).model
     aim = criterion(probing, model, frame, workspace, options.noise, rng, options.criterion)
     progress("placement", 1, 6)
@@ -131,6 +133,16 @@ def place(
         certificate=nearness,
         identifiability=identifiability(W, aim.prior_sd, model.names),
     )
+
+
+def _check_blank(base: Base, probing: Probing) -> None:
+    """Refuse a blank whose sides reach beyond the table; its corners may."""
+    if max(base.half_size) > probing.table_radius:
+        a, b = (2.0 * side for side in base.half_size)
+        raise NotBuildable(
+            f"a blank of {a:g} x {b:g} mm is larger than the table, diameter "
+            f"{2.0 * probing.table_radius:g} mm"
+        )
 
 
 def _standard(

@@ -53,7 +53,7 @@ class PlacementOptions:
     sites: int = 400
     noise: float = 1.0 * UM
     criterion: str = "I"
-    sphere_share: tuple[float, float] = (0.15, 0.3)
+    sphere_share: tuple[float, float] = (0.15, 0.45)
     least_on_patch: float = 0.4
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from artefact.placement import Placement, PlacementOptions, place
-from artefact.sites import Frame
+from artefact.sites import Fittings, Frame
 from artefact.standard import Material
 from artefact.standard_file import write_standard
 from artefact.touchable import Probing
@@ -40,6 +40,9 @@ from twin.units import KG_M3
 
 PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""
+
+_SPHERE_HEIGHTS = (60.0, 95.0, 130.0)
+"""Of the sphere centres above the seat, mm: as far apart as the blank's patches leave room for."""
 
 Stage = Callable[[str, int, int], None]
 """Told the name of a stage, what is done and how much there is."""
@@ -130,7 +133,7 @@ def _placement(
     material = Material(wanted.material, wanted.density_kg_m3 * KG_M3, wanted.expansion_per_K)
     return place(
         Probing(project.chain, project.setup, probe.shape, probe.length),
-        Frame(material=material),
+        Frame(fittings=Fittings(sphere_heights=_SPHERE_HEIGHTS), material=material),
         workspace,
         rng,
         project.ranges,
