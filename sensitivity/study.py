@@ -1,15 +1,17 @@
 """The sensitivities of one machine over one workspace: computed once, written as data and maps."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 
 from sensitivity.blocks import Progress, silent
-from sensitivity.indices import rms, variance_shares
+from sensitivity.indices import covariance, rms, variance_shares
 from sensitivity.jacobian import sensitivity
 from sensitivity.montecarlo import ExactCheck, Volumetric, exact_check, volumetric
+from sensitivity.normal_length import NormalLength, normal_length
 from sensitivity.sampling import Population
 from sensitivity.workspace import Workspace, latin_hypercube, section
 from twin.chain import Chain
@@ -79,6 +81,24 @@ class Study:
         """Readings of the pose with the largest root mean square, (A,)."""
         worst: Array = self.q[np.argmax(self.rms)]
         return worst
+
+    @cached_property
+    def closed(self) -> NormalLength:
+        """The volumetric error without sampling, as if every error were normally distributed."""
+        return normal_length(covariance(self.population, self.q, self.workspace.length))
+
+    @property
+    def tail(self) -> tuple[float, float]:
+        """By how much the sampled 95 % quantile differs from the closed one: mean and worst.
+
+        As shares of the closed one; what is beyond the sampling error is not normal in its shape.
+        """
+        closed, sampled = self.closed.p95, self.volumetric.p95
+        seen = closed > 0.0
+        if not seen.any():
+            return 0.0, 0.0
+        off = sampled[seen] / closed[seen] - 1.0
+        return float(off.mean()), float(off[np.argmax(np.abs(off))])
 
     def ranking(self) -> list[tuple[str, float]]:
         """Error parameters by their mean share of the variance over the workspace."""
@@ -176,6 +196,7 @@ def write_study(study: Study, folder: str | Path) -> list[tuple[str, str]]:
     }
     v = study.volumetric
     statistics = {"mean": v.mean, "mean_u": v.mean_u, "sd": v.sd, "rms": study.rms}
+    statistics["p95_normal"] = study.closed.p95
     for i, level in enumerate(v.levels):
         statistics[f"p{100 * level:g}"] = v.quantile[i]
         statistics[f"p{100 * level:g}_u"] = v.quantile_u[i]
