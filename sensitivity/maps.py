@@ -55,9 +55,9 @@ def draw_maps(study: Study, folder: Path) -> list[tuple[str, str]]:
             _volumetric_axes(study),
             f"Volumetric error against each reading ({draws}): median over the poses of the mean "
             "and of the 95 % quantile, with the range that holds 80 % of the poses. Standard error "
-            f"of the 95 % quantile by sampling: {np.mean(v.p95_u) / UM:.2g} µm; it differs "
-            f"from that of normal errors of the same covariance by {100.0 * study.tail[0]:+.1f} % on "
-            f"average and {100.0 * study.tail[1]:+.1f} % at worst.",
+            f"of the 95 % quantile by sampling: {np.mean(v.p95_u) / UM:.2g} µm. This quantile "
+            "differs from that of normal errors of the same covariance by "
+            f"{100.0 * study.tail[0]:+.1f} % on average, {100.0 * study.tail[1]:+.1f} % at worst.",
         ),
         (
             "variance_shares.png",

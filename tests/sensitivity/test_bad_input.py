@@ -15,6 +15,7 @@ def test_a_machine_without_errors_gives_a_whole_study(chain, workspace, tmp_path
     nothing = Population(chain, Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES}, {}))
     study = run_study(nothing, workspace, 20, 50, np.random.default_rng(1))
     assert study.volumetric.mean.max() == study.shares.max() == study.rms.max() == 0.0
+    assert study.tail == (0.0, 0.0)
     written = write_study(study, tmp_path)
     assert written
     assert all((tmp_path / name).stat().st_size > 0 for name, _ in written)
