@@ -81,6 +81,8 @@ class Ordinary:
         blocks = [ordinary_model(touches.chain).columns(touches)]
         for s in range(len(touches.setups)):
             inside = (touches.setup == s)[:, None]
+            if not inside.any():  # no touch of this set-up was within all travels
+                continue
             arm = c - c[touches.setup == s].mean(axis=0)
             blocks += [inside * n, inside * np.cross(arm, n) / 100.0]
         A = np.hstack(blocks)
