@@ -7,7 +7,7 @@ import pytest
 
 from artefact.freeform import ErrorShare
 from artefact.standard_file import read_standard, write_standard
-from twin.errors import BadFile
+from twin.errors import BadFile, DesignError
 
 
 def equal(one, other):
@@ -49,7 +49,7 @@ def test_file_is_written_whole_or_not_at_all(standard, tmp_path, monkeypatch):
         raise OSError("disk full")
 
     monkeypatch.setattr("pathlib.Path.replace", broken)
-    with pytest.raises(OSError, match="disk full"):
+    with pytest.raises(DesignError, match=r"cannot be written \(disk full\)"):
         write_standard(path, replace(standard, name="another"))
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["standard.toml"]

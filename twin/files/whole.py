@@ -23,7 +23,7 @@ def written_whole(path: str | Path) -> Iterator[Path]:
             prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent
         )
     except OSError as error:
-        raise DesignError(f"{path}: cannot be written ({error.strerror})") from error
+        raise DesignError(f"{path}: cannot be written ({error.strerror or error})") from error
     os.close(handle)
     # mkstemp makes private files; an output is as readable as any other file of the user
     umask = os.umask(0)
@@ -35,7 +35,7 @@ def written_whole(path: str | Path) -> Iterator[Path]:
         try:
             part.replace(path)
         except OSError as error:
-            raise DesignError(f"{path}: cannot be written ({error.strerror})") from error
+            raise DesignError(f"{path}: cannot be written ({error.strerror or error})") from error
     finally:
         part.unlink(missing_ok=True)
 
@@ -52,7 +52,7 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
         try:
             part.write_bytes(text.replace("\n", newline).encode("utf-8"))
         except OSError as error:  # a full disk
-            raise DesignError(f"{path}: cannot be written ({error.strerror})") from error
+            raise DesignError(f"{path}: cannot be written ({error.strerror or error})") from error
 
 
 def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:
