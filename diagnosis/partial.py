@@ -68,25 +68,56 @@ def partial(fit: Fit, effect: Effect) -> Partial:
     """
     touches = fit.run.touches
     theta = fit.theta[fit.of_effect(effect.name)]
-    terms = effect.terms(touches)
     rows = np.concatenate([np.flatnonzero(fit.used), np.flatnonzero(fit.test_rows)])
-    places = {term.where for term in terms}
-    if len(places) == 1:
-        where = places.pop()
-        name, unit = _place(where, touches)
-        seen = _per_unit(where, touches)[rows]
-        whole = np.sum([theta[t.parameter] * t.amount for t in terms], axis=0)
-        explained = np.asarray(whole[rows] / unit)
-    else:
-        name, unit = "deviation along the normal, µm", UM
-        seen = np.ones(len(rows))
-        explained = (columns([effect], touches) @ theta)[rows] / unit
+    name, unit, whole, per_unit = _split(effect, touches, theta)
+    explained = whole[rows] / unit
+    seen = per_unit[rows]
     usable = np.where(np.abs(seen) > 1e-12, seen, 1e-12)
     observed = explained + fit.residual[rows] / (usable * unit)
     weight = (usable * unit / fit.run.u[rows]) ** 2
     shown = np.flatnonzero(np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99)))
     variable, x = _driver(effect, touches, rows, explained)
     return Partial(variable, x, name, explained, observed, weight, shown, rows)
+
+
+def _split(effect: Effect, touches: Touches, theta: Array) -> tuple[str, float, Array, Array]:
+    """An effect as a quantity at every touch times the deviation along the normal per unit of it.
+
+    At one place of the machine it is the component error there. At several places that all follow
+    one course it is the deviation where that shows most. Else it is the deviation itself.
+
+    Returns:
+        Name with unit, one of that unit in the base unit, the quantity (N,), deviation per unit
+        (N,).
+    """
+    terms = effect.terms(touches)
+    places = {term.where for term in terms}
+    if len(places) == 1:
+        where = places.pop()
+        whole = np.sum([theta[t.parameter] * t.amount for t in terms], axis=0)
+        return (*_place(where, touches), np.asarray(whole), _per_unit(where, touches))
+    deviation = columns([effect], touches) @ theta
+    course = _common_course(np.stack([t.amount for t in terms]))
+    if course is None:
+        return "deviation along the normal, µm", UM, deviation, np.ones(len(touches))
+    per_course = np.sum(
+        [
+            theta[t.parameter] * w * _per_unit(t.where, touches)
+            for t, w in zip(terms, course[1], strict=True)
+        ],
+        axis=0,
+    )
+    most = per_course[np.argmax(np.abs(per_course))]
+    return "deviation where it shows most, µm", UM, most * course[0], per_course / most
+
+
+def _common_course(amounts: Array) -> tuple[Array, Array] | None:
+    """The course (N,) that amounts (T, N) have in common, with their weights (T,); None if none."""
+    size = np.linalg.norm(amounts, axis=1)
+    course = amounts[np.argmax(size)]
+    weights = amounts @ course / max(float(course @ course), 1e-300)
+    left = np.abs(amounts - weights[:, None] * course).max()
+    return (course, weights) if left < 1e-9 * np.abs(course).max() else None
 
 
 def _place(where: Where, touches: Touches) -> tuple[str, float]:

@@ -33,7 +33,7 @@ sides."""
 
 def is_spread(touches: Touches) -> bool:
     """Whether the touched points cover something that can be drawn."""
-    return bool(np.ptp(touches.point, axis=0).max() > EXTENT)
+    return bool(np.sort(np.ptp(touches.point, axis=0))[1] > EXTENT)
 
 
 def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> None:
@@ -103,6 +103,7 @@ def _standing(ax: Any, touches: Touches) -> None:
     middle = 0.5 * (low + high)
     for set_limit, m, s in zip((ax.set_xlim, ax.set_ylim, ax.set_zlim), middle, size, strict=True):
         set_limit(m - 0.5 * s, m + 0.5 * s)
+    ax.patch.set_visible(False)  # else it covers the label of the axes to its left
     ax.set_box_aspect(size, zoom=1.06)
     ax.view_init(26.0, -58.0)
     for letter, axis in zip("xyz", (ax.xaxis, ax.yaxis, ax.zaxis), strict=True):

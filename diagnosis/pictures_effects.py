@@ -17,7 +17,6 @@ from diagnosis.ink import (
     SOFT,
     new_figure,
     plain,
-    robust_limit,
     save,
     tidy,
 )
@@ -67,6 +66,7 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
         _value(ax, i, fitted[i], not up, BLUE)
     if high > RATIO * low:
         ax.set_yscale("log")
+        ax.yaxis.set_major_formatter("{x:g}")
         ax.set_ylim(0.55 * low, 1.8 * high)
     else:
         ax.set_ylim(0.0, 1.18 * high)
@@ -75,7 +75,7 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
     ax.set_ylabel("root mean square error in µm")
     plain(ax)
     ax.grid(axis="x", visible=False)
-    ax.legend(fontsize=8.5, frameon=False)
+    figure.legend(fontsize=8.5, frameon=False, loc="outside upper center", ncols=4)
     save(figure, path)
 
 
@@ -90,7 +90,7 @@ def _step_words(step: Step) -> str:
 
 def _value(ax: Any, x: float, y: float, above: bool, colour: str) -> None:
     ax.annotate(
-        f"{y:.3g}",
+        f"{y:#.3g}".rstrip("."),
         (x, y),
         xytext=(0, 8 if above else -8),
         textcoords="offset points",
@@ -229,11 +229,7 @@ def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) 
     """
     found = partial(fit, effect)
     figure = new_figure(3.9)
-    left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1.0))
-    limit = 1.12 * max(
-        robust_limit(found.observed[found.shown], 0.995), float(np.abs(found.explained).max())
-    )
-    one_sided = found.observed[found.shown].min() > -0.35 * limit
+    left, right = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
     tested = np.ones(len(found.rows), dtype=bool)
     tested[: int(fit.used.sum())] = False
     for ax, y, title in (
@@ -246,11 +242,21 @@ def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) 
         plain(ax)
     _course(left, found, effect, colour)
     right.axhline(0.0, color=colour, lw=1.6, zorder=4)
-    if not found.variable or not one_sided:
-        left.set_ylim(-limit, limit)
+    low, high = _limits(found)
+    left.set_ylim(low, high)
+    right.set_ylim(0.5 * (low - high), 0.5 * (high - low))  # about zero, as large a scale
     left.set_ylabel(found.quantity)
     left.legend(fontsize=8, frameon=False)
     save(figure, path)
+
+
+def _limits(found: Partial) -> tuple[float, float]:
+    """Ends of a scale that holds the course and all but a few touches, and what is left besides."""
+    low, high = np.quantile(found.observed[found.shown], (0.003, 0.997))
+    low, high = min(low, float(found.explained.min())), max(high, float(found.explained.max()))
+    spread = 2.0 * float(np.quantile(np.abs(found.observed - found.explained)[found.shown], 0.99))
+    margin = max(0.06 * (high - low), 0.5 * (spread - (high - low)))
+    return float(low - margin), float(high + margin)
 
 
 def _course(ax: Any, found: Partial, effect: Effect, colour: str) -> None:

@@ -1,5 +1,6 @@
 """Picture of a pattern without a name: a residual over one or two variables, beside pure chance."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from diagnosis.patterns import directions, groups, variables
 from diagnosis.pictures_residuals import binned, kept
 from diagnosis.structure import Structure
 from twin.frames import Array
+from twin.touches import IntArray
 from twin.units import UM
 
 NEIGHBOURS = 14
@@ -34,52 +36,53 @@ def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Ge
     Returns:
         Whether there was something to draw: some tests name no variables of their own.
     """
-    touches, rows = fit.run.touches, np.flatnonzero(fit.used)
-    known = variables(touches) | {k: v.astype(float) for k, v in groups(touches).items()}
-    along = directions(touches)
+    known = variables(fit.run.touches)
+    known |= {k: v.astype(float) for k, v in groups(fit.run.touches).items()}
     if not 1 <= len(found.variables) <= 2 or not set(found.variables) <= set(known):
         return False
-    seen = along.get(found.direction, along["normal"])[rows]
-    weight = (seen / fit.run.u[rows]) ** 2
-    clear = np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99))
-    rows, seen, weight = rows[clear], seen[clear], weight[clear]
-    r = fit.residual[rows] / (seen * UM)
+    rows, r, weight = _seen(fit, found.direction)
     x = np.stack([known[name][rows] for name in found.variables])
     names = list(found.variables)
     if found.period > 0.0:
         x, names = x % found.period, [f"{names[0]} within a period of {found.period:.4g} s"]
     word = "the normal" if found.direction == "normal" else found.direction
-    shuffled = rng.permutation(r)
     figure = new_figure(3.7 if len(x) == 1 else 4.3)
     axes = figure.subplots(1, 2, sharex=True, sharey=True)
-    panels = zip(axes, (r, shuffled), ("as measured", "shuffled: what chance makes"), strict=True)
-    values = [_map(x, v, weight) for v in (r, shuffled)] if len(x) == 2 else []
-    limit = robust_limit(values[0], 1.0) if values else robust_limit(r, 0.99)
-    for i, (ax, v, title) in enumerate(panels):
-        if len(x) == 1:
-            _course(ax, x[0], v, weight, limit)
-        else:
-            marks = ax.scatter(
-                *x,
-                c=values[i],
-                s=17,
-                cmap=DIVERGING,
-                vmin=-limit,
-                vmax=limit,
-                lw=0.3,
-                ec="#00000030",
-            )
-            ax.set_ylabel(names[1])
+    both = (r, rng.permutation(r))
+    if len(x) == 1:
+        limit = robust_limit(r, 0.99)
+        for ax, values in zip(axes, both, strict=True):
+            _course(ax, x[0], values, weight, limit)
+        axes[0].set_ylabel(f"residual along {word} in µm")
+    else:
+        label = f"mean residual of {NEIGHBOURS} neighbours along {word}, µm"
+        _maps(figure, axes, x, [_map(x, values, weight) for values in both], label)
+        axes[0].set_ylabel(names[1])
+    for ax, title in zip(axes, ("as measured", "shuffled: what chance makes"), strict=True):
         ax.set_xlabel(names[0])
         ax.set_title(title, fontsize=9.5, loc="left", color=INK)
         plain(ax)
-    if values:
-        bar = figure.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.85)
-        bar.set_label(f"mean residual of {NEIGHBOURS} neighbours along {word}, µm", fontsize=8.5)
-    else:
-        axes[0].set_ylabel(f"residual along {word} in µm")
     save(figure, path)
     return True
+
+
+def _seen(fit: Fit, direction: str) -> tuple[IntArray, Array, Array]:
+    """Touches that see a direction, (M,), with their residuals along it, µm, and weights."""
+    rows = np.flatnonzero(fit.used)
+    along = directions(fit.run.touches)
+    seen = along.get(direction, along["normal"])[rows]
+    clear = np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99))
+    rows, seen = rows[clear], seen[clear]
+    return rows, fit.residual[rows] / (seen * UM), (seen / fit.run.u[rows]) ** 2
+
+
+def _maps(figure: Any, axes: Array, x: Array, values: Sequence[Array], label: str) -> None:
+    """Touches over two variables, coloured by values, on one scale."""
+    limit = robust_limit(values[0], 1.0)
+    style: dict[str, Any] = {"s": 17, "lw": 0.3, "ec": "#00000030", "cmap": DIVERGING}
+    for ax, colour in zip(axes, values, strict=True):
+        marks = ax.scatter(*x, c=colour, vmin=-limit, vmax=limit, **style)
+    figure.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.85).set_label(label, fontsize=8.5)
 
 
 def _map(x: Array, r: Array, weight: Array) -> Array:

@@ -85,7 +85,7 @@ def _on_standard(result: Diagnosis, place: Path) -> list[Picture]:
         return []
     fits = [("model to begin with", result.start)]
     if len(result.steps) > 1:
-        fits.append(("with " + ", ".join(e.name for e in result.found), result.fit))
+        fits.append(("with what was added", result.fit))
     draw_on_standard(place / "on_standard.png", tuple(fits))
     return [Picture("on_standard.png", "Touched points in the frame of the standard, by residual.")]
 

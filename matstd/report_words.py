@@ -59,7 +59,7 @@ def named_value(reported: Reported) -> tuple[str, str]:
     )
 
 
-def sizes(step: Step, most: int = 3) -> str:
+def sizes(step: Step, most: int) -> str:
     """The leading numbers of an added effect in one clause."""
     return ", ".join(" ".join(named_value(r)) for r in step.reported[:most])
 
@@ -102,17 +102,20 @@ def _fall(diagnosis: Diagnosis) -> str:
     )
 
 
-def _added(step: Step) -> str:
-    """An effect with its size, and whether another name would do as well."""
+def _added(step: Step, most: int) -> str:
+    """An effect with its leading numbers, and whether another name would do as well."""
     rivals = len(step.confusion.rivals) if step.confusion else 0
     name = step.effect.name if step.effect is not None else ""
     alike = f", or one of {rivals} effects that look the same" if rivals else ""
-    return f"{name} ({sizes(step)}{alike})"
+    if step.confusion is not None and rivals == 1:
+        alike = f", or {step.confusion.rivals[0].effect.name}"
+    return f"{name} ({sizes(step, most)}{alike})"
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
     """The verdict in one plain sentence, with numbers and standard uncertainties."""
-    added = [_added(s) for s in diagnosis.steps[1:]]
+    most = 3 if len(diagnosis.steps) == 2 else 2 if len(diagnosis.steps) == 3 else 1
+    added = [_added(s, most) for s in diagnosis.steps[1:]]
     if diagnosis.verdict is Verdict.MISSING:
         what, them = ("one effect", "it") if len(added) == 1 else (f"{len(added)} effects", "them")
         return (
@@ -120,7 +123,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
             f"noise is {noise_words(diagnosis.fit)}."
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
-        words = "; ".join(dict.fromkeys(_clause(d.words) for d in diagnosis.depends_on[:4]))
+        words = "; ".join(dict.fromkeys(_clause(d.words) for d in diagnosis.depends_on[:2]))
         named = f" Named were {'; '.join(added)}: {_fall(diagnosis)}." if added else ""
         return (
             f"Something is left that no effect of the library accounts for: "

@@ -101,16 +101,15 @@ def _write(args: argparse.Namespace, result: Diagnosis, folder: Path) -> None:
 def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     """The verdict, the error falling, and what else should be known."""
     from rich.console import Console
-    from rich.table import Table
+    from rich.table import Column, Table
 
     from diagnosis.verdict import sentence
     from twin.units import UM
 
     console = Console(highlight=False)
     console.print(sentence(result), markup=False, style="bold")
-    table = Table(
-        "effect", "p", "residual µm", "held out µm", "chi²/dof", "not told from", box=None
-    )
+    effect, rival = (Column(word, overflow="fold") for word in ("effect", "not told from"))
+    table = Table(effect, "p", "residual µm", "held out µm", "chi²/dof", rival, box=None)
     for step in result.steps:
         rivals = step.confusion.rivals if step.confusion else ()
         table.add_row(
