@@ -50,9 +50,9 @@ def draw(result):
         left.add_patch(plt.Circle(sphere.centre[:2], sphere.radius, fc="none", ec="C0"))
     left.set(xlabel="x, mm", ylabel="y, mm", aspect="equal", title="patches, spheres, touches")
     rest = result["not predicted after 160 touches, µm"]
-    bars = right.barh([name.replace(" ", "\n", 1) for name in rest], rest.values())
+    bars = right.barh([name.replace(" scatter", "") for name in rest], rest.values())
     right.bar_label(bars, fmt="%.1f", padding=3)
-    right.set(xlabel="not predicted of the tool point, µm rms", xlim=(0, 9), ylim=(3.6, -0.6))
+    right.set(xlabel="not predicted, µm rms", xlim=(0, 7.5), ylim=(6.6, -0.6))
     return figure
 
 
