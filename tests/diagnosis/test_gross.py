@@ -1,0 +1,69 @@
+"""Chips are found, wherever they hide; structure is not taken for chips."""
+
+import numpy as np
+import pytest
+
+from diagnosis.fit import fit_run
+from diagnosis.gross import find_gross
+from twin.ordinary import ordinary_model
+from twin.units import UM
+
+
+def test_a_chip_that_bends_the_fit_towards_itself_is_found() -> None:
+    """A touch with 80 % leverage: its residual is a fifth of its error, its left-out error is it."""
+    rng = np.random.default_rng(0)
+    X = np.column_stack([np.full(200, 10.0), np.r_[28.0, rng.standard_normal(199)]])
+    y = X @ np.array([0.1, 0.2]) + rng.standard_normal(200)
+    y[0] += 25.0
+    fit, gross = find_gross(X, y, np.ones(200, dtype=bool))
+    assert np.flatnonzero(gross.rows).tolist() == [0]
+    assert gross.size[0] == pytest.approx(25.0, abs=4.0)
+    assert len(fit.residual) == 199
+
+
+def test_chips_of_a_hard_run_are_all_found_and_nothing_else(simulated) -> None:
+    case = simulated(11, "hsm600u", hard=True)
+    fit = fit_run(case.run, ordinary_model(case.run.touches.chain))
+    assert np.flatnonzero(fit.gross.rows).tolist() == case.truth["chips"]
+    assert fit.u[0] / UM == pytest.approx(case.truth["noise_um"], rel=0.1)
+
+
+def test_noise_has_no_gross_errors() -> None:
+    rng = np.random.default_rng(2)
+    found = 0
+    for _ in range(100):
+        X = rng.standard_normal((150, 5)) * 10.0
+        found += find_gross(X, rng.standard_normal(150), np.ones(150, dtype=bool))[1].rows.sum()
+    assert found <= 2  # one run in a thousand may have one
+
+
+def test_a_crowd_is_not_a_row_of_accidents() -> None:
+    """Touches 60 to 69 moved together: something happened to them, and it must stay in the data."""
+    rng = np.random.default_rng(4)
+    X = np.full((400, 1), 10.0)
+    y = rng.standard_normal(400)
+    y[60:70] += 12.0
+    y[200] += 30.0
+    _, gross = find_gross(X, y, np.ones(400, dtype=bool))
+    assert gross.rows[200]
+    assert gross.rows[62:68].sum() == 0
+
+
+def test_too_many_are_structure() -> None:
+    rng = np.random.default_rng(6)
+    X = np.full((400, 1), 10.0)
+    y = rng.standard_normal(400)
+    y[::15] += 30.0
+    _, gross = find_gross(X, y, np.ones(400, dtype=bool))
+    assert gross.too_many
+    assert not gross.rows.any()
+
+
+def test_held_out_touches_stay_out(simulated) -> None:
+    case = simulated(11, "hsm600u", hard=True)
+    allowed = np.ones(len(case.run), dtype=bool)
+    allowed[::3] = False
+    X = ordinary_model(case.run.touches.chain).columns(case.run.touches) / (0.6 * UM) * 0.05
+    fit, gross = find_gross(X, case.run.deviation / (0.6 * UM), allowed)
+    assert not gross.rows[::3].any()
+    assert len(fit.residual) == int(allowed.sum()) - int(gross.rows.sum())
