@@ -22,9 +22,16 @@ PRIOR_EXCEEDED = 2.0
 """Mean squared parameter over its prior variance from which the machine is called worse than its
 stated distributions, and the prior is widened."""
 
+PASSES = 5
+SETTLED = 0.005
+"""Passes of a fit, until the noise that it finds is the noise that it weights with."""
+
 MIN_POSES = 4
 BLOCKS = 10
 """With fewer table poses than that, held out are so many blocks of touches one after the other."""
+
+PASSES = 5
+"""Most passes until the gross errors stay what they are."""
 
 MIN_TOUCHES = 8
 """Fewer touches than this do not even place a standard and leave something to judge it by."""
@@ -172,8 +179,8 @@ def fit_run(
 ) -> Fit:
     """Fit a model and the set-ups of the standard to the rows of a run that are not held out.
 
-    Two passes: the first finds the gross errors, the size of the noise and whether the machine
-    exceeds its prior; the second weights with what was found.
+    The first pass finds the gross errors, the size of the noise and whether the machine exceeds its
+    prior; the second weights with what was found, and more follow while the gross errors change.
 
     Args:
         run: The measurements.
@@ -199,14 +206,15 @@ def fit_run(
     y = run.deviation / run.u
     free = Prior.of_effects((*setups, *moved))
     factor, widened = 1.0, 1.0
-    for last in (False, True):
+    for remaining in reversed(range(PASSES)):
         belief = machine.widened(widened).joined(free)
         X, rest = A @ belief.root / factor, (y - A @ belief.mean) / factor
         solution, found = _solved(X, rest, train, gross)
-        if not last:
-            chi2 = float(solution.residual @ solution.residual)
-            widened = _widened(solution, len(machine))
-            factor = noise_factor(chi2, solution.dof)
+        chi2 = float(solution.residual @ solution.residual) * factor**2
+        better = noise_factor(chi2, solution.dof)
+        if abs(better / factor - 1.0) < SETTLED or not remaining:
+            break
+        factor, widened = better, max(widened, _widened(solution, len(machine)) * widened)
     used = train & ~found.rows
     noise = _noise(run, solution, (rest - X @ solution.phi) * factor, used, factor)
     return Fit(run, model, setups, moved, belief, X, rest, used, solution, found, noise, widened)
