@@ -124,10 +124,9 @@ def sentence(diagnosis: Diagnosis) -> str:
     u = float(np.median(diagnosis.run.u)) / UM
     if diagnosis.verdict is Verdict.UNEXPLAINED:
         patterns = list(dict.fromkeys(d.words for d in diagnosis.depends_on))[:2]
-        how = " and ".join(patterns) or "follows no variable of the run"
         return (
             f"unexplained: a residual of {diagnosis.fit.rms / UM:.2f} µm is not noise, and no "
-            f"effect of the library accounts for it; it {how}"
+            f"effect of the library accounts for it ({'; '.join(patterns) or 'no pattern found'})"
         )
     if diagnosis.verdict is Verdict.NONE:
         text = f"no missing effect: residuals of {diagnosis.fit.rms / UM:.2f} µm are white"
