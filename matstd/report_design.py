@@ -142,6 +142,11 @@ def _yes(value: bool) -> str:
     return "yes" if value else "no"
 
 
+def _radius(value: float) -> str:
+    """Smallest concave radius; a face that is convex everywhere has none."""
+    return f"{value:.1f}" if np.isfinite(value) else "convex"
+
+
 def _patch(patch: FreeformPatch, design: Design) -> dict[str, Any]:
     """One row of the table of patches."""
     x, y, z = patch.point(np.zeros((1, 2)))[0]
@@ -149,7 +154,7 @@ def _patch(patch: FreeformPatch, design: Design) -> dict[str, Any]:
         "name": patch.name,
         "centre": f"{x:.0f}, {y:.0f}, {z:.0f}",
         "tilt": f"{np.arccos(patch.direction[2]) / DEG:.0f}",
-        "radius": f"{min_concave_radius(patch):.1f}",
+        "radius": _radius(min_concave_radius(patch)),
         "slope": f"{max_slope(patch) / DEG:.0f}",
         "touches": int(np.sum(design.plan.feature == patch.name)),
         "errors": ", ".join(f"{e.name} {100 * e.share:.0f} %" for e in patch.errors[:5]),

@@ -10,7 +10,7 @@ from twin.units import UM
 
 
 def test_a_chip_that_bends_the_fit_towards_itself_is_found() -> None:
-    """A touch with 80 % leverage: its residual is a fifth of its error, its left-out error is it."""
+    """A touch with 80 % leverage: its residual is a fifth of its error, left out it is all."""
     rng = np.random.default_rng(0)
     X = np.column_stack([np.full(200, 10.0), np.r_[28.0, rng.standard_normal(199)]])
     y = X @ np.array([0.1, 0.2]) + rng.standard_normal(200)
