@@ -159,7 +159,8 @@ def show(scores: list[Score], only_wrong: bool) -> None:
         ratio = np.array([s.test_ratio for s in explained])
         print(
             f"held-out RMS over noise: mean {ratio.mean():.3f}, "
-            f"{np.mean(abs(ratio - 1) < 0.05):.0%} within 5 %, worst {ratio[np.argmax(abs(ratio - 1))]:.3f}"
+            f"{np.mean(abs(ratio - 1) < 0.05):.0%} within 5 %, "
+            f"worst {ratio[np.argmax(abs(ratio - 1))]:.3f}"
         )
     seconds = np.array([s.seconds for s in scores])
     print(
