@@ -1,7 +1,7 @@
 """Signatures of effects that are not in the model, free of all that the model can imitate."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 
@@ -42,6 +42,7 @@ class Complement:
         residual: Data and prior rows, (N + P,).
         dof: Degrees of freedom left.
         groups: Rows of every table pose.
+        gross: Which of all touches were left out as gross errors.
     """
 
     touches: Touches
@@ -51,6 +52,7 @@ class Complement:
     residual: Array
     dof: float
     groups: tuple[IntArray, ...]
+    gross: BoolArray
 
     @classmethod
     def of(cls, fit: Fit) -> "Complement":
@@ -59,7 +61,8 @@ class Complement:
         Q = np.vstack([solution.Q, solution.root])
         residual = np.concatenate([solution.residual, -solution.phi])
         u = fit.u[fit.used]
-        return cls(fit.run.touches, fit.used, u, Q, residual, solution.dof, fit.groups)
+        gross = fit.gross.rows
+        return cls(fit.run.touches, fit.used, u, Q, residual, solution.dof, fit.groups, gross)
 
     def thinned(self, count: int) -> "Complement":
         """The same model fitted to an even choice of so many of the touches."""
@@ -76,7 +79,9 @@ class Complement:
         place = np.full(n, -1)
         place[rows] = np.arange(kept)
         groups = tuple(g for g in (place[k][place[k] >= 0] for k in self.groups) if len(g))
-        return Complement(self.touches, used, self.u[rows], Q, residual, dof, groups)
+        return replace(
+            self, used=used, u=self.u[rows], Q=Q, residual=residual, dof=dof, groups=groups
+        )
 
     def columns(self, effects: Sequence[Effect]) -> Array:
         """Whitened columns of effects, scaled by their prior, (N, K)."""

@@ -7,7 +7,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import ndtr
 
-from diagnosis.candidates import Progress, quiet
+from diagnosis.candidates import Complement, Progress, quiet
+from diagnosis.crowds import crowds
 from diagnosis.evidence import EffectSet, reduced
 from diagnosis.noise import PRIOR_DOF
 from diagnosis.patterns import Pattern, patterns, thinned, whitened
@@ -31,7 +32,7 @@ class Structure:
     """One test of a residual for one kind of pattern.
 
     Attributes:
-        shape: "smooth", "wave" or "neighbours".
+        shape: "smooth", "wave", "neighbours" or "crowd".
         variables: What the pattern varies with.
         direction: Along what it acts.
         p_value: Probability in white noise, corrected for all the tests made.
@@ -60,7 +61,8 @@ def find_structure(
     The statistic of a smooth pattern is the squared correlation of its features with the residual,
     weighted by the spectrum (the score of a random function of that roughness); its distribution in
     white noise after the projection is exact. A wave in time is an F test, scanned over periods;
-    two tests of neighbours (in time, on the standard) ask no shape at all.
+    two tests of neighbours (in time, on the standard) ask no shape at all; gross errors that lie
+    together are no accidents.
 
     Args:
         effects: Model and effects in it.
@@ -73,7 +75,8 @@ def find_structure(
     known = list(patterns(touches))
     tested = [_tested(effects, pattern, rows) for pattern in known]
     progress(0.6, "structure left")
-    wave, neighbours = best_wave(effects, touches, rows), _neighbours(effects)
+    wave = best_wave(effects, touches, rows)
+    neighbours = [*_neighbours(effects), *_crowds(complement)]
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
     found = [_as_structure(p, t, count) for p, t in zip(known, tested, strict=True)]
     found += [_wave_structure(effects, wave, count), *(_corrected(n, count) for n in neighbours)]
@@ -189,6 +192,17 @@ def _neighbours(effects: EffectSet) -> list[Structure]:
         p = float(ndtr(-score))
         words = f"neighbours in {' and '.join(variables)} agree"
         out.append(Structure("neighbours", variables, "normal", p, -np.inf, None, words))
+    return out
+
+
+def _crowds(complement: Complement) -> list[Structure]:
+    """Do gross errors lie together?"""
+    allowed = complement.used | complement.gross
+    found = crowds(complement.touches, allowed, complement.gross)
+    out = []
+    for names, p in found.items():
+        words = f"gross errors crowd together in {' and '.join(names)}"
+        out.append(Structure("crowd", names, "normal", p, -np.inf, None, words))
     return out
 
 
