@@ -5,7 +5,7 @@ from scipy.special import log_ndtr
 
 from twin.frames import Array
 
-HALVINGS = 60
+HALVINGS = 36
 
 
 def ratio_probability(statistic: Array, weights: Array, dof: float) -> Array:

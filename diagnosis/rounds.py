@@ -141,22 +141,22 @@ def rounds(
         progress: Told of every stage.
     """
     base = task.fit(added)
-    found: tuple[str, ...] = ()
-    for _ in range(ROUNDS):
-        result = _round(base, candidates, found, progress)
-        again = task.fit((*added, *result.effects)).gross
-        if np.array_equal(again.rows, base.gross.rows):
+    found: Sequence[str] = ()
+    for remaining in reversed(range(ROUNDS)):
+        library = Library.of(Complement.of(base), candidates, progress)
+        search, chosen = _searched(library, found, progress)
+        effects = refined_set(library.complement, _sized(chosen))
+        again = task.fit((*added, *effects)).gross
+        if np.array_equal(again.rows, base.gross.rows) or not remaining:
             break
-        base, found = task.fit(added, gross=again), tuple(s.effect.name for s in result.effects)
-    return result
+        base, found = task.fit(added, gross=again), [s.effect.name for s in effects]
+    return _judged(base, library, search, chosen, progress)
 
 
-def _round(
-    base: Fit, candidates: Sequence[Effect], found: Sequence[str], progress: Progress
+def _judged(
+    base: Fit, library: Library, search: Search, chosen: Chosen, progress: Progress
 ) -> Round:
-    """Search for effects, then for structure that they leave."""
-    library = Library.of(Complement.of(base), candidates, progress)
-    search, chosen = _searched(library, found, progress)
+    """The search's result with the structure that it leaves, which may bring it down."""
     nothing = search.chosen(())
     at_start = find_structure(nothing.effects, progress)
     left = find_structure(chosen.effects, progress) if chosen.members else at_start

@@ -10,6 +10,7 @@ left out of the fit.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -29,6 +30,11 @@ ALIKE = 0.95
 
 CARRIED = 4
 """Sets that are carried from one size to the next."""
+
+OPENED = 8
+"""Ways to begin anew where two members of a set are taken out."""
+
+REOPENINGS = 3
 
 MOST_EFFECTS = 6
 """Largest number of effects that one run is asked for."""
@@ -237,6 +243,16 @@ class Search:
             start: Members of a set to begin with, as from an earlier round.
         """
         best = self.backward(self.polished(self.chosen(start)))
+        for _ in range(REOPENINGS):
+            best = self.backward(self.grown(best))
+            other = self.reopened(best)
+            if other.effects.evidence <= best.effects.evidence + WORTH or not self.stands(other):
+                break
+            best = other
+        return best
+
+    def grown(self, best: Chosen) -> Chosen:
+        """A set with one member more and more, as long as every member stands."""
         carried = [best]
         for size in range(len(best.members) + 1, MOST_EFFECTS + 1):
             grown = [s for c in carried for s in self.extensions(c, CARRIED)]
@@ -247,7 +263,23 @@ class Search:
             if standing is None:
                 break
             best = standing
-        return self.backward(best)
+        return best
+
+    def reopened(self, chosen: Chosen) -> Chosen:
+        """The best set with two of its members out and two others in, or the set itself.
+
+        Two effects may stand in for two others, each being the best beside the other; no exchange
+        of one at a time finds the way out.
+        """
+        best = chosen
+        for pair in combinations(chosen.members, 2):
+            rest = self.chosen(m for m in chosen.members if m not in pair)
+            for first in self.extensions(rest, OPENED):
+                for second in self.extensions(first, 1):
+                    found = self.polished(second)
+                    if found.effects.evidence > best.effects.evidence:
+                        best = found
+        return best
 
     def kept(self, sets: Iterable[Chosen]) -> list[Chosen]:
         """The few best of some sets, each once."""
