@@ -1,0 +1,379 @@
+"""Pictures and pages of a diagnosis: what they are made of by hand, and what stands in them."""
+
+import re
+from html import unescape
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from diagnosis.diagnose import diagnose
+from diagnosis.partial import partial, roughness
+from diagnosis.pictures import (
+    draw_on_standard,
+    draw_pose_arrows,
+    has_poses,
+    is_spread,
+    pose_vectors,
+)
+from diagnosis.pictures_effects import draw_candidates, draw_effect, draw_fall, draw_rivals
+from diagnosis.pictures_pattern import draw_pattern
+from diagnosis.pictures_residuals import (
+    binned,
+    draw_normal_plot,
+    draw_over_variables,
+    ranked_variables,
+    standardised,
+)
+from diagnosis.residuals import compare
+from diagnosis.verdict import Verdict
+from matstd.page import p_value
+from matstd.report_compare import write_compare_page
+from matstd.report_diagnosis import write_diagnosis_page
+from matstd.report_words import named_value, verdict_sentence, with_uncertainty
+from twin.effects.backlash import KIND as BACKLASH
+from twin.effects.periodic import KIND as PERIODIC
+from twin.effects.thermal_lag import KIND as LAG
+from twin.ordinary import ordinary_model
+from twin.units import MINUTE, NM, UM
+
+ROUNDING = 1e-9
+SAME = 1e-6  # of quantities of order one, after a second solution of the same equations
+BLANK = 0.02  # standard deviation of the grey values of an empty sheet, 0 to 1
+ANY_ADDRESS = re.compile(r"(?:https?:)?//[\w.]+")
+
+
+@pytest.fixture(scope="module")
+def warm(case):
+    """A run with chips that hides a lag along Z, diagnosed among a few candidates."""
+    run = case(31, "hsm600u", ("thermal-lag(EZZ)",), True, (30.0, 35.0)).run
+    candidates = [e for kind in (LAG, BACKLASH) for e in kind.propose(run.touches)]
+    return diagnose(run, candidates=candidates, rng=np.random.default_rng(0))
+
+
+@pytest.fixture(scope="module")
+def strange(case):
+    """A run that hides what no library has, diagnosed among a few candidates."""
+    run = case(32, "hsm600u", ("?cable",), False, (30.0, 35.0)).run
+    return diagnose(run, candidates=list(BACKLASH.propose(run.touches)))
+
+
+@pytest.fixture(scope="module")
+def page(warm, tmp_path_factory):
+    place = tmp_path_factory.mktemp("page")
+    write_diagnosis_page(warm, place, "run & file.csv", np.random.default_rng(0))
+    return (place / "report.html").read_text(encoding="utf-8")
+
+
+def text_of(page):
+    """Words of a page as a reader sees them, white space made even."""
+    without = re.sub(r"<style.*?</style>|<[^>]+>", " ", page, flags=re.DOTALL)
+    return re.sub(r"\s+", " ", unescape(without))
+
+
+# what the pictures are computed from
+
+
+def test_standardised_residual_is_the_error_of_a_fit_without_the_row(warm):
+    """Of any row the prediction error by all the other rows over its own standard deviation."""
+    fit, scale = warm.start, warm.start.noise.factor
+    rows = np.flatnonzero(fit.used)
+    left_out = rows[[3, 100, 400]]
+    for i in left_out:
+        others = rows[rows != i]
+        X = np.vstack([fit.X[others], np.eye(fit.X.shape[1])])  # the prior as further rows
+        y = np.concatenate([fit.y[others], np.zeros(fit.X.shape[1])])
+        phi = np.linalg.lstsq(X, y, rcond=None)[0]
+        variance = 1.0 + fit.X[i] @ np.linalg.inv(X.T @ X) @ fit.X[i]
+        by_hand = (fit.y[i] - fit.X[i] @ phi) / np.sqrt(variance)
+        assert standardised(fit)[i] == pytest.approx(scale * by_hand, rel=SAME, abs=SAME)
+
+
+def test_standardised_residual_of_a_gross_error_is_its_prediction_error(warm):
+    fit = warm.fit
+    (i, *_) = np.flatnonzero(fit.gross.rows)
+    X = np.vstack([fit.X[fit.used], np.eye(fit.X.shape[1])])
+    variance = 1.0 + fit.X[i] @ np.linalg.inv(X.T @ X) @ fit.X[i]
+    by_hand = fit.residual[i] / (fit.run.u[i] * np.sqrt(variance))
+    assert standardised(fit)[i] == pytest.approx(by_hand, rel=SAME)
+    assert abs(by_hand) > fit.gross.limit
+
+
+def test_bins_hold_weighted_means_with_the_scatter_of_their_touches():
+    values = np.array([0.0, 0.0, 0.0, 1.0, 1.0])
+    r, weight = np.array([1.0, 2.0, 6.0, 4.0, 4.0]), np.array([1.0, 1.0, 2.0, 1.0, 3.0])
+    x, mean, error = binned(values, r, weight)
+    # (1 + 2 + 12)/4 = 3.75; squares (7.5625 + 3.0625 + 2 * 5.0625)/4 = 5.1875, over n - 1 = 2
+    np.testing.assert_allclose(x, [0.0, 1.0])
+    np.testing.assert_allclose(mean, [3.75, 4.0])
+    np.testing.assert_allclose(error, [np.sqrt(5.1875 / 2.0), 0.0], atol=ROUNDING)
+
+
+def test_bins_of_a_continuous_variable_hold_equally_many():
+    rng = np.random.default_rng(5)
+    values = rng.normal(size=1200)
+    x, mean, _ = binned(values, 3.0 * values, np.ones(1200), most=10)
+    assert len(x) == 10
+    np.testing.assert_allclose(mean, 3.0 * x, atol=ROUNDING)
+    edges = np.quantile(values, np.linspace(0.1, 0.9, 9))
+    assert np.all((x[:-1] < edges) & (edges < x[1:]))
+
+
+def test_roughness_of_what_is_known_by_hand():
+    x = np.arange(8.0)
+    assert roughness(x, x) == pytest.approx(0.5 / np.var(x))  # every step is 1
+    assert roughness(x, (-1.0) ** x) == pytest.approx(2.0)  # every step is 2, the variance 1
+    assert roughness(x, np.full(8, 3.0)) == 0.0
+    noise = np.random.default_rng(6).normal(size=4000)
+    assert roughness(np.arange(4000.0), noise) == pytest.approx(1.0, abs=0.1)
+
+
+def test_pose_vector_is_the_displacement_that_was_put_in(case):
+    """Without a rotary axis the table's directions are the machine's, and dev = -n . d."""
+    run = case(33, "hmc1995").run
+    t = run.touches
+    rows = (t.setup == t.setup[0]) & (t.pose == t.pose[0])
+    d = np.array([3.0, -2.0, 5.0]) * UM
+    residual = np.where(rows, -t.normal_table @ d, 0.0)
+    fit = SimpleNamespace(
+        run=run, used=np.ones(len(run), bool), u=run.u, residual=residual, rms=1.0
+    )
+    starts, vectors, u = pose_vectors(fit)
+    assert np.all(np.diff(t.time[starts]) >= 0.0)
+    (here,) = np.flatnonzero(rows[starts])
+    np.testing.assert_allclose(vectors[here], d, atol=NM)
+    information = t.normal_table[rows].T @ t.normal_table[rows] / run.u[0] ** 2
+    np.testing.assert_allclose(u[here], np.sqrt(np.diag(np.linalg.inv(information))), rtol=1e-4)
+    assert np.abs(np.delete(vectors, here, axis=0)).max() < NM
+
+
+def test_partial_residual_of_a_lag_is_its_formula_over_time(warm):
+    fit = warm.fit
+    (effect,) = warm.found
+    found = partial(fit, effect)
+    (amplitude,) = fit.theta[fit.of_effect(effect.name)]
+    t = fit.run.touches
+    by_hand = amplitude * (1.0 - np.exp(-t.time[found.rows] / effect.tau)) / UM
+    assert found.variable == "time in min"
+    np.testing.assert_allclose(found.x, t.time[found.rows] / MINUTE)
+    np.testing.assert_allclose(found.explained, by_hand, atol=ROUNDING)
+    # the lag acts along Z between table and tool; its deviation along the normal is c . explained
+    c = (fit.model.columns(t)[:, -1] * amplitude)[found.rows] / (by_hand * UM)
+    left = (found.observed - found.explained) * c * UM
+    np.testing.assert_allclose(left, fit.residual[found.rows], atol=NM * 1e-3)
+    assert set(found.rows) == set(np.flatnonzero(fit.used))
+
+
+@pytest.mark.parametrize(
+    ("kind", "arguments", "tuning", "variable"),
+    [
+        (BACKLASH, ["X"], (), "last move of X"),
+        (PERIODIC, ["EXX"], (8.0,), "X within a period of 8 mm"),
+        (PERIODIC, ["EXC"], (2.0,), "C in °"),
+        (LAG, ["EXX", "ambient"], (1200.0,), "time in min"),
+    ],
+)
+def test_an_effect_is_drawn_over_what_drives_it(fitted, kind, arguments, tuning, variable):
+    base = fitted(34)
+    effect = kind.make(base.model.chain, arguments)
+    effect = effect.tuned(*tuning) if tuning else effect
+    theta = np.full(len(effect.parameters), 5.0 * UM)
+    fit = SimpleNamespace(
+        run=base.run,
+        theta=theta,
+        used=base.used,
+        test_rows=base.test_rows,
+        residual=base.residual,
+        of_effect=lambda name: slice(0, len(theta)),
+    )
+    assert partial(fit, effect).variable == variable
+
+
+# pictures
+
+
+def is_drawn(path):
+    """Whether a picture file holds more than an empty sheet."""
+    from matplotlib.image import imread
+
+    assert path.read_bytes().startswith(b"\x89PNG")
+    return float(imread(path)[..., :3].mean(axis=2).std()) > BLANK
+
+
+def test_every_picture_of_a_fit_renders(warm, tmp_path):
+    fit, path = warm.start, tmp_path / "picture.png"
+    assert is_spread(fit.run.touches)
+    assert has_poses(fit)
+    draw_on_standard(path, (("before", fit), ("after", warm.fit)))
+    assert is_drawn(path)
+    draw_on_standard(path, (("before", fit),))
+    assert is_drawn(path)
+    draw_over_variables(path, fit, ranked_variables(fit)[:5])
+    assert is_drawn(path)
+    draw_pose_arrows(path, fit)
+    assert is_drawn(path)
+    draw_normal_plot(path, fit)
+    assert is_drawn(path)
+    assert [p.name for p in tmp_path.iterdir()] == ["picture.png"]
+
+
+def test_every_picture_of_what_was_found_renders(warm, tmp_path):
+    path = tmp_path / "picture.png"
+    draw_fall(path, warm)
+    assert is_drawn(path)
+    draw_candidates(path, warm)
+    assert is_drawn(path)
+    (step,) = warm.steps[1:]
+    draw_rivals(path, step.confusion)
+    assert is_drawn(path)
+    draw_effect(path, warm.fit, step.effect)
+    assert is_drawn(path)
+
+
+def test_a_pattern_is_drawn_over_two_variables_and_over_one(strange, tmp_path):
+    path = tmp_path / "picture.png"
+    shapes = set()
+    for found in compare(strange.run, ordinary_model(strange.run.touches.chain)).structure:
+        if len(found.variables) not in shapes:
+            shapes.add(len(found.variables))
+            drawn = draw_pattern(path, strange.fit, found, np.random.default_rng(1))
+            assert drawn == (len(found.variables) <= 2)
+            assert not drawn or is_drawn(path)
+    assert {1, 2} <= shapes
+
+
+def test_the_variable_that_matters_comes_first(warm):
+    """A lag from the start of the run shows over time and over what warms with it."""
+    first = [panel.name for panel in ranked_variables(warm.start)[:6]]
+    assert "time_s" in first
+    strengths = [panel.strength for panel in ranked_variables(warm.start)]
+    assert strengths == sorted(strengths, reverse=True)
+
+
+# pages
+
+
+def test_the_page_stands_alone(page):
+    addresses = [a for a in ANY_ADDRESS.findall(re.sub(r"data:[^\"]+", "", page))]
+    assert addresses == []
+    sources = re.findall(r'(?:src|href)="([^"]{0,30})', page)
+    assert sources
+    assert all(s.startswith("data:image/png;base64,") for s in sources)
+    assert "<script" not in page
+    assert "url(" not in page
+
+
+def test_numbers_of_the_steps_stand_on_the_page_as_in_the_result(page, warm):
+    text = text_of(page)
+    for step in warm.steps:
+        fit = step.fit
+        row = rf"{fit.rms / UM:.3f} {fit.test_rms / UM:.3f} "
+        assert row in text
+    (step,) = warm.steps[1:]
+    assert f"+ {step.effect.name}" in text
+    assert p_value(step.p_value) in text
+    for one in step.reported:
+        assert " ".join(named_value(one)).lower() in text.lower()
+
+
+def test_verdict_opens_the_page(page, warm):
+    text = text_of(page)
+    assert warm.verdict is Verdict.MISSING
+    assert warm.verdict.value in text
+    assert "run & file.csv" in text
+    sentence = verdict_sentence(warm)
+    assert text.index(sentence) < text.index("step by step")
+    (effect,) = warm.found
+    assert effect.name in sentence
+    assert f"from {warm.start.test_rms / UM:.2f} µm to {warm.fit.test_rms / UM:.2f} µm" in sentence
+
+
+def test_gross_errors_and_rivals_are_listed(page, warm):
+    tail = text_of(page.split("Touches that stand out")[1])
+    fit = warm.fit
+    rows = np.flatnonzero(fit.gross.rows)
+    assert len(rows) > 2
+    for i in rows:
+        t = fit.run.touches
+        place = f"{fit.run.line[i]} {t.feature[i]} {t.setups[t.setup[i]].name} {t.pose[i]}"
+        assert f"{place} {fit.residual[i] / UM:+.1f} " in tail
+    apart = text_of(page.split("What cannot be told apart")[1].split("<h2>")[0])
+    for rival in warm.steps[1].confusion.rivals[:8]:
+        assert rival.effect.name in apart
+
+
+def test_every_detectable_effect_is_in_the_table(page, warm):
+    table = text_of(page.split("Every effect</summary>")[1].split("</details>")[0])
+    for found in warm.detectable:
+        assert found.effect.name in table
+    hidden = [d.effect.name for d in warm.detectable if d.largest is None]
+    assert table.count("never: the model in use imitates it") == len(hidden)
+
+
+def test_an_unexplained_run_says_what_is_left(strange, tmp_path):
+    assert strange.verdict is Verdict.UNEXPLAINED
+    path = write_diagnosis_page(strange, tmp_path, "run.csv", np.random.default_rng(0))
+    text = text_of(path.read_text(encoding="utf-8"))
+    sentence = verdict_sentence(strange)
+    assert sentence in text
+    stated = np.sqrt(np.mean(strange.run.u**2))
+    left = stated * np.sqrt(strange.fit.noise.factor**2 - 1.0) / UM
+    assert f"{left:.2f} µm rms beyond the stated noise of {stated / UM:.2f} µm" in sentence
+    assert strange.depends_on[0].words in text
+    assert (tmp_path / "pictures" / "pattern_0.png").exists()
+
+
+def test_a_run_without_anything_hidden_says_so(case, tmp_path):
+    run = case(35, "hmc1995").run
+    result = diagnose(run, candidates=list(BACKLASH.propose(run.touches)))
+    assert result.verdict is Verdict.NONE
+    text = text_of(
+        write_diagnosis_page(result, tmp_path, "run.csv", np.random.default_rng(0)).read_text(
+            encoding="utf-8"
+        )
+    )
+    assert "Nothing is missing that this run could have shown" in text
+    assert f"{result.fit.test_rms / UM:.2f} µm, and the noise is" in text
+
+
+def test_page_of_a_comparison_has_its_numbers(warm, tmp_path):
+    found = compare(warm.run, ordinary_model(warm.run.touches.chain))
+    path = write_compare_page(found, tmp_path, "run.csv", np.random.default_rng(0))
+    page = path.read_text(encoding="utf-8")
+    text = text_of(page)
+    assert ANY_ADDRESS.findall(re.sub(r"data:[^\"]+", "", page)) == []
+    assert f"all but {found.rms / UM:.2f} µm" in text
+    line = found.run.line[found.worst]
+    assert f"line {line}" in text
+    for region in found.where:
+        assert region.words in text
+        assert f"{region.mean / UM:+.2f}" in text
+    for group in (*found.poses, *found.features):
+        row = f"{group.name} {group.touches} {group.mean / UM:+.2f} {group.rms / UM:.2f}"
+        assert row in text
+
+
+def test_readings_of_one_place_have_no_picture_in_space(case, tmp_path):
+    """A single instrument in front of one point: nothing to draw in space, and nothing breaks."""
+    run = case(33, "hmc1995").run[:60]
+    t = run.touches
+    object.__setattr__(t, "point", np.zeros_like(t.point))
+    assert not is_spread(t)
+    found = compare(run, ordinary_model(t.chain))
+    write_compare_page(found, tmp_path, "run.csv", np.random.default_rng(0))
+    assert not (tmp_path / "pictures" / "on_standard.png").exists()
+    assert (tmp_path / "pictures" / "residual_normal.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("value", "u", "unit", "shown"),
+    [
+        (11.137, 0.538, "µm", "11.14 ± 0.54 µm"),
+        (1234.6, 87.3, "s", "1235 ± 87 s"),
+        (0.0123, 0.00045, "", "0.01230 ± 0.00045"),
+        (-3.0, None, "µm", "-3.00 µm"),
+        (5.0, 0.0, "µm", "5.00 µm"),
+    ],
+)
+def test_numbers_have_two_digits_of_their_uncertainty(value, u, unit, shown):
+    assert with_uncertainty(value, u, unit) == shown

@@ -1,0 +1,210 @@
+"""The examples of diagnosis run, and find what is known to be there; their READMEs quote them."""
+
+import gzip
+import importlib.util
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diagnosis.diagnose import diagnose
+from twin.files.run_file import read_run
+from twin.files.run_writer import write_run
+from twin.units import NM, UM
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+THERMAL, HIDDEN = EXAMPLES / "fl_thermal", EXAMPLES / "hidden_effect"
+
+NOISE = 0.6  # of the simulated runs, µm
+NEAR_NOISE = 1.05  # held-out error over the noise, once the effect is in
+COVERED = 3.0  # standard uncertainties within which a planted size is found
+HALF_DIGIT = 5e-4  # µm: the thinned record has three decimals
+
+
+def module(path: Path):
+    """A file of the examples as a module."""
+    if str(path.parent) not in sys.path:
+        sys.path.append(str(path.parent))
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    loaded = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = loaded
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+def matstd(*arguments: object) -> str:
+    """Run the command as a user does; its words."""
+    done = subprocess.run(
+        [sys.executable, "-m", "matstd", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
+        cwd=HIDDEN,
+        env={**os.environ, "COLUMNS": "96", "PYTHONIOENCODING": "utf-8"},
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def result(folder: Path) -> dict:
+    return json.loads((folder / "diagnosis.json").read_text(encoding="utf-8"))
+
+
+def truth(name: str) -> dict:
+    return json.loads((HIDDEN / f"{name}_truth.json").read_text(encoding="utf-8"))
+
+
+# a warm-up that the library knows
+
+
+def test_the_warm_up_is_named_and_the_error_falls_to_the_noise(tmp_path):
+    words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "-o", tmp_path / "out")
+    found = result(tmp_path / "out")
+    (hidden,) = truth("warm_up")["hidden"]
+    first, last = found["steps"][0], found["steps"][-1]
+    assert found["verdict"] == "missing effect"
+    assert len(found["steps"]) == 2
+    assert hidden["effect"] in [last["effect"], *last["cannot_be_told_from"]]
+    size, u = last["parameters"]["amplitude_um"], last["uncertainty"]["amplitude_um"]
+    assert abs(size - hidden["amplitude"]) < COVERED * u
+    tau, u = last["parameters"]["tau_min"], last["uncertainty"]["tau_min"]
+    assert abs(tau - hidden["inner"]["tau_min"]) < COVERED * u
+    assert first["test_rms_um"] > 2.0 * NOISE
+    assert last["test_rms_um"] < NEAR_NOISE * NOISE
+    row = f"{last['effect']} .* {last['rms_um']:.3f} .* {last['test_rms_um']:.3f} "
+    assert re.search(re.escape(row).replace(r"\ \.\*\ ", ".*"), words)
+
+
+def test_all_chips_of_the_warm_up_are_told_by_line(tmp_path):
+    words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "-o", tmp_path / "out")
+    text = (HIDDEN / "warm_up.csv").read_text(encoding="utf-8").splitlines()
+    head = next(i for i, line in enumerate(text) if not line.startswith("#"))
+    chips = {head + 2 + row for row in truth("warm_up")["chips"]}  # lines count from 1
+    told = re.search(r"gross errors were left out.*?lines ([\d, \n]+)", words, re.DOTALL)
+    assert {int(n) for n in told.group(1).replace("\n", " ").split(",")} == chips
+
+
+def test_the_model_with_the_effect_leaves_noise(tmp_path):
+    matstd(
+        "diagnose", "warm_up.csv", "--add", "thermal-lag(EZB)", "--no-report", "-o", tmp_path / "a"
+    )
+    model = tmp_path / "a" / "model.toml"
+    matstd("compare", "warm_up.csv", "--model", model, "--no-report", "-o", tmp_path / "c")
+    left = json.loads((tmp_path / "c" / "comparison.json").read_text(encoding="utf-8"))
+    assert left["depends_on"] == []
+    assert left["rms_um"] < NEAR_NOISE * NOISE
+    matstd("compare", "warm_up.csv", "--no-report", "-o", tmp_path / "b")
+    before = json.loads((tmp_path / "b" / "comparison.json").read_text(encoding="utf-8"))
+    assert before["depends_on"]
+    assert before["rms_um"] > left["rms_um"]
+
+
+# a hose that no library knows
+
+
+def test_the_hose_is_unexplained_and_seen_where_it_is(tmp_path):
+    matstd("diagnose", "hose.csv", "--no-report", "-o", tmp_path / "out")
+    found = result(tmp_path / "out")
+    assert found["verdict"] == "unexplained"
+    assert {d["variable"] for d in found["depends_on"]} >= {"X_mm", "Y_mm"}
+
+
+def test_the_users_own_effect_explains_the_hose(tmp_path):
+    own = ["--effects", EXAMPLES / "my_effects.py"]
+    matstd("diagnose", "hose.csv", *own, "--auto", "-o", tmp_path / "out")
+    found = result(tmp_path / "out")
+    (hidden,) = truth("hose")["hidden"]
+    assert found["verdict"] == "missing effect"
+    step = found["steps"][-1]
+    assert [s["effect"] for s in found["steps"]] == [None, "hose"]
+    planted = {"lift_um": hidden["amplitude"], "x_mm": 35.0, "width_mm": 40.0}
+    for name, value in planted.items():
+        assert abs(step["parameters"][name] - value) < COVERED * step["uncertainty"][name]
+    assert step["test_rms_um"] < NEAR_NOISE * NOISE
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "EZZ = a exp(-((X - x)/width)^2) for Y &gt; y" in page
+
+
+def test_a_users_effect_is_a_page_of_code():
+    text = (EXAMPLES / "my_effects.py").read_text(encoding="utf-8")
+    body = text.split("class Hose")[1].split("HOSE = Kind")[0]
+    assert len([line for line in body.splitlines() if line.strip()]) <= 30
+
+
+def test_the_runs_are_what_their_maker_writes(tmp_path):
+    maker = module(HIDDEN / "make_runs.py")
+    maker.write("hose", tmp_path)
+    again, stored = read_run(tmp_path / "hose.csv"), read_run(HIDDEN / "hose.csv")
+    np.testing.assert_allclose(again.touches.q, stored.touches.q, atol=10 * NM)
+    np.testing.assert_allclose(again.deviation, stored.deviation, atol=10 * NM)
+
+
+# a real spindle
+
+
+def test_the_spindle_run_is_the_record(tmp_path):
+    make_run = module(THERMAL / "make_run.py")
+    run = make_run.spindle_run()
+    with gzip.open(THERMAL / "fl_thermal_1min.csv.gz", "rt", encoding="utf-8") as file:
+        data = np.genfromtxt(file, delimiter=",", names=True)
+    assert len(data) == 2779
+    assert len(run) == 5 * len(range(make_run.FIRST, 2779, make_run.EVERY))
+    instant = data[make_run.FIRST + 7 * make_run.EVERY]
+    rows = slice(35, 40)
+    np.testing.assert_array_equal(run.touches.time[rows], instant["time_s"])
+    readings = [instant[f"ch{i}_um"] for i in range(1, 6)]
+    np.testing.assert_allclose(run.deviation[rows] / UM, readings, atol=HALF_DIGIT)
+    np.testing.assert_allclose(run.touches.temperature["t16"][rows], instant["t16_degC"])
+    np.testing.assert_allclose(run.touches.spindle_rpm[rows], instant["spindle_rpm"])
+    hours = run.touches.time / 3600.0
+    np.testing.assert_array_equal(run.split == "test", hours >= 32.13)
+    assert set(run.touches.pose[run.split == "train"]) == {0, 1, 2, 3}
+
+    write_run(tmp_path / "run.csv", run, str(THERMAL / "spindle.toml"))
+    again = read_run(tmp_path / "run.csv")
+    np.testing.assert_allclose(again.deviation, run.deviation, atol=NM)
+    np.testing.assert_array_equal(again.split, run.split)
+
+
+def test_thermal_memory_is_found_in_the_spindle_and_halves_the_held_out_error():
+    """What is found does not rest on the sampling: here a row every half hour."""
+    make_run, warm_body = module(THERMAL / "make_run.py"), module(THERMAL / "warm_body.py")
+    before_after = module(THERMAL / "before_after.py")
+    run = make_run.spindle_run(every=30)
+    found = diagnose(run, candidates=list(warm_body.propose(run.touches)))
+    names = [e.name for e in found.found]
+    assert "warm-body(C1,spindle_rpm)" in names
+    assert "warm-body(C1,t4)" in names
+    errors = list(before_after.held_out(found).values())
+    together = [float(np.sqrt(np.mean(np.square(e)))) for e in errors]
+    assert together[-1] < 0.5 * together[0]
+    simple = before_after.SIMPLE_FITS["... and one temperature"]
+    assert together[-1] < float(np.sqrt(np.mean(np.square(simple))))
+    # the constant of the data's own table, which holds for every minute of the record
+    np.testing.assert_allclose(errors[0], before_after.SIMPLE_FITS["constant"], rtol=0.02)
+
+
+def test_the_licence_goes_with_the_data():
+    text = (THERMAL / "LICENSE").read_text(encoding="utf-8")
+    assert "MIT License" in text
+    assert "CAIVIAC" in text
+    readme = (THERMAL / "README.md").read_text(encoding="utf-8")
+    assert "CAIVIAC/FL_THERMAL" in readme
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_spindle_say_what_the_readme_quotes(tmp_path):
+    subprocess.run([sys.executable, THERMAL / "make_run.py", tmp_path / "run.csv"], check=True)
+    (tmp_path / "spindle.toml").write_text((THERMAL / "spindle.toml").read_text())
+    own = ["--effects", THERMAL / "warm_body.py"]
+    words = matstd("diagnose", tmp_path / "run.csv", *own, "--auto", "-o", tmp_path / "out")
+    readme = (THERMAL / "README.md").read_text(encoding="utf-8")
+    for step in result(tmp_path / "out")["steps"][1:]:
+        (row,) = [line for line in words.splitlines() if line.strip().startswith(step["effect"])]
+        assert " ".join(row.split()) in " ".join(readme.split())
