@@ -16,7 +16,7 @@ from sensitivity.by_parameter import jacobian_by_parameter
 from sensitivity.jacobian import jacobian
 from sensitivity.workspace import Workspace, latin_hypercube
 from twin.chain import Chain
-from twin.effect import Contribution
+from twin.contribution import Contribution
 from twin.files.machine_file import read_machine
 from twin.kinematics import exact_tip
 from twin.symbols import Family

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.effect import Contribution
+from twin.contribution import Contribution
 from twin.files.machine_file import read_machine
 from twin.kinematics import exact_tip, tip
 from twin.ordinary import ordinary_model

@@ -11,7 +11,7 @@ from probe_paths.clock import Clock
 from probe_paths.dialect import Dialect
 from probe_paths.steps import ReadProgram
 from twin.chain import Chain
-from twin.effect import Contribution
+from twin.contribution import Contribution
 from twin.frames import Array, apply, inverse, turn
 from twin.kinematics import exact_tip, linear_directions, tip
 from twin.touches import IntArray, Setup, Touches

@@ -1,42 +1,13 @@
-"""What an effect is: where in the machine it acts, and how much per unit of its parameters.
-
-Everything that disturbs a measurement ends in one small tuple, `Contribution`, and nothing
-downstream asks which effect it was.
-"""
+"""What an effect is: where in the machine it acts, and how much per unit of its parameters."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol, runtime_checkable
+from typing import Literal, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
+from twin.contribution import Contribution
 from twin.frames import Array
-
-if TYPE_CHECKING:
-    from twin.touches import Touches
-
-
-class Contribution(NamedTuple):
-    """What effects add at N touches; contributions of several effects add up.
-
-    Attributes:
-        twist: Component errors of each link, tool side minus workpiece side, X Y Z A B C,
-            (N, L, 6), mm and rad.
-        place: Displacement of each axis's line, of the workpiece `w` and of the tool `t`,
-            (N, L, 6), mm and rad; along an axis's own direction it is its zero position.
-        shift: Of the standard in the table frame, (N, 3), mm.
-        bias: Of the measured surface along its outward normal, (N,), mm.
-    """
-
-    twist: Array
-    place: Array
-    shift: Array
-    bias: Array
-
-    @classmethod
-    def zeros(cls, n: int, links: int) -> "Contribution":
-        """Nothing disturbed at n touches of a machine with that many links."""
-        return cls(np.zeros((n, links, 6)), np.zeros((n, links, 6)), np.zeros((n, 3)), np.zeros(n))
-
+from twin.touches import Touches
 
 Part = Literal["twist", "place", "shift", "bias"]
 
@@ -96,13 +67,13 @@ class Effect(Protocol):
     @property
     def parameters(self) -> Sequence[Parameter]: ...  # noqa: D102
 
-    def terms(self, touches: "Touches") -> Sequence[Term]:
+    def terms(self, touches: Touches) -> Sequence[Term]:
         """Where and how much it acts, per unit of each parameter, at every touch."""
         ...
 
 
 def contribution(
-    effects: Mapping[Effect, Array] | Sequence[tuple[Effect, Array]], touches: "Touches"
+    effects: Mapping[Effect, Array] | Sequence[tuple[Effect, Array]], touches: Touches
 ) -> Contribution:
     """Sum of what effects with known parameters add at every touch.
 
@@ -148,7 +119,7 @@ class Inner(NamedTuple):
 class Tunable(Effect, Protocol):
     """An effect with inner parameters."""
 
-    def inner(self, touches: "Touches") -> Sequence[Inner]:
+    def inner(self, touches: Touches) -> Sequence[Inner]:
         """Its inner parameters, with the grids that these touches can support."""
         ...
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.chain import Chain, Link
-from twin.effect import Contribution
+from twin.contribution import Contribution
 from twin.errors import NotReachable, ShapeMismatch
 from twin.frames import Array, apply, inverse, pose, rotation, turned_about
 

@@ -7,7 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from twin.chain import Chain
-from twin.effect import Contribution, Effect, Parameter, contribution
+from twin.contribution import Contribution
+from twin.effect import Effect, Parameter, contribution
 from twin.frames import Array, apply, inverse
 from twin.kinematics import exact_tip, tip
 from twin.touches import Touches

@@ -11,7 +11,7 @@ import pinocchio as pin
 import pytest
 
 from twin.chain import Axis, Chain, Link, make_chain
-from twin.effect import Contribution
+from twin.contribution import Contribution
 from twin.kinematics import exact_table_to_tool, reach, table_to_tool
 from twin.units import DEG, NM
 

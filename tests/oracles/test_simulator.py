@@ -13,7 +13,7 @@ from simulator_experiment import MACHINES, random_experiment
 from simulator_machine import read_machine, tip
 from simulator_surface import foot, random_pads, surface_point
 
-from twin.effect import Contribution
+from twin.contribution import Contribution
 from twin.files.machine_file import read_machine as read_chain
 from twin.kinematics import exact_tip
 from twin.kinematics import tip as twin_tip

@@ -14,7 +14,8 @@ from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from probe_paths.program import make_programs
 from probe_paths.virtual import Outcome, run_program, run_programs
-from twin.effect import Contribution, contribution
+from twin.contribution import Contribution
+from twin.effect import contribution
 from twin.effects.geometric import ComponentError
 from twin.effects.location import LocationError
 from twin.errors import DesignError

@@ -7,7 +7,7 @@ from sensitivity.by_parameter import jacobian_by_parameter
 from sensitivity.jacobian import jacobian, sensitivity
 from sensitivity.workspace import latin_hypercube
 from twin.chain import Axis, make_chain
-from twin.effect import Contribution
+from twin.contribution import Contribution
 from twin.kinematics import exact_tip, reach
 from twin.symbols import Family
 from twin.units import DEG, NM

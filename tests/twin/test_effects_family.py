@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from twin.chain import Axis, make_chain
-from twin.effect import Contribution, Effect, Tunable, contribution
+from twin.contribution import Contribution
+from twin.effect import Effect, Tunable, contribution
 from twin.effects.thermal_lag import lagged
 from twin.frames import fixed_xyz, pose
 from twin.library import parse_effect, proposals

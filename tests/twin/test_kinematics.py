@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from twin.chain import Axis, Chain, make_chain
-from twin.effect import Contribution
+from twin.contribution import Contribution
 from twin.errors import NotReachable, ShapeMismatch
 from twin.frames import (
     apply,
