@@ -28,6 +28,7 @@ from probe_paths.plan import TouchPlan
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from probe_paths.program import ProgramSet, make_programs
+from sensitivity.maps import draw_maps
 from sensitivity.sampling import Population, drawn_errors
 from sensitivity.study import Study, run_study, write_study
 from sensitivity.workspace import Workspace
@@ -98,7 +99,8 @@ def design(project: Project, folder: Path, progress: Stage) -> Design:
     population = Population(project.chain, project.ranges)
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
     study = run_study(population, workspace, project.poses, project.draws, rng_study, progress)
-    maps = write_study(study, folder / "sensitivity")
+    write_study(study, folder / "sensitivity")
+    maps = draw_maps(study, folder / "sensitivity")
     placement = _placement(project, workspace, rng_place, progress)
     write_standard(folder / "standard.toml", placement.standard)
     progress("STEP and STL", 0, 1)

@@ -9,13 +9,12 @@ import numpy as np
 
 from sensitivity.canvas import GRID, INK, SHADES, axis_title, figure, nothing, reading_label, save
 from sensitivity.pictures import maps_of_S, overview
+from sensitivity.study import Study
 from twin.frames import Array
 from twin.units import DEG, UM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from sensitivity.study import Study
 
 _BARS = 24
 _BINS = 12

@@ -8,6 +8,7 @@ import numpy as np
 
 from sensitivity.canvas import GRID, INK, SHADES, axis_title, figure, nothing, reading_label
 from sensitivity.jacobian import sensitivity
+from sensitivity.study import Study
 from sensitivity.workspace import Workspace, section
 from twin.frames import Array
 from twin.symbols import LETTERS, Family, Symbol
@@ -15,8 +16,6 @@ from twin.units import UM, URAD
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from sensitivity.study import Study
 
 _PLANE = 31  # values of each reading of a map of S
 _CURVE = 121  # values of the reading of a curve of S

@@ -171,22 +171,16 @@ def section_pairs(workspace: Workspace) -> list[tuple[str, str]]:
     return pairs[:6]
 
 
-def write_study(study: Study, folder: str | Path) -> list[tuple[str, str]]:
-    """Write data and maps of a study into a folder.
+def write_study(study: Study, folder: str | Path) -> None:
+    """Write the data of a study into a folder; `sensitivity.maps.draw_maps` draws it.
 
     `poses.csv` (readings and statistics of the volumetric error with their standard errors by
-    sampling), `sensitivity.csv` (S a column a parameter), `shares.csv`, `sections.npz`, and the
-    maps as PNG.
+    sampling), `sensitivity.csv` (S a column a parameter), `shares.csv` and `sections.npz`.
 
     Args:
         study: The study.
         folder: Made where it does not exist; files in it are replaced.
-
-    Returns:
-        File name and caption of every map, in the order of a report.
     """
-    from sensitivity.maps import draw_maps
-
     folder = Path(folder)
     columns = reading_columns(study.chain)
     readings = {
@@ -210,7 +204,6 @@ def write_study(study: Study, folder: str | Path) -> list[tuple[str, str]]:
     shares = {s.name: study.shares[:, i] for i, s in enumerate(symbols)}
     write_whole(folder / "shares.csv", csv_text(readings | shares))
     _write_sections(study, folder / "sections.npz")
-    return draw_maps(study, folder)
 
 
 def _write_sections(study: Study, path: Path) -> None:

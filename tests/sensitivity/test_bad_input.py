@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from sensitivity.maps import draw_maps
 from sensitivity.sampling import Population
 from sensitivity.study import run_study, write_study
 from sensitivity.workspace import Workspace
@@ -16,7 +17,8 @@ def test_a_machine_without_errors_gives_a_whole_study(chain, workspace, tmp_path
     study = run_study(nothing, workspace, 20, 50, np.random.default_rng(1))
     assert study.volumetric.mean.max() == study.shares.max() == study.rms.max() == 0.0
     assert study.tail == (0.0, 0.0)
-    written = write_study(study, tmp_path)
+    write_study(study, tmp_path)
+    written = draw_maps(study, tmp_path)
     assert written
     assert all((tmp_path / name).stat().st_size > 0 for name, _ in written)
 

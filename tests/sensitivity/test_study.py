@@ -5,6 +5,7 @@ import csv
 import numpy as np
 import pytest
 
+from sensitivity.maps import draw_maps
 from sensitivity.sampling import Population
 from sensitivity.study import run_study, section_pairs, write_study
 from sensitivity.workspace import Workspace
@@ -20,7 +21,8 @@ def study(chain, workspace):
 @pytest.fixture(scope="module")
 def written(study, tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
-    return folder, write_study(study, folder)
+    write_study(study, folder)
+    return folder, draw_maps(study, folder)
 
 
 def test_the_same_seed_gives_the_same_study(chain, workspace, study):
@@ -93,5 +95,5 @@ def test_a_machine_with_two_readings_is_studied_too(tmp_path):
     area = Workspace(lathe, {}, 50.0)
     assert section_pairs(area) == [("X", "Z")]
     study = run_study(Population(lathe), area, 40, 50, np.random.default_rng(1))
-    maps = write_study(study, tmp_path)
+    maps = draw_maps(study, tmp_path)
     assert all((tmp_path / name).stat().st_size > 5000 for name, _ in maps)
