@@ -120,6 +120,16 @@ class EffectSet:
         return left_out(Q, self.residual[:n], self.complement.groups)
 
     @cached_property
+    def held_out_log_density(self) -> float:
+        """Logarithm of the predictive density of the held-out poses up to a constant.
+
+        As in `evidence` the size of the noise is integrated out: a second effect is judged beside
+        the noise that the first one leaves, not beside that of the model without either.
+        """
+        left = self.held_out
+        return float(log_evidence(self.complement, left.squared, left.log_det))
+
+    @cached_property
     def held_out_rms(self) -> float:
         """Root mean square of the standardised errors of held-out poses, in units of the noise."""
         return float(np.sqrt(np.mean(self.held_out.standardised**2)))

@@ -97,12 +97,14 @@ class LeftOut:
     Attributes:
         error: Observed minus predicted, whitened, (N,); its own noise is 1.
         inflation: Standard deviation of `error` if the model is right, at least 1, (N,).
-        surprise: Sum over groups of ``error^T cov^-1 error + log det cov``.
+        squared: Sum over groups of ``error^T cov^-1 error``, cov that of the prediction error.
+        log_det: Sum over groups of ``log det cov``.
     """
 
     error: Array
     inflation: Array
-    surprise: float
+    squared: float
+    log_det: float
 
     @property
     def standardised(self) -> Array:
@@ -122,7 +124,7 @@ def left_out(Q: Array, residual: Array, groups: Sequence[NDArray[np.int64]]) -> 
         groups: Row numbers of every group; together all rows.
     """
     error, inflation = np.zeros(len(residual)), np.ones(len(residual))
-    surprise = 0.0
+    squared, log_det = 0.0, 0.0
     for rows in groups:
         part, here = Q[rows], residual[rows]
         if len(rows) <= Q.shape[1]:
@@ -136,5 +138,6 @@ def left_out(Q: Array, residual: Array, groups: Sequence[NDArray[np.int64]]) -> 
             error[rows] = here + root.T @ (root @ here)
             variance = 1.0 + (root**2).sum(axis=0)
         inflation[rows] = np.sqrt(np.maximum(variance, 1.0))
-        surprise += float(here @ error[rows]) - 2.0 * float(np.log(np.diag(L)).sum())
-    return LeftOut(error, inflation, surprise)
+        squared += float(here @ error[rows])
+        log_det -= 2.0 * float(np.log(np.diag(L)).sum())
+    return LeftOut(error, inflation, squared, log_det)

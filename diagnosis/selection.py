@@ -82,14 +82,14 @@ class Verified:
         p_value: Probability by chance, corrected for grid and number of candidates.
         evidence: Gain of log evidence by this member.
         held_out: Held-out error with it over that without it.
-        surprise: Gain of the held-out log predictive density by it.
+        density: Gain of the held-out log predictive density by it.
     """
 
     member: Member
     p_value: float
     evidence: float
     held_out: float
-    surprise: float
+    density: float
 
     @property
     def stands(self) -> bool:
@@ -98,7 +98,7 @@ class Verified:
             self.p_value < CHANCE
             and self.evidence > WORTH
             and self.held_out < 1.0
-            and self.surprise > 0.0
+            and self.density > 0.0
         )
 
 
@@ -222,14 +222,13 @@ class Search:
     def verified(self, others: Chosen, whole: Chosen, member: Member) -> Verified:
         """Tests of one member, given the set without it and the set with it."""
         scores = self.scores(others)
-        without, with_it = others.effects.held_out, whole.effects.held_out
         ratio = whole.effects.held_out_rms / max(others.effects.held_out_rms, 1e-300)
         return Verified(
             member,
             self.corrected(member.candidate, float(scores.p[member.variant])),
             float(whole.effects.evidence - others.effects.evidence),
             ratio,
-            float(without.surprise - with_it.surprise),
+            float(whole.effects.held_out_log_density - others.effects.held_out_log_density),
         )
 
     def corrected(self, candidate: int, p: float) -> float:
