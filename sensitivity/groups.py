@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sensitivity.blocks import blocks
-from sensitivity.design import Purpose
+from sensitivity.purpose import Purpose
 from twin.frames import Array
 from twin.touches import IntArray
 
@@ -66,24 +66,28 @@ class _Groups:
 
     def best(self, chosen: list[int], fits: NDArray[np.bool_]) -> int | None:
         """The group that helps most beside those chosen, and whose rows are then remembered."""
-        M: Array = np.eye(len(self.aim.K)) + self.start
+        information: Array = self.start.copy()
         for k in chosen:
-            M = M + self.brought[k]
-        reach = np.asarray(np.linalg.solve(M, self.W.T).T, dtype=np.float64)
-        leverage = np.einsum("nr,nr->n", reach, self.W)
-        gain = leverage
-        if not self.aim.is_determinant:
-            gain = np.einsum("nr,nr->n", reach @ self.aim.K, reach)
-        gain = gain / (1.0 + leverage)
+            information = information + self.brought[k]
+        tangent = self.aim.tangent(information)
+        reaches = [np.linalg.solve(prior + information, self.W.T).T for prior in self.aim.prior]
+        gain = np.zeros(len(self.W))
+        for reach, K, weight in zip(reaches, tangent.K, tangent.weight, strict=True):
+            leverage = np.einsum("nr,nr->n", reach, self.W)
+            if self.aim.is_determinant:
+                gain += weight * np.log1p(leverage)
+            else:
+                gain += np.einsum("nr,nr->n", reach @ K, reach) / (1.0 + leverage)
         free = np.all(fits[chosen], axis=0) if chosen else np.ones(self.count, dtype=bool)
         free[chosen] = False
         open_groups = np.flatnonzero(free & (np.diff(self.edges) > 0))
         if not len(open_groups):
             return None
         top = self._most_useful(open_groups, gain)
-        drop = np.concatenate(
-            [self._drops(top[some], reach) for some in blocks(len(top), _GROUPS_A_BLOCK)]
-        )
+        drop = np.zeros(len(top))
+        for reach, K, weight in zip(reaches, tangent.K, tangent.weight, strict=True):
+            for some in blocks(len(top), _GROUPS_A_BLOCK):
+                drop[some] += self._drops(top[some], reach, K, weight)
         i = int(np.argmax(drop))
         rows = top[i][top[i] >= 0]
         best = int(open_groups[i])
@@ -99,17 +103,17 @@ class _Groups:
             out[i, : len(rows)] = rows
         return out
 
-    def _drops(self, top: IntArray, reach: Array) -> Array:
+    def _drops(self, top: IntArray, reach: Array, K: Array, weight: float) -> Array:
         """``trace(K M^-1) - trace(K (M + w^T w)^-1)`` of every group, by Woodbury, (groups,).
 
         ``trace((1 + w M^-1 w^T)^-1  w M^-1 K M^-1 w^T)`` with reach = w M^-1; for D the logarithm
-        of ``det(1 + w M^-1 w^T)``.
+        of ``det(1 + w M^-1 w^T)``, times the weight of the machine.
         """
         there = (top >= 0)[:, :, None]
         w, v = np.where(there, self.W[top], 0.0), np.where(there, reach[top], 0.0)
         inner = np.eye(self.take) + v @ np.swapaxes(w, 1, 2)
         if self.aim.is_determinant:
-            return np.asarray(np.linalg.slogdet(inner)[1], dtype=np.float64)
-        spread = v @ self.aim.K @ np.swapaxes(v, 1, 2)
+            return weight * np.asarray(np.linalg.slogdet(inner)[1], dtype=np.float64)
+        spread = v @ K @ np.swapaxes(v, 1, 2)
         drops: Array = np.trace(np.linalg.solve(inner, spread), axis1=1, axis2=2)
         return drops
