@@ -17,8 +17,8 @@ DEG = math.pi / 180.0
 KG_M3 = 1e-9
 """One kilogram per cubic metre in kg/mm^3."""
 
-MINUTE = 60.0
-"""One minute in s."""
+MINUTE, HOUR, DAY = 60.0, 3600.0, 86400.0
+"""In s."""
 
 T_REF = 20.0
 """Reference temperature of geometrical specifications, degC (ISO 1)."""

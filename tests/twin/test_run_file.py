@@ -90,11 +90,13 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("rows", "remark"),
     [
-        ([ROW, ROW], "line 10: 1 rows stand twice"),
+        ([ROW, ROW], "line 10: 1 row stands twice; the copy is left out"),
         ([later(ROW, 5.0), later(ROW, 2.0)], "line 10: time_s goes back from 5 to 2"),
-        ([ROW.replace("20.5", ""), later(ROW, 2.0)], "line 9: T_s_degC has no number in 1 rows"),
+        ([ROW.replace("20.5", ""), later(ROW, 2.0)], "line 9: T_s_degC has no number in 1 row;"),
         ([ROW.replace("20.5", "nan"), later(ROW, 2.0)], "the sensor is left out"),
         ([ROW, later(ROW, 3.0)], "T_s_degC is constant at 20.5"),
+        ([ROW.replace("20.5", "-9999"), later(ROW, 2.0)], "T_s_degC reads -9999 degC"),
+        ([ROW.replace("20.5", "293.6")], "T_s_degC reads 293.6 degC, as no machine does: kelvin?"),
         ([ROW.replace(",0.0,0.0,1.0,", ",0.0,0.0,1.0005,")], "normal of length 1.0005"),
     ],
 )
@@ -118,6 +120,14 @@ def test_what_can_be_mended_is_mended_and_told(
         (("", "", ",a,0,|,b,0,"), "column setup: found 'b'"),
         (("", "", "36.998|nan"), "finite"),
         (("", "", "-300.0|-0.3"), "units are mixed up"),
+        (("", "", "20.0|1e300"), "line 9, column X_mm: found 1e300, expected at most 100000"),
+        (("", "", "20.0|twenty"), "line 9, column X_mm: found 'twenty', expected a number"),
+        (("", "", "1.5|1e300"), "line 9, column time_s: found 1e300"),
+        (("", "", "1.0,1,|1.0,45,"), "column dirC: found 45, expected the sign of the last move"),
+        (("", "", '20.0|"20,0"'), "found '20,0', expected a decimal point"),
+        (("", "", 'a,a,|"a,a,'), "cells"),
+        (("dirC", "split", "1.0,1,|1.0,test,"), "test in every row"),
+        (("dirC", "repeat", "1.0,1,|1.0,1.5,"), "column repeat: found 1.5, expected a whole"),
     ],
 )
 def test_refused(tmp_path: Path, change: tuple[str, str, str], expected: str) -> None:
@@ -144,3 +154,49 @@ def test_refused(tmp_path: Path, change: tuple[str, str, str], expected: str) ->
 def test_bad_head(tmp_path: Path, old: str, new: str, expected: str) -> None:
     with pytest.raises(BadFile, match=expected):
         read_run(write(tmp_path, [ROW], head=HEAD.replace(old, new)))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", "line 1: found an empty file, expected a head"),
+        (COLUMNS + "\n" + ROW + "\n", "line 1: found 'feature.*', expected a head"),
+        (HEAD, "line 8: found nothing, expected a line of column names"),
+        (HEAD + COLUMNS + "\n", "table: found no rows"),
+        (HEAD + COLUMNS.replace(",", ";") + "\n", "line 8: found columns parted by semicolons"),
+        (HEAD + COLUMNS.replace(",", "\t") + "\n", "line 8: found columns parted by tabs"),
+        (HEAD + COLUMNS + '\n"' + ROW * 3000, "as many opening as closing quotes"),
+        (
+            HEAD.replace("machine.toml", "none.toml"),
+            "machine: found 'none.toml', and .* is no file",
+        ),
+    ],
+)
+def test_what_is_no_run_file(tmp_path: Path, text: str, expected: str) -> None:
+    path = write(tmp_path, [ROW])
+    path.write_text(text)
+    with pytest.raises(BadFile, match=expected):
+        read_run(path)
+
+
+@pytest.mark.parametrize("mark", ["\r\n", "\r", "bom", "blank"])
+def test_line_ends_and_marks_do_not_matter(tmp_path: Path, mark: str) -> None:
+    path = write(tmp_path, [ROW, later(ROW, 9.0)])
+    text = path.read_text()
+    text = {"bom": "\ufeff" + text, "blank": text.replace("\n", "\n\n")}.get(
+        mark, text.replace("\n", mark)
+    )
+    path.write_bytes(text.encode("utf-8"))
+    assert read_run(path).deviation == pytest.approx([2.0 * UM] * 2, abs=0.001 * NM)
+
+
+def test_a_file_that_was_appended_to_itself_keeps_its_clock(tmp_path: Path) -> None:
+    rows = [ROW, later(ROW, 9.0)]
+    run = read_run(write(tmp_path, rows + rows))
+    assert run.touches.time.tolist() == [1.5, 9.0]
+    assert any("2 rows stand twice; the copies are left out" in r for r in run.remarks)
+
+
+def test_a_run_without_any_deviation_is_told(tmp_path: Path) -> None:
+    run = read_run(write(tmp_path, [ROW + ",0"], columns=COLUMNS + ",dev_um"))
+    assert "every deviation is zero: nothing was measured" in run.remarks

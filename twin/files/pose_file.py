@@ -11,6 +11,9 @@ from twin.files.toml import read_text
 from twin.frames import Array
 from twin.units import DEG
 
+FARTHEST = 1e5
+"""A length (mm) or an angle (degrees) beyond this is a slip, not a reading or a place."""
+
 
 def reading_columns(chain: Chain) -> dict[str, tuple[str, float]]:
     """Column name and factor to base units of every axis: `X_mm`, `B_deg`."""
@@ -32,7 +35,7 @@ def readings(table: CsvTable, chain: Chain) -> Array:
     for i, axis in enumerate(chain.axes):
         column, factor = names[axis]
         if column in table:
-            q[:, i] = table.numbers(column) * factor
+            q[:, i] = table.numbers(column, largest=FARTHEST) * factor
     return q
 
 
@@ -79,5 +82,6 @@ def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
     beyond = outside_travel(table, chain, q)
     if beyond is not None:
         raise beyond
-    length = table.numbers("tool_length_mm") if "tool_length_mm" in table else np.zeros(len(table))
-    return q, length
+    if "tool_length_mm" not in table:
+        return q, np.zeros(len(table))
+    return q, table.numbers("tool_length_mm", largest=FARTHEST)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.files.pose_file import reading_columns
-from twin.files.run_file import FORCE, NORMAL, POINT
+from twin.files.run_columns import FORCE, NORMAL, POINT
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
 from twin.run import Run

@@ -11,6 +11,23 @@ import numpy as np
 from twin.errors import BadFile
 from twin.frames import Array
 
+LARGEST = 1e12
+"""Whatever a column holds, a number beyond this is a slip."""
+
+_OTHERS = {"semicolons": ";", "tabs": "\t"}
+_EXPECTED = "commas between the columns, and a point in decimal numbers"
+
+
+def _rows(text: str, path: str | Path, first_line: int) -> list[tuple[int, list[str]]]:
+    """Rows that are not empty, with their line numbers."""
+    reader = csv.reader(io.StringIO(text))
+    try:
+        return [(first_line + reader.line_num - 1, row) for row in reader if any(row)]
+    except csv.Error as error:
+        line = f"line {first_line + reader.line_num - 1}"
+        found = f"a cell without an end ({error})"
+        raise BadFile(path, line, found, "as many opening as closing quotes") from error
+
 
 class CsvTable:
     """A table of text cells with the line number of every row.
@@ -23,12 +40,15 @@ class CsvTable:
 
     def __init__(self, text: str, path: str | Path, first_line: int = 1) -> None:
         self.path = path
-        reader = csv.reader(io.StringIO(text))
-        rows = [(first_line + reader.line_num - 1, row) for row in reader if any(row)]
+        rows = _rows(text, path, first_line)
         if not rows:
             raise BadFile(path, f"line {first_line}", "nothing", "a line of column names")
         self.header_line, header = rows[0]
         self.columns = [name.strip() for name in header]
+        other = next((name for name, mark in _OTHERS.items() if mark in header[0]), None)
+        if len(header) == 1 and other is not None:
+            where = f"line {self.header_line}"
+            raise BadFile(path, where, f"columns parted by {other}", _EXPECTED)
         for name in self.columns:
             if self.columns.count(name) > 1:
                 raise BadFile(path, f"line {self.header_line}", f"column {name} twice", "it once")
@@ -73,13 +93,20 @@ class CsvTable:
         i = self.columns.index(name)
         return [row[i].strip() for row in self.cells]
 
-    def numbers(self, name: str, empty: float | None = None, finite: bool = True) -> Array:
+    def numbers(
+        self,
+        name: str,
+        empty: float | None = None,
+        finite: bool = True,
+        largest: float = LARGEST,
+    ) -> Array:
         """Column as numbers, (N,).
 
         Args:
             name: The column.
             empty: What an empty cell means; None refuses it.
             finite: Whether NaN and infinity are refused.
+            largest: Numbers beyond this, of either sign, are refused as slips.
 
         Raises:
             BadFile: Line, what stood there.
@@ -94,14 +121,26 @@ class CsvTable:
             except ValueError:
                 out[i] = math.nan
                 if finite or cell:
-                    raise self.bad(i, name, repr(cell), "a number") from None
+                    expected = "a decimal point" if _has_comma(cell) else "a number"
+                    raise self.bad(i, name, repr(cell), expected) from None
             if finite and not math.isfinite(out[i]):
                 raise self.bad(i, name, cell, "a finite number")
+            if abs(out[i]) > largest and math.isfinite(out[i]):
+                raise self.bad(i, name, cell, f"at most {largest:.6g}")
         return out
 
     def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:
         """The exception for a cell."""
         return BadFile(self.path, f"line {self.lines[row]}, column {name}", found, expected)
+
+
+def _has_comma(cell: str) -> bool:
+    """Whether a cell would be a number if its comma were a point."""
+    try:
+        _plain(cell.replace(",", ".", 1))
+    except ValueError:
+        return False
+    return "," in cell
 
 
 def _plain(cell: str) -> float:

@@ -80,4 +80,5 @@ def _as_bad_file(
 def check_format(data: dict[str, Any], wanted: str, path: str | Path) -> None:
     """Raise BadFile unless `format` says what the reader understands."""
     if data.get("format") != wanted:
-        raise BadFile(path, "format", repr(data.get("format", "nothing")), f'"{wanted}"')
+        found = repr(data["format"]) if "format" in data else "nothing"
+        raise BadFile(path, "format", found, f'"{wanted}"')

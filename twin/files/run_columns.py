@@ -1,0 +1,167 @@
+"""Columns of a run file as arrays in base units: what can be mended is mended and told."""
+
+import re
+
+import numpy as np
+
+from twin.chain import Chain
+from twin.errors import BadFile
+from twin.files.pose_file import FARTHEST
+from twin.files.table import CsvTable
+from twin.frames import Array
+from twin.touches import IntArray, Labels, linear_approach
+from twin.units import UM
+
+SENSOR = re.compile(r"T_(\w+)_degC\Z")
+POINT = ("px_mm", "py_mm", "pz_mm")
+NORMAL = ("nx", "ny", "nz")
+FORCE = ("Fx_N", "Fy_N", "Fz_N")
+
+COLDEST, HOTTEST = -60.0, 200.0
+"""Temperatures (degC) of a machine lie between; a logger writes -9999 for none."""
+
+LATEST = 1e11
+"""Times (s) beyond this, three thousand years, are in another unit."""
+
+SKEW = 0.01
+"""A normal whose length is off by more is no unit normal."""
+
+ROUNDED = 1e-5
+"""A normal whose length is off by less is rounded, which needs no word."""
+
+
+def points(table: CsvTable) -> Array:
+    """Contact points, (N, 3), mm."""
+    return np.stack([table.numbers(c, largest=FARTHEST) for c in POINT], axis=-1)
+
+
+def normals(table: CsvTable, remarks: list[str]) -> Array:
+    """Unit normals; lengths off by rounding are mended and told, others refused."""
+    normal = np.stack([table.numbers(c) for c in NORMAL], axis=-1)
+    length = np.linalg.norm(normal, axis=-1)
+    off = np.abs(length - 1.0)
+    worst = int(np.argmax(off))
+    if off[worst] > SKEW:
+        raise table.bad(worst, "nx, ny, nz", f"a normal of length {length[worst]:.4g}", "length 1")
+    if off[worst] > ROUNDED:
+        remarks.append(
+            f"line {table.lines[worst]}: normal of length {length[worst]:.6f}; "
+            "all normals were brought to length 1"
+        )
+    return np.asarray(normal / length[:, None])
+
+
+def times(table: CsvTable) -> Array:
+    """Time of every row, (N,), s; zero where none is recorded."""
+    return table.numbers("time_s", largest=LATEST) if "time_s" in table else np.zeros(len(table))
+
+
+def temperatures(table: CsvTable, remarks: list[str]) -> dict[str, Array]:
+    """Temperature of every sensor; one with gaps or absurd values is left out and told."""
+    out = {}
+    for column in table.columns:
+        match = SENSOR.match(column)
+        if match is None:
+            continue
+        values = table.numbers(column, finite=False, largest=np.inf)
+        fault = _sensor_fault(table, column, values)
+        if fault:
+            remarks.append(f"{fault}; the sensor is left out")
+            continue
+        if np.ptp(values) == 0.0:
+            remarks.append(
+                f"{column} is constant at {values[0]:g} degC: it cannot explain anything"
+            )
+        out[match.group(1)] = values
+    return out
+
+
+def _sensor_fault(table: CsvTable, column: str, values: Array) -> str:
+    """What is wrong with the readings of a sensor, "" if nothing is."""
+    missing = np.flatnonzero(~np.isfinite(values))
+    if len(missing):
+        line = table.lines[int(missing[0])]
+        return f"line {line}: {column} has no number in {_rows(len(missing))}"
+    absurd = np.flatnonzero((values < COLDEST) | (values > HOTTEST))
+    if not len(absurd):
+        return ""
+    first = int(absurd[0])
+    why = ": kelvin?" if np.all((values > HOTTEST) & (values < 400.0)) else ""
+    return (
+        f"line {table.lines[first]}: {column} reads {values[first]:g} degC, as no machine does"
+        f"{why} ({_rows(len(absurd))})"
+    )
+
+
+def _rows(count: int) -> str:
+    return f"{count} row{'s' if count > 1 else ''}"
+
+
+def force(table: CsvTable) -> Array | None:
+    """Load on the tool, (N, 3), N; None where none is recorded."""
+    if not any(c in table for c in FORCE):
+        return None
+    zero = np.zeros(len(table))
+    return np.stack([table.numbers(c) if c in table else zero for c in FORCE], axis=-1)
+
+
+def poses(table: CsvTable, chain: Chain, q: Array, setup: IntArray) -> IntArray:
+    """Label of every row's table pose: the column, else equal rotary readings and set-up."""
+    if "pose" in table:
+        return np.unique(table.text("pose"), return_inverse=True)[1].astype(np.int64)
+    rotary = [chain.axis_index(a) for a in chain.rotary_axes]
+    key = np.column_stack([np.round(q[:, rotary], 6), setup])
+    return np.unique(key, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
+def approach(table: CsvTable, chain: Chain, q: Array, normal_table: Array) -> Array:
+    """Signs of the last motion of every axis, (N, A)."""
+    out = linear_approach(chain, q, normal_table)
+    for i, axis in enumerate(chain.axes):
+        column = f"dir{axis}"
+        if column in table:
+            out[:, i] = signs = table.numbers(column)
+            wrong = np.flatnonzero(~np.isin(signs, (-1.0, 0.0, 1.0)))
+            if len(wrong):
+                row = int(wrong[0])
+                expected = "the sign of the last move: 1, -1, or 0 if unknown"
+                raise table.bad(row, column, f"{signs[row]:g}", expected)
+    return out
+
+
+def uncertainties(table: CsvTable, common: float | None) -> Array:
+    """Standard uncertainty of every row, (N,), mm: its own, else the head's (µm)."""
+    if common is None and "u_um" not in table:
+        raise BadFile(table.path, "u_um", "nothing", "the standard uncertainty of one touch in µm")
+    if "u_um" not in table:
+        return np.full(len(table), common) * UM
+    u = table.numbers("u_um", empty=common)
+    if np.any(u <= 0.0):
+        row = int(np.argmax(u <= 0.0))
+        raise table.bad(row, "u_um", f"{u[row]:g}", "a positive number of µm")
+    return u * UM
+
+
+def splits(table: CsvTable) -> Labels:
+    """What a row is for: "train", "test", or "" where the file does not say."""
+    if "split" not in table:
+        return np.full(len(table), "", dtype="U5")
+    out = table.text("split")
+    for i, word in enumerate(out):
+        if word not in ("train", "test", ""):
+            raise table.bad(i, "split", repr(word), "train or test")
+    if all(word == "test" for word in out):
+        raise BadFile(table.path, "column split", "test in every row", "rows to fit: train")
+    return np.array(out, dtype="U5")
+
+
+def repeats(table: CsvTable) -> IntArray | None:
+    """Number of the repetition, (N,); None where none is recorded."""
+    if "repeat" not in table:
+        return None
+    numbers = table.numbers("repeat", empty=0.0)
+    odd = np.flatnonzero(numbers != np.round(numbers))
+    if len(odd):
+        row = int(odd[0])
+        raise table.bad(row, "repeat", f"{numbers[row]:g}", "a whole number")
+    return numbers.astype(np.int64)
