@@ -1,0 +1,111 @@
+"""Maps in three dimensions: what is rendered, and what is written on it."""
+
+import numpy as np
+import pytest
+
+from cad_out.volume_picture import PIXELS, Scene, composed, draw_volumes, eye
+from twin.errors import DesignError, MissingLibrary, ShapeMismatch
+
+READINGS = (
+    np.linspace(-150.0, 150.0, 5),
+    np.linspace(-100.0, 100.0, 4),
+    np.linspace(-400, -200, 3),
+)
+
+
+def scene(values=None, **changes):
+    """Values that grow with the first reading."""
+    x = np.ones((1, 4, 3)) * np.linspace(10.0, 20.0, 5)[:, None, None]
+    facts = {
+        "title": "B 0°, C 0°",
+        "unit": "95 % quantile / µm",
+        "labels": ("X / mm", "Y / mm", "Z / mm"),
+        "readings": READINGS,
+        "values": x if values is None else values,
+    }
+    return Scene(**(facts | changes))
+
+
+def rendered(*arguments):
+    """Pixels of the first picture; on a machine without OpenGL there are none."""
+    from matplotlib.image import imread
+
+    path = next(iter(arguments[0]))
+    try:
+        draw_volumes(*arguments)
+    except MissingLibrary:
+        return None
+    return imread(path)[..., :3]
+
+
+def test_values_have_the_colours_of_the_scale_and_the_standard_is_grey(small, built, tmp_path):
+    T = np.eye(4)
+    T[2, 3] = -380.0
+    bare = rendered({tmp_path / "bare.png": [scene()]})
+    if bare is None:
+        return
+    full = rendered(
+        {tmp_path / "full.png": [scene(T_readings_artefact=T)]}, built[0] / "standard.stl"
+    )
+    assert bare.shape == full.shape
+
+    def share(image, low, high):
+        return np.mean(np.all((image > low) & (image < high), axis=-1))
+
+    # viridis begins dark violet (0.27, 0, 0.33) and ends yellow (0.99, 0.91, 0.14)
+    height = slice(0, int(0.8 * bare.shape[0]))  # without the colour bar
+    assert share(bare[height], (0.2, -1, 0.25), (0.35, 0.2, 0.5)) > 0.005
+    assert share(bare[height], (0.7, 0.8, -1), (1.0, 1.0, 0.3)) > 0.005
+    grey = ((0.45, 0.45, 0.45), (0.93, 0.93, 0.93))
+    assert share(full[height], *grey) > share(bare[height], *grey) + 0.02
+
+
+def test_several_pictures_from_one_rendering(tmp_path):
+    paths = [tmp_path / "one.png", tmp_path / "two.png"]
+    flat = scene(np.full((5, 4, 3), 7.0))  # the same everywhere: sections, but no iso-surfaces
+    wide = rendered({paths[0]: [scene(), scene()], paths[1]: [flat]})
+    if wide is None:
+        return
+    from matplotlib.image import imread
+
+    single = imread(paths[1])
+    assert wide.shape[1] == pytest.approx(2 * single.shape[1], abs=2)
+    assert single[..., :3].std() > 0.1
+
+
+def test_ticks_axes_and_bar_are_written_with_their_units():
+    lines = {
+        "B": np.array([[0.0, 0.0, -260.0], [0.0, 1.0, 0.0]]),
+        "seen along itself": np.array([[0.0, 0.0, -260.0], eye()]),
+    }
+    drawn = composed([scene(lines=lines)], [np.full((PIXELS, PIXELS, 3), 255, dtype=np.uint8)])
+    picture, bar = drawn.axes
+    words = [t.get_text() for t in picture.texts]
+    for word in ("B 0°, C 0°", "X / mm", "Y / mm", "Z / mm", "B", "-100", "100", "-300"):
+        assert word in words
+    assert "seen along itself" not in words
+    assert bar.get_xlabel() == "95 % quantile / µm"
+    assert bar.get_xlim() == (10.0, 20.0)
+    places = {t.get_text(): np.array(t.get_position()) for t in picture.texts}
+    # X runs to the right and towards the eye, Y to the right and away, Z up
+    assert places["Z / mm"][0] < places["X / mm"][0] < places["Y / mm"][0]
+    inside = [np.all(np.abs(p) < 1.12) for p in places.values()]
+    assert all(inside)
+
+
+def test_what_cannot_be_drawn_is_refused(tmp_path):
+    with pytest.raises(ShapeMismatch, match=r"expected \(5, 4, 3\)"):
+        scene(np.zeros((3, 4, 5)))
+    with pytest.raises(DesignError, match="has no value"):
+        scene(np.full((5, 4, 3), np.nan))
+    with pytest.raises(DesignError, match=r"none\.stl: cannot be read"):
+        draw_volumes({tmp_path / "a.png": [scene()]}, tmp_path / "none.stl")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_opengl_the_package_is_named_and_nothing_written(tmp_path, monkeypatch):
+    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
+    with pytest.raises(MissingLibrary, match="apt-get install libegl1") as caught:
+        draw_volumes({tmp_path / "a.png": [scene()]})
+    assert "\n" not in str(caught.value)
+    assert list(tmp_path.iterdir()) == []
