@@ -18,7 +18,7 @@ def ratio_probability(statistic: Array, weights: Array, dof: float) -> Array:
     Args:
         statistic: Observed ratios c, shape (S,).
         weights: Non-negative, shape (S, K); zeros may pad them.
-        dof: Number of normal numbers altogether, more than K.
+        dof: Number of normal numbers altogether; of more weights than that the largest count.
 
     Returns:
         Shape (S,).
@@ -27,6 +27,8 @@ def ratio_probability(statistic: Array, weights: Array, dof: float) -> Array:
         Lugannani and Rice 1980; Kuonen 1999 (quadratic forms).
     """
     c = np.asarray(statistic, dtype=float)[:, None]
+    if weights.shape[1] > dof:
+        weights = -np.sort(-weights, axis=1)[:, : max(int(dof), 1)]
     a = weights - c
     rest = max(float(dof) - weights.shape[1], 0.0)
     largest = a.max(axis=1)

@@ -71,6 +71,8 @@ def find_structure(
     """
     complement = effects.complement
     touches = complement.touches
+    if effects.objective <= 0.0:  # a run without any deviation at all
+        return []
     rows = thinned(complement)
     known = list(patterns(touches))
     tested = [_tested(effects, pattern, rows) for pattern in known]

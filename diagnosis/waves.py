@@ -12,6 +12,9 @@ from twin.touches import IntArray, Touches
 SHORTEST = 4.0
 """Shortest period, in mean distances of touches."""
 
+LONGEST = 0.5
+"""Lowest frequency, in turns over the run: what is slower is no wave but a drift."""
+
 PER_LINE = 2.0
 """Scanned frequencies per resolvable one."""
 
@@ -62,14 +65,15 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
         return Wave(0, 1.0, 0.0, np.inf, "normal", np.zeros((len(time), 0)))
     highest = len(rows) / (SHORTEST * span)
     count = int(min(MOST, max(BLOCK, PER_LINE * highest * span)))
-    frequency = np.linspace(0.5 / span, max(highest, 1.0 / span), count)
+    frequency = np.linspace(LONGEST / span, max(highest, 1.0 / span), count)
     along = directions(touches)
     best = (0.0, frequency[0], "normal")
     for name, part in along.items():
         weight = part[complement.used] / complement.u
         best = max(best, (*_scan(effects, time, frequency, weight, rows), name))
     weight = along[best[2]][complement.used] / complement.u
-    drop, found = _finer(effects, time, best[1], frequency[1] - frequency[0], weight, rows)
+    lowest, step = frequency[0], frequency[1] - frequency[0]
+    drop, found = _finer(effects, time, best[1], step, lowest, weight, rows)
     p = float(f_probability(drop, 2.0, effects.objective - drop, effects.dof - 2.0))
     columns = _wave(time, np.array([found]), weight)
     scale = 10.0 / max(float(np.abs(columns).max()), 1e-300)
@@ -89,13 +93,19 @@ def _scan(
 
 
 def _finer(
-    effects: EffectSet, time: Array, frequency: float, step: float, weight: Array, rows: IntArray
+    effects: EffectSet,
+    time: Array,
+    frequency: float,
+    step: float,
+    lowest: float,
+    weight: Array,
+    rows: IntArray,
 ) -> tuple[float, float]:
     """The same around the best frequency of the scan, finer and finer."""
     best = (0.0, frequency)
     for _ in range(TIMES):
         around = best[1] + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)
-        best = max(best, _scan(effects, time, around[around > 0.0], weight, rows))
+        best = max(best, _scan(effects, time, around[around >= lowest], weight, rows))
         step /= FINER
     return best
 
