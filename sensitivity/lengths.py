@@ -1,28 +1,32 @@
 """Lengths |d| of many machines' deviations at many poses: one product of matrices, counted at once.
 
-The product is cut into blocks of poses that stay in the cache; of each only sums and a histogram
-are kept. One BLAS thread each, and own threads over the blocks: idle BLAS threads would spin. With
-numba installed (the extra `fast`) the counting is compiled; numpy is the reference.
+The product is cut into blocks of poses and machines that stay in the cache; of each only sums and
+a histogram are kept. One BLAS thread each, and own threads over the blocks: idle BLAS threads would
+spin. With numba installed (the extra `fast`) the counting is compiled; numpy is the reference.
 """
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 from os import cpu_count
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sensitivity.blocks import blocks
+from sensitivity.kernels import MACHINES_A_BLOCK, Kernels, compiled
 from twin.frames import Array
 
 BINS = 2048
-_POSES_A_BLOCK = 32
-_DRAWS_A_BLOCK = 2048
+_POSES_A_BLOCK = 256
+_DRAWS_A_BLOCK = 512  # with 256 poses the packing of both factors is small beside the product
+_KEPT = 2**25  # lengths held at once for the worst poses: 128 MiB
+_FEWEST_KEPT = 512
 
-Kernel = Callable[[Array, Array, Array, Array, Array, NDArray[np.int32]], None]
+Sizes = NDArray[np.float32]
+"""Lengths kept for the worst poses, (blocks, N, 64): the machines of a block side by side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,16 +34,20 @@ class Lengths:
     """What is kept of the lengths of S machines at N poses.
 
     Attributes:
+        draws: S.
         sum: Shape (N,), mm.
         squares: Sum of squares, (N,), mm^2.
         above: Machines above the tolerance, (N,).
         histogram: Shape (N, BINS); the last bin holds whatever is longer.
+        worst: Machines for which the pose is among the worst ones, (N,); zero if not asked for.
     """
 
+    draws: int
     sum: Array
     squares: Array
     above: Array
-    histogram: NDArray[np.int32]
+    histogram: NDArray[Any]
+    worst: NDArray[np.int64]
 
 
 def count_lengths(
@@ -47,7 +55,8 @@ def count_lengths(
     theta: Array,
     width: Array,
     tolerance: float = np.inf,
-    compiled: bool = True,
+    worst: tuple[int, int] = (0, 0),
+    use_compiled: bool = True,
     threads: int | None = None,
 ) -> Lengths:
     """Count the lengths ``|G_n theta_s|`` of every machine at every pose.
@@ -59,81 +68,123 @@ def count_lengths(
         theta: Machines, (K, S).
         width: Of a bin of the histogram at every pose, (N,), mm.
         tolerance: Longer ones are counted, mm.
-        compiled: Count with numba where it is installed.
+        worst: Among how many of the first poses the worst ones are looked for, and how many they
+            are; the lengths are then held in single precision, a lot of machines at a time.
+        use_compiled: Count with numba where it is installed.
         threads: Number of threads; None for one a core.
     """
     n, draws = len(G), theta.shape[1]
-    found = Lengths(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros((n, BINS), dtype=np.int32))
-    kernel = (compiled_kernel() if compiled else None) or _count
-    lots = [np.ascontiguousarray(theta[:, lot]) for lot in blocks(draws, _DRAWS_A_BLOCK)]
-    limit = np.full(n, tolerance)
+    counter = np.uint16 if draws <= np.iinfo(np.uint16).max else np.int32
+    found = Lengths(
+        draws,
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros((n, BINS), dtype=counter),
+        np.zeros(n, dtype=np.int64),
+    )
+    kernels = (compiled() if use_compiled else None) or Kernels(_count, _worst)
+    reference = worst[0]
+    lot = _DRAWS_A_BLOCK * max(1, _KEPT // n // _DRAWS_A_BLOCK) if reference else draws
+    with one_blas_thread(), ThreadPoolExecutor(threads or cpu_count() or 1) as pool:
+        for machines in blocks(draws, max(lot, _FEWEST_KEPT)):
+            part = theta[:, machines]
+            size = _room(n, part.shape[1] if reference else 0)
+            _count_all(G, part, width, tolerance, found, size, kernels, pool)
+            if reference:
+                _find_worst(size, part.shape[1], worst, found.worst, kernels, pool)
+    return found
+
+
+def _room(n: int, draws: int) -> Sizes:
+    return np.empty((-(-draws // MACHINES_A_BLOCK), n, MACHINES_A_BLOCK), dtype=np.float32)
+
+
+def _count_all(
+    G: Array,
+    theta: Array,
+    width: Array,
+    tolerance: float,
+    found: Lengths,
+    size: Sizes,
+    kernels: Kernels,
+    pool: ThreadPoolExecutor,
+) -> None:
+    """Add some machines at all poses to what was found, and keep their lengths if there is room."""
+    lots = [
+        (np.ascontiguousarray(theta[:, lot]), slice(lot.start // 64, -(-lot.stop // 64)))
+        for lot in blocks(theta.shape[1], _DRAWS_A_BLOCK)
+    ]
 
     def work(rows: slice) -> None:
         columns = G[rows].reshape(-1, G.shape[2])
         mine = found.histogram[rows]
         sums = np.stack([found.sum[rows], found.squares[rows], found.above[rows]])
-        for lot in lots:
+        for lot, kept in lots:
             d = (columns @ lot).reshape(-1, 3, lot.shape[1])
-            kernel(d, width[rows], limit[rows], np.empty(lot.shape[1]), sums, mine)
+            line, index = np.empty(d.shape[2], np.float32), np.empty(d.shape[2], np.uint16)
+            kernels.tally(d, width[rows], tolerance, line, index, sums, mine, size[kept, rows])
         found.sum[rows], found.squares[rows], found.above[rows] = sums
 
-    with one_blas_thread(), ThreadPoolExecutor(threads or cpu_count() or 1) as pool:
-        for done in pool.map(work, blocks(n, _POSES_A_BLOCK)):
-            assert done is None
-    return found
+    for done in pool.map(work, blocks(len(G), _POSES_A_BLOCK)):
+        assert done is None
+
+
+def _find_worst(
+    size: Sizes,
+    draws: int,
+    worst: tuple[int, int],
+    into: NDArray[np.int64],
+    kernels: Kernels,
+    pool: ThreadPoolExecutor,
+) -> None:
+    """Add the machines for which each pose is among the worst."""
+
+    def work(block: int) -> NDArray[np.int64]:
+        mine = np.zeros(size.shape[1], dtype=np.int64)
+        kernels.worst(size[block][:, : draws - block * MACHINES_A_BLOCK], *worst, mine)
+        return mine
+
+    for mine in pool.map(work, range(len(size))):
+        into += mine
 
 
 def _count(
-    d: Array, width: Array, limit: Array, room: Array, sums: Array, histogram: NDArray[np.int32]
+    d: Array,
+    width: Array,
+    limit: float,
+    line: NDArray[np.float32],
+    index: NDArray[np.uint16],
+    sums: Array,
+    histogram: NDArray[Any],
+    size: Sizes,
 ) -> None:
     """Count a block in numpy: d (n, 3, s); sums (3, n) and histogram (n, BINS) are added to."""
-    size = np.sqrt(np.einsum("nis,nis->ns", d, d))
-    sums[0] += size.sum(axis=1)
-    sums[1] += np.einsum("ns,ns->n", size, size)
-    sums[2] += (size > limit[:, None]).sum(axis=1)
-    size *= (1.0 / width)[:, None]
-    index = np.minimum(size, BINS - 1, out=size).astype(np.int64)
-    index += BINS * np.arange(len(index))[:, None]
-    counted = np.bincount(index.ravel(), minlength=histogram.size)
-    histogram += counted.reshape(histogram.shape).astype(np.int32)
+    length = np.sqrt(np.einsum("nis,nis->ns", d, d))
+    sums[0] += length.sum(axis=1)
+    sums[1] += np.einsum("ns,ns->n", length, length)
+    sums[2] += (length > limit).sum(axis=1)
+    for b, lot in zip(range(len(size)), blocks(d.shape[2], MACHINES_A_BLOCK), strict=False):
+        size[b, :, : lot.stop - lot.start] = length[:, lot]
+    length *= (1.0 / width)[:, None]
+    bins = np.minimum(length, BINS - 1, out=length).astype(np.int64)
+    bins += BINS * np.arange(len(bins))[:, None]
+    counted = np.bincount(bins.ravel(), minlength=histogram.size)
+    histogram += counted.reshape(histogram.shape).astype(histogram.dtype)
 
 
-@lru_cache(maxsize=1)
-def compiled_kernel() -> Kernel | None:
-    """The same compiled, or None without numba."""
-    try:
-        from numba import njit
-    except ImportError:
-        return None
-
-    def count(d, width, limit, room, sums, histogram):  # type: ignore[no-untyped-def]
-        draws = d.shape[2]
-        for n in range(d.shape[0]):
-            x, y, z, per_bin = d[n, 0], d[n, 1], d[n, 2], 1.0 / width[n]
-            total, square = 0.0, 0.0
-            for s in range(draws):
-                q = x[s] * x[s] + y[s] * y[s] + z[s] * z[s]
-                square += q
-                size = np.sqrt(q)
-                total += size
-                room[s] = size
-            above, tolerance, row = 0, limit[n], histogram[n]
-            for s in range(draws):
-                above += room[s] > tolerance
-                row[int(min(room[s] * per_bin, BINS - 1.0))] += 1
-            sums[0, n] += total
-            sums[1, n] += square
-            sums[2, n] += above
-
-    kernel: Kernel = njit(nogil=True, fastmath={"reassoc", "contract", "nsz"})(count)
-    return kernel
+def _worst(size: Sizes, reference: int, allowed: int, worst: NDArray[np.int64]) -> None:
+    """The worst poses of some machines in numpy, size (n, m)."""
+    by_machine = np.ascontiguousarray(size.T)
+    place = reference - allowed
+    limit = np.partition(by_machine[:, :reference], place, axis=1)[:, place]
+    worst += (by_machine >= limit[:, None]).sum(axis=0)
 
 
-def one_blas_thread() -> AbstractContextManager[object]:
-    """One thread for every product of matrices within, where threadpoolctl can see to it."""
-    try:
-        from threadpoolctl import threadpool_limits
-    except ImportError:
-        return nullcontext()
-    limits: AbstractContextManager[object] = threadpool_limits(1, user_api="blas")
-    return limits
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """One thread for every product of matrices within."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1, user_api="blas"):
+        yield

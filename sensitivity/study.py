@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from sensitivity.blocks import Progress, silent
+from sensitivity.exact import ExactCheck, exact_check
 from sensitivity.indices import covariance, rms, variance_shares
 from sensitivity.jacobian import sensitivity
-from sensitivity.montecarlo import ExactCheck, Volumetric, exact_check, volumetric
+from sensitivity.montecarlo import Volumetric, volumetric
 from sensitivity.normal_length import NormalLength, normal_length
 from sensitivity.sampling import Population
 from sensitivity.workspace import Workspace, latin_hypercube, section
