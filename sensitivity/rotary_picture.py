@@ -30,6 +30,7 @@ _VALUES = 61  # of each rotary reading
 _SHOWN = 4  # maps in a row
 _STILL = 0.02  # relative range of S below which its map would be one colour
 _ALIKE = 0.98  # correlation of two maps of S that show the same
+_SLACK = 1e-9  # mm
 _BEYOND = "#e3e3e3"
 
 
@@ -96,9 +97,9 @@ def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
         q = inverse_linear(chain, np.repeat(target, len(q), axis=0), q, workspace.length)
         reached = np.ones(len(q), dtype=bool)
         for name in linear:
-            low, high = chain.link(name).range
-            reading = q[:, chain.axis_index(name)]
-            reached &= (reading >= low - 1e-9) & (reading <= high + 1e-9)
+            first, last = chain.link(name).range
+            follows = q[:, chain.axis_index(name)]
+            reached &= (follows >= first - _SLACK) & (follows <= last + _SLACK)
         out.append(PointOverRotary(", ".join(words), tuple(turning), each, q, reached))
     return tuple(out)
 
@@ -116,9 +117,9 @@ def draw_rotary(study: Study) -> Figure:
     symbols = _moving(study, points[-1])
     drawn = figure(2.75 * _SHOWN + 0.5, 2.6 * (1 + bool(symbols)))
     grid = drawn.subplots(1 + bool(symbols), _SHOWN, squeeze=False)
-    low, high = min(np.nanmin(v) for v in p95), max(np.nanmax(v) for v in p95)
+    span = (min(np.nanmin(v) for v in p95), max(np.nanmax(v) for v in p95))
     for axes, point, values in zip(grid[0], points, p95, strict=True):
-        mesh = _map(axes, study, point, values, (low, high))
+        mesh = _map(axes, study, point, values, span)
         axes.set_title(f"point at {point.words}", fontsize=9)
     if mesh is not None:
         bar = drawn.colorbar(mesh, ax=grid[0], pad=0.01)

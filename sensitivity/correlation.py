@@ -1,0 +1,120 @@
+"""Which parameters the touches tie together: correlations after the fit, groups and pairs in words.
+
+Two parameters whose estimates rise and fall together (r near +1) are known by their difference;
+where one falls as the other rises (r near -1) by their sum; difference and sum of both in units of
+their spread. In either case the touches do not say which of the two it is.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.errors import ShapeMismatch
+from twin.frames import Array
+
+STRONG = 0.9
+"""Absolute correlation from which two parameters are called tied."""
+
+_FULL = 0.9995  # rounds to 1.000
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two parameters that are tied.
+
+    Attributes:
+        first: Index of one.
+        second: Index of the other.
+        r: Their correlation.
+        words: What that means.
+    """
+
+    first: int
+    second: int
+    r: float
+    words: str
+
+
+@dataclass(frozen=True, eq=False)
+class Ties:
+    """Parameters that touches tie together.
+
+    Attributes:
+        names: Of all parameters.
+        r: Correlations of all of them, (P, P).
+        pairs: Tied ones, the strongest first.
+        groups: Indices of parameters joined by ties, the largest group first, each in an order in
+            which neighbours are alike.
+    """
+
+    names: tuple[str, ...]
+    r: Array
+    pairs: tuple[Pair, ...]
+    groups: tuple[tuple[int, ...], ...]
+
+
+def correlation(covariance: Array) -> Array:
+    """Correlations from covariances, (P, P); a parameter without variance has none with others."""
+    sd = np.sqrt(np.diag(covariance))
+    scale = np.where(sd > 0.0, sd, 1.0)
+    r: Array = np.clip(covariance / np.outer(scale, scale), -1.0, 1.0)
+    np.fill_diagonal(r, 1.0)
+    return r
+
+
+def ties(covariance: Array, names: Sequence[str], strong: float = STRONG) -> Ties:
+    """Parameters that are tied after a fit.
+
+    Args:
+        covariance: Of the parameters after the touches, (P, P).
+        names: Of the parameters, P.
+        strong: Absolute correlation from which a pair counts, between 0 and 1.
+
+    Raises:
+        ShapeMismatch: Names and covariance do not go together.
+    """
+    if covariance.shape != (len(names), len(names)):
+        raise ShapeMismatch(f"covariance of shape {covariance.shape} for {len(names)} names")
+    r = correlation(covariance)
+    rows, columns = np.nonzero(np.triu(np.abs(r) >= strong, 1))
+    order = np.argsort(-np.abs(r[rows, columns]), kind="stable")
+    pairs = tuple(_pair(int(rows[k]), int(columns[k]), r, names) for k in order)
+    return Ties(tuple(names), r, pairs, _groups(pairs, r))
+
+
+def _pair(i: int, j: int, r: Array, names: Sequence[str]) -> Pair:
+    value = float(r[i, j])
+    known, sign = ("difference", ">") if value > 0.0 else ("sum", "<")
+    # nothing is known to be tied for good: a full one is never shown
+    number = f"r = {value:+.3f}" if abs(value) < _FULL else f"r {sign} {np.sign(value) * 0.999:.3f}"
+    words = f"{names[i]} and {names[j]} ({number}): only their {known} is known"
+    return Pair(i, j, value, words)
+
+
+def _groups(pairs: Sequence[Pair], r: Array) -> tuple[tuple[int, ...], ...]:
+    """Parameters joined by ties, directly or through others."""
+    root: dict[int, int] = {}
+
+    def find(k: int) -> int:
+        while root.setdefault(k, k) != k:
+            k = root[k]
+        return k
+
+    for pair in pairs:
+        root[find(pair.first)] = find(pair.second)
+    members: dict[int, list[int]] = {}
+    for k in sorted(root):
+        members.setdefault(find(k), []).append(k)
+    ordered = (tuple(_alike_beside_alike(group, r)) for group in members.values())
+    return tuple(sorted(ordered, key=lambda group: (-len(group), group)))
+
+
+def _alike_beside_alike(group: list[int], r: Array) -> list[int]:
+    """Start with the parameter of the strongest ties, then always the one nearest to the last."""
+    left = list(group)
+    strength = np.abs(r[np.ix_(group, group)]).sum(axis=1)
+    out = [left.pop(int(np.argmax(strength)))]
+    while left:
+        out.append(left.pop(int(np.argmax(np.abs(r[out[-1], left])))))
+    return out

@@ -1,0 +1,106 @@
+"""Error left against the number of touches: the comparison's own figures, and nothing rises."""
+
+import numpy as np
+import pytest
+
+from artefact.clearance import ProbeShape
+from artefact.criterion import criterion, random_touches
+from artefact.sites import Frame
+from artefact.touch_curve import TouchCurve, touch_curve
+from artefact.touch_curve_picture import draw_touch_curves
+from artefact.touchable import Probing
+from sensitivity.information import Posterior
+from sensitivity.sampling import Population
+from sensitivity.workspace import Workspace
+from twin.chain import Axis, make_chain
+from twin.errors import DesignError
+from twin.touches import Setup
+from twin.units import DEG, UM
+
+PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
+MILL = make_chain(
+    "mill",
+    "[w C' X' f Y Z t]",
+    {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"} | {"C": Axis((-200.0 * DEG, 200.0 * DEG))},
+    (0.0, 0.0, -400.0),
+)
+ALGEBRA = 1e-6  # relative: trace of a form against the sum over poses
+
+
+@pytest.fixture(scope="module")
+def aim():
+    area = Workspace(
+        MILL, {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}, 160.0
+    )
+    probing = Probing(MILL, Setup("a"), PROBE, 160.0)
+    model = Population(MILL).model
+    return criterion(probing, model, Frame(), area, 1.0 * UM, np.random.default_rng(4))
+
+
+@pytest.fixture(scope="module")
+def touches(aim):
+    rng = np.random.default_rng(9)
+    return random_touches(aim.probing, aim.volume, aim.rotary, 120, rng)
+
+
+def left(aim, W):
+    """Root mean square of what stays unknown at the poses, from the covariance itself."""
+    after = Posterior(W, aim.prior_sd, aim.model.names)
+    return [
+        np.sqrt(np.mean(after.predicted_sd(tip) ** 2)) for tip in (aim.tip_volume, aim.tip_user)
+    ]
+
+
+def test_all_touches_leave_what_the_comparison_says(aim, touches):
+    curve = touch_curve(aim, "scatter", touches, (60, 240))
+    assert curve.counts == (60, 120, 240)
+    np.testing.assert_allclose(curve.at_design, left(aim, aim.whitened(touches)), rtol=ALGEBRA)
+
+
+def test_twice_the_touches_are_half_the_variance_of_the_noise(aim, touches):
+    curve = touch_curve(aim, "scatter", touches, (240,))
+    expected = left(aim, np.sqrt(2.0) * aim.whitened(touches))
+    np.testing.assert_allclose([curve.rms[-1], curve.rms_user[-1]], expected, rtol=ALGEBRA)
+
+
+def test_more_touches_never_leave_more(aim, touches):
+    curve = touch_curve(aim, "scatter", touches)
+    assert curve.counts == (50, 70, 100, 120, 140, 200, 300, 400, 550, 750, 1000)
+    assert np.all(np.diff(curve.rms**2 + curve.rms_user**2) < 0.0)
+    # many touches: noise alone is left of what can be seen, so it goes with the square root at best
+    assert curve.rms[-1] > 0.99 * curve.rms[-2] * np.sqrt(750 / 1000)
+
+
+def test_the_first_touches_are_the_good_ones(aim, touches):
+    curve = touch_curve(aim, "scatter", touches, (60,))
+    rng = np.random.default_rng(1)
+    by_chance = [
+        np.hypot(*left(aim, aim.whitened(touches[rng.permutation(120)[:60]]))) for _ in range(5)
+    ]
+    assert np.hypot(curve.rms[0], curve.rms_user[0]) < min(by_chance)
+
+
+def test_no_touches_are_refused(aim, touches):
+    with pytest.raises(DesignError, match="0 touches"):
+        touch_curve(aim, "nothing", touches[:0])
+    with pytest.raises(DesignError, match="expected some"):
+        touch_curve(aim, "scatter", touches, (0, 10))
+
+
+def test_the_picture_holds_the_curves_and_marks_the_design():
+    counts = (50, 480, 1000)
+    standard = TouchCurve("standard", 480, counts, np.array([7, 0.8, 0.5]) * UM, np.ones(3) * UM)
+    ideal = TouchCurve("ideal scatter", 480, counts, np.array([6, 0.6, 0.4]) * UM, np.ones(3) * UM)
+    drawn = draw_touch_curves([standard, ideal], 1.0 * UM)
+    volume, user = drawn.axes
+    line = volume.lines[0]
+    np.testing.assert_allclose(line.get_ydata(), [7.0, 0.8, 0.5])
+    assert tuple(line.get_xdata()) == counts
+    assert line.get_markevery() == [1]
+    assert [ln.get_linestyle() for ln in volume.lines] == ["-", "--"]
+    assert volume.get_xscale() == volume.get_yscale() == "log"
+    assert volume.get_xlabel() == "touches of 1 µm noise"
+    assert volume.get_ylabel() == "tool point not predicted / µm rms"
+    titles = [a.get_title(loc="left") for a in (volume, user)]
+    assert titles == ["probed volume", "your workspace"]
+    assert [t.get_text() for t in drawn.legends[0].get_texts()] == ["standard", "ideal scatter"]
