@@ -2,10 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sensitivity.dependence import Dependence, amplitude, score_factor
+from sensitivity.distributions import Distributions, Mix
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.effects.geometric import ComponentError
@@ -14,38 +17,13 @@ from twin.errors import DesignError
 from twin.frames import Array
 from twin.model import Model
 from twin.ranges import Ranges
-from twin.shapes import SHAPES, ShapeName
+from twin.shapes import ShapeName
 from twin.symbols import Family, Symbol
 
 DRAWS_A_CHILD = 512
 """Machines drawn from one child of a generator: fixed, so that blocks do not change the draws."""
 
 _QUARTER = 0.5 * np.pi
-
-
-@dataclass(frozen=True)
-class Distributions:
-    """What the errors of random machines look like over the readings of their axes.
-
-    Attributes:
-        shapes: Drawn with equal chance for every component error of a linear axis.
-        rotary_shapes: The same for a rotary axis, whose errors repeat every turn.
-        periods: Numbers of periods of a sinusoidal error, drawn with equal chance; over the range
-            of a linear axis, over a turn of a rotary one.
-    """
-
-    shapes: tuple[ShapeName, ...] = ("linear", "parabolic", "sinusoidal")
-    rotary_shapes: tuple[ShapeName, ...] = ("sinusoidal",)
-    periods: tuple[int, ...] = (1,)
-
-    def __post_init__(self) -> None:
-        for shapes in (self.shapes, self.rotary_shapes):
-            if not shapes or any(s not in SHAPES for s in shapes):
-                raise DesignError(
-                    f"shapes {list(shapes)}: expected at least one of {', '.join(SHAPES)}"
-                )
-        if not self.periods or min(self.periods) < 1:
-            raise DesignError(f"periods {list(self.periods)}: expected whole numbers from 1 up")
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,24 +34,63 @@ class Population:
         chain: The machine.
         ranges: Smallest and largest peak amplitude of every error.
         distributions: Shapes over the readings.
+        dependence: Which errors depend on each other; None for independent ones.
+
+    Raises:
+        UnknownSymbol: A name that the machine does not have.
+        DesignError: Shapes of a constant, correlations that the ranges do not allow, or errors with
+            shapes in common that have different ones to draw from.
     """
 
     chain: Chain
     ranges: Ranges = field(default_factory=Ranges)
     distributions: Distributions = field(default_factory=Distributions)
+    dependence: Dependence | None = None
+
+    def __post_init__(self) -> None:
+        self.distributions.check(self.chain)
+        if self.dependence is None:
+            return
+        for name in self.dependence.names:
+            self.chain.symbol(name)
+        for group in self.dependence.alike:
+            mixes = {self.mix_of(self.chain.symbol(name)) for name in group}
+            if len(mixes) > 1:
+                raise DesignError(
+                    f"group of {', '.join(group)}: expected the same shapes to draw from, found "
+                    + " and ".join(", ".join(mix.shapes) for mix in sorted(mixes, key=str))
+                )
+        assert self.score_factor is not None
+
+    @cached_property
+    def score_factor(self) -> Array | None:
+        """Factor of the normal scores of dependent amplitudes, (n, n); None if there are none."""
+        if self.dependence is None:
+            return None
+        return score_factor(self.dependence, *self.limits[:, self.dependent])
+
+    @cached_property
+    def dependent(self) -> list[int]:
+        """Places of the dependent errors among the symbols of the chain."""
+        names = [symbol.name for symbol in self.chain.symbols]
+        return [names.index(name) for name in self.dependence.names] if self.dependence else []
+
+    @cached_property
+    def limits(self) -> Array:
+        """Smallest and largest amplitude of every error, (2, P)."""
+        return np.array([self.ranges.of(self.chain, s) for s in self.chain.symbols]).T
+
+    @cached_property
+    def _mixes(self) -> dict[Symbol, Mix]:
+        return {s: self.distributions.of(self.chain, s) for s in self.chain.symbols}
+
+    def mix_of(self, symbol: Symbol) -> Mix:
+        """Shapes that an error may have."""
+        return self._mixes[symbol]
 
     def shapes_of(self, symbol: Symbol) -> tuple[ShapeName, ...]:
-        """Distributions that an error may have.
-
-        Location and set-up errors are constants, and so are the errors of a spindle that stays at
-        one angle.
-        """
-        link = self.chain.link(symbol.link)
-        if symbol.family is not Family.COMPONENT or not link.programmed:
-            return ("constant",)
-        if link.kind == "rotary":
-            return self.distributions.rotary_shapes
-        return self.distributions.shapes
+        """Names of the shapes that an error may have."""
+        return self.mix_of(symbol).shapes
 
     @property
     def model(self) -> Model:
@@ -88,11 +105,12 @@ class Population:
             if symbol.family is not Family.COMPONENT:
                 effects.append(LocationError(symbol, sd))
                 continue
-            for shape in self.shapes_of(symbol):
+            mix = self.mix_of(symbol)
+            for shape in mix.shapes:
                 if shape != "sinusoidal":
                     effects.append(ComponentError(symbol, shape, sd=sd))
                     continue
-                for n in self.distributions.periods:
+                for n in mix.periods:
                     effects.append(ComponentError(symbol, shape, float(n), 0.0, sd))
                     effects.append(ComponentError(symbol, shape, float(n), _QUARTER, sd))
         return Model(self.chain, tuple(effects))
@@ -119,24 +137,47 @@ class Draws:
 
 
 def draw(population: Population, count: int, rng: np.random.Generator) -> Draws:
-    """Machines with independent errors: amplitude even over its range, random sign, shape, phase.
+    """Machines with random errors: amplitude even over its range, random sign, shape and phase.
+
+    Errors are independent of each other where `Population.dependence` does not say otherwise.
 
     Args:
         population: What to draw from.
         count: S.
         rng: Source of the random numbers.
     """
-    chain = population.chain
-    symbols = chain.symbols
-    low, high = np.array([population.ranges.of(chain, s) for s in symbols]).T
+    symbols = population.chain.symbols
+    mixes = [population.mix_of(s) for s in symbols]
+    low, high = population.limits
     size = (count, len(symbols))
     sign = rng.choice([-1.0, 1.0], size=size)
-    return Draws(
+    draws = Draws(
         amplitude=sign * rng.uniform(low, high, size=size),
-        shape=rng.integers([len(population.shapes_of(s)) for s in symbols], size=size),
-        periods=rng.choice(np.array(population.distributions.periods), size=size),
+        shape=rng.integers([len(mix.shapes) for mix in mixes], size=size),
+        periods=rng.integers([len(mix.periods) for mix in mixes], size=size),
         phase=rng.uniform(0.0, 2.0 * np.pi, size=size),
     )
+    for p, mix in enumerate(mixes):
+        draws.periods[:, p] = np.array(mix.periods)[draws.periods[:, p]]
+        if mix.weights:
+            draws.shape[:, p] = rng.choice(len(mix.shapes), count, p=mix.chances)
+    _depend(population, draws, rng)
+    return draws
+
+
+def _depend(population: Population, draws: Draws, rng: np.random.Generator) -> None:
+    """Replace amplitudes and shapes of dependent errors."""
+    factor, dependence = population.score_factor, population.dependence
+    if factor is None or dependence is None:
+        return
+    some = population.dependent
+    z = rng.standard_normal((len(draws), len(some))) @ factor.T
+    draws.amplitude[:, some] = amplitude(z, *population.limits[:, some])
+    place = dict(zip(dependence.names, some, strict=True))
+    for first, *others in dependence.alike:
+        for name in others:
+            for each in (draws.shape, draws.periods, draws.phase):
+                each[:, place[name]] = each[:, place[first]]
 
 
 def drawn_in_chunks(
@@ -153,12 +194,13 @@ def coefficients(population: Population, draws: Draws) -> Array:
     columns = []
     for p, symbol in enumerate(population.chain.symbols):
         a, phase = draws.amplitude[:, p], draws.phase[:, p]
-        for i, shape in enumerate(population.shapes_of(symbol)):
+        mix = population.mix_of(symbol)
+        for i, shape in enumerate(mix.shapes):
             has = np.where(draws.shape[:, p] == i, a, 0.0)
             if shape != "sinusoidal":
                 columns.append(has)
                 continue
-            for n in population.distributions.periods:
+            for n in mix.periods:
                 wave = np.where(draws.periods[:, p] == n, has, 0.0)
                 columns += [wave * np.cos(phase), wave * np.sin(phase)]
     return np.stack(columns, axis=1)

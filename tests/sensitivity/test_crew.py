@@ -154,7 +154,9 @@ def test_something_else_is_no_crew():
 
 def test_a_scheduler_that_does_not_answer_is_one_line():
     with (
-        pytest.raises(DesignError, match=r"scheduler tcp://127\.0\.0\.1:1: no answer within 0\.5 s"),
+        pytest.raises(
+            DesignError, match=r"scheduler tcp://127\.0\.0\.1:1: no answer within 0\.5 s"
+        ),
         cluster("tcp://127.0.0.1:1", answer=0.5),
     ):
         pytest.fail("nobody is there")

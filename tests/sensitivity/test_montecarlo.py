@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from sensitivity.distributions import Distributions
 from sensitivity.exact import exact_check
 from sensitivity.indices import covariance, rms, variance_shares
 from sensitivity.montecarlo import volumetric
-from sensitivity.sampling import Distributions, Population, coefficients, drawn_in_chunks
+from sensitivity.sampling import Population, coefficients, drawn_in_chunks
 from sensitivity.workspace import latin_hypercube
 from twin.errors import DesignError
 from twin.ranges import DEFAULT_RANGES, Ranges

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from sensitivity.distributions import Distributions, Mix
 from sensitivity.sampling import (
     DRAWS_A_CHILD,
-    Distributions,
     Population,
     coefficients,
     draw,
@@ -109,3 +109,41 @@ def test_distributions_that_cannot_be_drawn_are_refused():
         Distributions(shapes=("cubic",))
     with pytest.raises(DesignError, match="periods"):
         Distributions(periods=(0,))
+
+
+def test_mixes_by_name_and_class_have_their_chances(chain):
+    mixes = Distributions(
+        by_class={"rotary_rotation": Mix(("linear", "sinusoidal"), (2, 5), (1.0, 3.0))},
+        by_name={"EXX": Mix(("parabolic",)), "EBB": Mix(("constant",))},
+    )
+    population = Population(chain, distributions=mixes)
+    assert population.shapes_of(chain.symbol("EXX")) == ("parabolic",)
+    assert population.shapes_of(chain.symbol("EYX")) == ("linear", "parabolic", "sinusoidal")
+    assert population.shapes_of(chain.symbol("EBB")) == ("constant",)
+    draws = draw(population, 8000, np.random.default_rng(3))
+    p = next(p for p, s in enumerate(chain.symbols) if s.name == "EAC")
+    # standard errors of a share over 8000 draws: 0.006 and less
+    assert np.mean(draws.shape[:, p] == 1) == pytest.approx(0.75, abs=0.02)
+    assert set(draws.periods[:, p]) == {2, 5}
+    assert np.mean(draws.periods[:, p] == 2) == pytest.approx(0.5, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (lambda: Mix(("linear",), weights=(1.0, 2.0)), "weights"),
+        (lambda: Mix(("linear", "parabolic"), weights=(0.0, 0.0)), "not all zero"),
+        (lambda: Mix(("linear", "linear")), "each once"),
+        (lambda: Mix(("sinusoidal",), periods=(1, 1)), "each once"),
+        (lambda: Distributions(by_class={"squareness": Mix(("linear",))}), "squareness"),
+    ],
+)
+def test_mixes_that_mean_nothing_are_refused(wrong, words):
+    with pytest.raises(DesignError, match=words):
+        wrong()
+
+
+def test_shapes_of_a_constant_are_refused(chain):
+    for name, words in (("EC0Y", "it is a constant"), ("EQX", "unknown error parameter")):
+        with pytest.raises(DesignError, match=words):
+            Population(chain, distributions=Distributions(by_name={name: Mix(("linear",))}))

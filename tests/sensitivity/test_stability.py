@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from sensitivity.distributions import Distributions
 from sensitivity.montecarlo import volumetric
-from sensitivity.sampling import Distributions, Population
+from sensitivity.sampling import Population
 from sensitivity.stability import Stabiliser, Stability, numerical_tolerance
 from twin.errors import DesignError
 from twin.ranges import DEFAULT_RANGES, Ranges
