@@ -151,7 +151,7 @@ def chosen_touches(
     """Touches chosen greedily and mended by exchange, with no quota but that of the poses."""
     count = min(options.touches, len(tried))
     quotas = (pose_quota(tried, options.touches),)
-    selection = Selection(what_for, what_for.rows(aim.whitened(tried)))
+    selection = Selection(what_for, aim.rows(tried))
     fill(selection, count, quotas)
     exchange(selection, quotas, most=count // 4)
     return tried[selection.chosen]

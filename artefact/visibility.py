@@ -10,18 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.criterion import Criterion
+from artefact.potential import VISIBLE, freed, library, parts
 from artefact.touchable import Requests
-from twin.effect import Effect, Tunable
+from twin.effect import Effect
 from twin.frames import Array
-from twin.library import proposals
 from twin.model import columns
-from twin.touches import Touches
 
-VISIBLE = 0.3
-"""Share of the length of a signature that must survive."""
-
-_OF_FEATURES = ("artefact-form",)  # belong to one feature of one artefact: nothing to compare
-_DEPENDENT = 1e-8  # relative singular value below which a direction is rounding
+__all__ = ["VISIBLE", "Visibility", "survival", "visibility"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +33,11 @@ class Visibility:
 
     def shown(self, aim: Criterion, chosen: Requests) -> int:
         """How many of the effects some touches show."""
-        return int(np.sum(survival(aim, list(self.effects), chosen) > VISIBLE))
+        return int(np.sum(self.survival_in(aim, chosen) > VISIBLE))
+
+    def survival_in(self, aim: Criterion, chosen: Requests) -> Array:
+        """Share of the length of every effect's signature that survives in some touches, (E,)."""
+        return survival(aim, list(self.effects), chosen)
 
 
 def visibility(aim: Criterion, free: Requests) -> Visibility:
@@ -49,23 +48,12 @@ def visibility(aim: Criterion, free: Requests) -> Visibility:
         free: As many random points and normals as an artefact has touches, or more.
     """
     touches = aim.probing.touches(free)
-    tried = [
-        _tuned(effect, touches)
-        for effect in proposals(touches)
-        if effect.name.split("(")[0] not in _OF_FEATURES
-    ]
+    tried = library(touches)
     left = survival(aim, tried, free)
     return Visibility(
         tuple(e for e, s in zip(tried, left, strict=True) if s > VISIBLE),
         tuple(e for e, s in zip(tried, left, strict=True) if s <= VISIBLE),
     )
-
-
-def _tuned(effect: Effect, touches: Touches) -> Effect:
-    """An effect with its inner parameters in the middle of their grids."""
-    if not isinstance(effect, Tunable):
-        return effect
-    return effect.tuned(*(inner.grid[len(inner.grid) // 2] for inner in effect.inner(touches)))
 
 
 def survival(aim: Criterion, effects: list[Effect], chosen: Requests) -> Array:
@@ -82,15 +70,10 @@ def survival(aim: Criterion, effects: list[Effect], chosen: Requests) -> Array:
     """
     touches = aim.probing.touches(chosen)
     C = columns(effects, touches)
-    W = aim.whitened(chosen)
-    U, s, _ = np.linalg.svd(W / np.maximum(np.linalg.norm(W, axis=0), 1e-300), full_matrices=False)
-    U = U[:, s > _DEPENDENT * s[0]]
-    left = C - U @ (U.T @ C)
-    out, start = np.zeros(len(effects)), 0
-    for i, effect in enumerate(effects):
-        mine = slice(start, start + len(effect.parameters))
+    left = freed(C, aim.whitened(chosen))
+    out = np.zeros(len(effects))
+    for i, mine in enumerate(parts(effects)):
         whole = float(np.sum(C[:, mine] ** 2))
         if whole > 0.0:
             out[i] = np.sqrt(np.sum(left[:, mine] ** 2) / whole)
-        start = mine.stop
     return out

@@ -271,3 +271,11 @@ def with_potential(aim: Purpose, count: int, worth: float) -> Purpose:
         priors[:, :R, :R] = aim.priors
         priors[:, R:, R:] = np.eye(count)
     return replace(aim, K=K, roots=roots, priors=priors)
+
+
+def without_potential(aim: Purpose) -> Purpose:
+    """The same purpose over the primary terms alone."""
+    R = aim.directions.shape[1]
+    roots = None if aim.roots is None else aim.roots[:, :R]
+    priors = None if aim.priors is None else aim.priors[:, :R, :R]
+    return replace(aim, K=aim.K[:R, :R], roots=roots, priors=priors)
