@@ -38,6 +38,7 @@ class Rival:
         estimable: Combinations of parameters that are determined (effective degrees of freedom).
         visible: Effects of the library, of those that any touches could show, that these show.
         could_be_visible: Number of effects that any touches could show.
+        touches: What it is judged by.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Rival:
     estimable: float
     visible: int
     could_be_visible: int
+    touches: Requests
 
 
 def judged(
@@ -77,6 +79,7 @@ def judged(
         estimable=after.degrees_of_freedom,
         visible=library.shown(aim, chosen),
         could_be_visible=len(library.effects),
+        touches=chosen,
     )
 
 
