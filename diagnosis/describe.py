@@ -1,7 +1,8 @@
 """Parameters of fitted effects as a user reads them: names with units, sizes, uncertainties."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,6 +32,13 @@ class Reported:
     factor: float
 
 
+class Settled(NamedTuple):
+    """An inner parameter with its standard uncertainty, base unit."""
+
+    value: float
+    u: float
+
+
 def file_unit(unit: str) -> tuple[str, float]:
     """Suffix of a linear parameter in files, and one of it in the base unit.
 
@@ -57,17 +65,21 @@ def inner_unit(name: str, unit: str) -> tuple[str, float]:
     return {"mm": ("_mm", 1.0), "rad": ("_deg", DEG)}.get(unit, ("", 1.0))
 
 
-def reported(fit: Fit, effect: Effect) -> tuple[Reported, ...]:
+def reported(
+    fit: Fit, effect: Effect, wider: float = 1.0, settled: Mapping[int, Settled] | None = None
+) -> tuple[Reported, ...]:
     """Inner parameters, the size, and every linear parameter of a fitted effect.
 
     Args:
         fit: A fit with the effect, and with the tangents of its inner parameters where their
             uncertainty is wanted.
         effect: As it stands in the fit.
+        wider: Factor on the uncertainties of the fit.
+        settled: Inner parameters that have no tangent, by index.
     """
     place = fit.of_effect(effect.name)
-    theta, covariance = fit.theta[place], fit.covariance[place, place]
-    out = list(_inner(fit, effect))
+    theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
+    out = list(_inner(fit, effect, wider, settled or {}))
     if len(theta) > 1:
         out.append(size(effect, theta, covariance))
     for i, parameter in enumerate(effect.parameters):
@@ -93,13 +105,15 @@ def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
     return Reported(f"amplitude_{suffix}", length / factor, u / factor, factor)
 
 
-def _inner(fit: Fit, effect: Effect) -> Sequence[Reported]:
+def _inner(
+    fit: Fit, effect: Effect, wider: float, settled: Mapping[int, Settled]
+) -> Sequence[Reported]:
     """Inner parameters with the uncertainty that their tangents give."""
     if not isinstance(effect, Tunable):
         return []
     described = {p.name: p.unit for p in effect.inner(fit.run.touches)}
     u = {
-        tangent.index: float(np.sqrt(np.diag(fit.covariance[place, place])[0]))
+        tangent.index: float(np.sqrt(fit.covariance[place, place][0, 0])) * wider
         for tangent in fit.tangents
         if tangent.effect.name == effect.name
         for place in [fit.of_effect(tangent.name)]
@@ -107,6 +121,10 @@ def _inner(fit: Fit, effect: Effect) -> Sequence[Reported]:
     out = []
     for i, (name, value) in enumerate(effect.tuning.items()):
         suffix, factor = inner_unit(name, described.get(name, "1"))
-        own = u[i] / factor if i in u else None
-        out.append(Reported(f"{name}{suffix}", value / factor, own, factor))
+        value, own = settled.get(i, (value, u.get(i)))
+        out.append(
+            Reported(
+                f"{name}{suffix}", value / factor, None if own is None else own / factor, factor
+            )
+        )
     return out

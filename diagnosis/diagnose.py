@@ -11,7 +11,6 @@ from diagnosis.candidates import (
     projected,
     quiet,
 )
-from diagnosis.describe import reported
 from diagnosis.detectable import detectable
 from diagnosis.evidence import EffectSet
 from diagnosis.fit import Fit
@@ -22,6 +21,7 @@ from diagnosis.regions import regions
 from diagnosis.remarks import remarks
 from diagnosis.rounds import Round, Task, rounds, strongest, tuned
 from diagnosis.selection import LISTED, Search, Verified
+from diagnosis.sizes import sizes
 from diagnosis.structure import Structure, find_structure
 from diagnosis.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from twin.effect import Effect
@@ -61,7 +61,7 @@ def diagnose(
         ``diagnose(read_run("run.csv")).verdict`` is one of three phrases.
     """
     start = model or ordinary_model(run.touches.chain)
-    task = Task(run, start, prior or Prior.of_effects(start.effects))
+    task = Task(run, start, prior or Prior.of_effects(start.effects), prior is not None)
     library = proposals(run.touches) if candidates is None else list(candidates)
     added = tuned(task, named, progress)
     known = {e.name for e in (*start.effects, *(a.effect for a in added))}
@@ -138,13 +138,14 @@ def _steps(
     heads = [classes[i].sized for i in order]
     effects = [*added, *heads]
     last = task.fit(effects, gross, free_inner=True)
+    told = sizes(task, effects, gross, final.library.complement)
     out = [Step(None, task.fit((), gross), 1.0, (), None)]
     for k, sized in enumerate(effects):
         fit = last if k + 1 == len(effects) else task.fit(effects[: k + 1], gross)
         i = order[k - len(added)] if k >= len(added) else -1
         p = p_values[i] if i >= 0 else _named_probability(out[-1].fit, fit)
         confusion = classes[i] if i >= 0 else None
-        out.append(Step(sized.effect, fit, p, reported(last, sized.effect), confusion))
+        out.append(Step(sized.effect, fit, p, told[k], confusion))
     return tuple(out)
 
 
@@ -192,7 +193,7 @@ def _candidates(final: Round) -> tuple[Candidate, ...]:
                 member.effect.kind,
                 search.corrected(member.candidate, float(scores.p[variant])),
                 float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
-                float(np.sqrt(np.mean((effects.held_out.standardised * u) ** 2))),
+                effects.held_out.rms * float(np.sqrt(np.mean(u**2))),
                 float(effects.evidence - nothing.effects.evidence),
             )
         )

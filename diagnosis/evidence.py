@@ -129,11 +129,6 @@ class EffectSet:
         left = self.held_out
         return float(log_evidence(self.complement, left.squared, left.log_det))
 
-    @cached_property
-    def held_out_rms(self) -> float:
-        """Root mean square of the standardised errors of held-out poses, in units of the noise."""
-        return float(np.sqrt(np.mean(self.held_out.standardised**2)))
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reduced:

@@ -148,16 +148,15 @@ class Fit:
     def test_rms(self) -> float:
         """Root mean square error of held-out touches, mm, freed of the prediction's own uncertainty.
 
-        Every error is divided by how much larger than the noise it must be, since the parameters
+        The errors are weighted by how much larger than the noise they must be, since the parameters
         are uncertain where a pose is missing; a right model gives the noise itself. Held out are
-        the rows that the file marks `test`, else one pose after the other.
+        the rows that the file marks `test`, each by itself, else one pose after the other.
         """  # noqa: E501
         if self.test_rows.any():
             spread = (self.solution.spread(self.X[self.test_rows]) ** 2).sum(axis=1)
             error = self.residual[self.test_rows] / np.sqrt(1.0 + spread)
-        else:
-            error = self.held_out.standardised * self.u[self.used]
-        return float(np.sqrt(np.mean(error**2)))
+            return float(np.sqrt(np.mean(error**2)))
+        return self.held_out.rms * float(np.sqrt(np.mean(self.u[self.used] ** 2)))
 
     def of_effect(self, name: str) -> slice:
         """Places of one effect's parameters; raises KeyError."""

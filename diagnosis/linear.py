@@ -96,20 +96,22 @@ class LeftOut:
 
     Attributes:
         error: Observed minus predicted, whitened, (N,); its own noise is 1.
-        inflation: Standard deviation of `error` if the model is right, at least 1, (N,).
         squared: Sum over groups of ``error^T cov^-1 error``, cov that of the prediction error.
         log_det: Sum over groups of ``log det cov``.
     """
 
     error: Array
-    inflation: Array
     squared: float
     log_det: float
 
     @property
-    def standardised(self) -> Array:
-        """Errors over their inflation: as large as the noise where the model is right, (N,)."""
-        return self.error / self.inflation
+    def rms(self) -> float:
+        """Root mean square error, freed of the prediction's own uncertainty: 1 for a right model.
+
+        ``sqrt(squared / N)``, which weights the errors of a group by their covariance and so has
+        the smallest scatter that N errors can have, ``1/sqrt(2 N)``.
+        """
+        return float(np.sqrt(self.squared / max(len(self.error), 1)))
 
 
 def left_out(Q: Array, residual: Array, groups: Sequence[NDArray[np.int64]]) -> LeftOut:
@@ -123,7 +125,7 @@ def left_out(Q: Array, residual: Array, groups: Sequence[NDArray[np.int64]]) -> 
         residual: Residuals of the fit to all rows, (N,).
         groups: Row numbers of every group; together all rows.
     """
-    error, inflation = np.zeros(len(residual)), np.ones(len(residual))
+    error = np.zeros(len(residual))
     squared, log_det = 0.0, 0.0
     for rows in groups:
         part, here = Q[rows], residual[rows]
@@ -131,13 +133,10 @@ def left_out(Q: Array, residual: Array, groups: Sequence[NDArray[np.int64]]) -> 
             L = np.linalg.cholesky(np.eye(len(rows)) - part @ part.T)
             root = solve_triangular(L, np.eye(len(rows)), lower=True, check_finite=False)
             error[rows] = root.T @ (root @ here)
-            variance = (root**2).sum(axis=0)
         else:  # the same by the matrix of the other rows, which is the smaller one
             L = np.linalg.cholesky(np.eye(Q.shape[1]) - part.T @ part)
             root = solve_triangular(L, part.T, lower=True, check_finite=False)
             error[rows] = here + root.T @ (root @ here)
-            variance = 1.0 + (root**2).sum(axis=0)
-        inflation[rows] = np.sqrt(np.maximum(variance, 1.0))
         squared += float(here @ error[rows])
         log_det -= 2.0 * float(np.log(np.diag(L)).sum())
-    return LeftOut(error, inflation, squared, log_det)
+    return LeftOut(error, squared, log_det)

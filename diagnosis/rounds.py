@@ -48,11 +48,19 @@ what is usual, and an estimate shall not be drawn to zero."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Task:
-    """What is diagnosed: a run, the model to begin with, and what is believed of it."""
+    """What is diagnosed: a run, the model to begin with, and what is believed of it.
+
+    Attributes:
+        run: The measurements.
+        model: Machine and effects to begin with.
+        prior: Of its parameters.
+        is_known: Whether the prior is an earlier fit, rather than what is usual.
+    """
 
     run: Run
     model: Model
     prior: Prior
+    is_known: bool = False
 
     def fit(
         self,
@@ -64,13 +72,16 @@ class Task:
         model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
         prior = self.prior
         for sized in effects:
-            usual = Prior.of_effects([sized.effect])
-            prior = prior.joined(usual.widened(FREEDOM * sized.scale))
+            prior = prior.joined(self.found_prior(sized))
         fit = fit_run(self.run, model, prior, gross=gross)
         if not free_inner or not effects:
             return fit
         theta = fit.theta[: len(model.parameters)]
         return fit_run(self.run, model, prior, free_inner=theta, gross=fit.gross)
+
+    def found_prior(self, sized: Sized) -> Prior:
+        """Of the parameters of an effect that was added."""
+        return Prior.of_effects([sized.effect]).widened(FREEDOM * sized.scale)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -222,7 +222,7 @@ class Search:
     def verified(self, others: Chosen, whole: Chosen, member: Member) -> Verified:
         """Tests of one member, given the set without it and the set with it."""
         scores = self.scores(others)
-        ratio = whole.effects.held_out_rms / max(others.effects.held_out_rms, 1e-300)
+        ratio = whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300)
         return Verified(
             member,
             self.corrected(member.candidate, float(scores.p[member.variant])),
