@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sensitivity.dependence import Dependence, amplitude, score_factor
-from sensitivity.distributions import Distributions, Mix
+from sensitivity.distributions import CONSTANT, Distributions, Mix
 from twin.chain import Chain
 from twin.effect import Effect
 from twin.effects.geometric import ComponentError
@@ -18,6 +18,7 @@ from twin.frames import Array
 from twin.model import Model
 from twin.ranges import Ranges
 from twin.shapes import ShapeName
+from twin.shapes import shape as shape_function
 from twin.symbols import Family, Symbol
 
 DRAWS_A_CHILD = 512
@@ -204,6 +205,33 @@ def coefficients(population: Population, draws: Draws) -> Array:
                 wave = np.where(draws.periods[:, p] == n, has, 0.0)
                 columns += [wave * np.cos(phase), wave * np.sin(phase)]
     return np.stack(columns, axis=1)
+
+
+def shape_columns(population: Population, q: Array) -> list[Array]:
+    """What turns the coefficients of each error into its value at every pose, (N, K_p) each.
+
+    The value of error p at a pose is its row here times its part of `coefficients`.
+
+    Args:
+        population: The machines.
+        q: Readings, shape (N, A).
+    """
+    chain, out = population.chain, []
+    for symbol in chain.symbols:
+        mix, link = population.mix_of(symbol), chain.link(symbol.link)
+        if mix == CONSTANT:
+            out.append(np.ones((len(q), 1)))
+            continue
+        reading, columns = q[:, chain.axis_index(symbol.link)], []
+        for name in mix.shapes:
+            if name != "sinusoidal":
+                columns.append(shape_function(name, reading, link))
+                continue
+            for n in mix.periods:
+                for phase in (0.0, _QUARTER):
+                    columns.append(shape_function(name, reading, link, float(n), phase))
+        out.append(np.stack(columns, axis=1))
+    return out
 
 
 def drawn_errors(population: Population, rng: np.random.Generator) -> list[tuple[Effect, Array]]:
