@@ -146,7 +146,7 @@ def _step(step: Step) -> dict[str, Any]:
 def _where(found: Any) -> list[dict[str, Any]]:
     return [
         {
-            "region": region.words,
+            "region": region.conditions,
             "mean_um": _um(region.mean),
             "rms_um": _um(region.rms),
             "touches": int(region.rows.sum()),

@@ -3,20 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from pydantic import Field
 
 from diagnosis.describe import file_unit, inner_unit
-from diagnosis.fit import Fit
 from diagnosis.prior import Prior
-from twin.chain import Axis, Chain, make_chain
+from twin.chain import Axis, Chain, difference, make_chain
 from twin.effect import Effect, Tunable
 from twin.errors import BadFile, DesignError
 from twin.files.machine_file import AxisTable, WorkpieceTable
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
-from twin.files.whole import write_whole
 from twin.frames import Array
 from twin.library import parse_effect
 from twin.model import Model
@@ -43,12 +40,19 @@ class EffectEntry(Table):
 
 
 class SourceEntry(Table):
-    """`[source]`: what the estimates rest upon."""
+    """`[source]`: what the estimates rest upon.
+
+    `revision` counts the runs that the model has learnt from, one after the other; `learnt_from`
+    has their fingerprints, so that no touch is counted twice.
+    """
 
     run: str
     touches: int
     noise_um: float
     gross_errors: list[int] = Field(default_factory=list)
+    revision: int = 1
+    learnt_from: list[str] = Field(default_factory=list)
+    made_with: str = ""
 
 
 class ModelTable(Table):
@@ -96,90 +100,16 @@ def inner_keys(effect: Effect, units: dict[str, str]) -> list[tuple[str, float]]
     return out
 
 
-def write_model(path: str | Path, fit: Fit, run_name: str) -> None:
-    """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
+def check_machine(saved: SavedModel, chain: Chain, path: str | Path) -> None:
+    """Refuse a model of another machine than the one that was measured.
 
-    Args:
-        path: The file.
-        fit: What was learnt.
-        run_name: Name of the run file, for whoever reads the model later.
+    Raises:
+        BadFile: Key, what the model has, what the machine of the run has.
     """
-    write_whole(path, model_text(fit, run_name))
-
-
-def model_text(fit: Fit, run_name: str) -> str:
-    """Text of a model file."""
-    import tomli_w
-
-    theta, covariance = fit.theta, fit.covariance
-    count = len(fit.model.parameters)
-    factors: list[float] = []
-    entries = []
-    for effect in fit.model.effects:
-        keys = parameter_keys(effect)
-        start = len(factors)
-        entry: dict[str, Any] = {"name": effect.name}
-        inner = _inner_values(fit, effect)
-        if inner:
-            entry["inner"] = inner
-        values = theta[start : start + len(keys)]
-        entry["estimate"] = {key: float(v) / f for (key, f), v in zip(keys, values, strict=True)}
-        factors += [factor for _, factor in keys]
-        entries.append(entry)
-    scale = np.array(factors)
-    shown = covariance[:count, :count] / np.outer(scale, scale)
-    tables = {
-        "machine": _machine(fit.model.chain),
-        "source": {
-            "run": run_name,
-            "touches": int(fit.used.sum()),
-            "noise_um": float(np.median(fit.u)) * 1e3,
-            "gross_errors": [int(line) for line in fit.run.line[fit.gross.rows]],
-        },
-        "effect": entries,
-    }
-    # top-level keys stand before tables in TOML, so the covariance goes before what it is about
-    return f'format = "{FORMAT}"\n' + _triangle(shown) + tomli_w.dumps(tables)
-
-
-def _inner_values(fit: Fit, effect: Effect) -> dict[str, float]:
-    """Inner parameters in the units of files."""
-    if not isinstance(effect, Tunable):
-        return {}
-    units = {p.name: p.unit for p in effect.inner(fit.run.touches)}
-    keys = inner_keys(effect, units)
-    return {k: v / f for (k, f), v in zip(keys, effect.tuning.values(), strict=True)}
-
-
-def _triangle(covariance: Array) -> str:
-    """Lower triangle of a covariance as a TOML array, a line a row."""
-    rows = (
-        "  [" + ", ".join(repr(float(v)) for v in row[: i + 1]) + "],"
-        for i, row in enumerate(covariance)
-    )
-    note = "# covariance of the estimates below: lower triangle, a row a parameter, their units\n"
-    return note + "covariance = [\n" + "\n".join(rows) + "\n]\n"
-
-
-def _machine(chain: Chain) -> dict[str, Any]:
-    """A machine as in a machine file."""
-    axes = {}
-    for link in chain.links:
-        if link.kind == "fixed":
-            continue
-        factor = DEG if link.kind == "rotary" else 1.0
-        axes[link.name] = {
-            "range": [float(v) / factor for v in link.range],
-            "point": [float(v) for v in link.point],
-            "direction": [float(v) for v in link.direction],
-        }
-    origin = [float(v) for v in chain.table_origin]
-    return {
-        "name": chain.name,
-        "chain": chain.notation,
-        "axis": axes,
-        "workpiece": {"origin": origin},
-    }
+    found = difference(saved.model.chain, chain)
+    if found is not None:
+        key, here, there = found
+        raise BadFile(path, f"machine.{key}", here, f"{there}, as of the machine of the run")
 
 
 def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
@@ -233,7 +163,8 @@ def _effect(
     try:
         effect = known.get(entry.name) or parse_effect(entry.name, chain)
     except DesignError as error:
-        raise BadFile(path, f"{key}.name", entry.name, str(error)) from error
+        expected = f"a known effect ({error}); effects of your own are loaded by --effects"
+        raise BadFile(path, f"{key}.name", entry.name, expected) from error
     if not entry.inner:
         return effect
     if not isinstance(effect, Tunable) or len(entry.inner) != len(effect.tuning):

@@ -1,5 +1,6 @@
-"""Regions where a model fails, in words: a shallow tree on residuals, honest about chance."""
+"""Regions where a model fails, in words: boxes of a few conditions, honest about chance."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,10 @@ from diagnosis.fit import Fit
 from diagnosis.linear import BoolArray
 from diagnosis.patterns import variables
 from twin.frames import Array
+from twin.words import condition
+
+Limit = tuple[str, float, float]
+"""A column with its lower and upper end; one of them may be infinite."""
 
 CHANCE = 1e-3
 """Probability that noise is said to have a region."""
@@ -19,7 +24,7 @@ DEPTH = 3
 SMALLEST = 12
 """Fewest touches of a region in either half of the poses."""
 
-CUTS = 24
+CUTS = 16
 """Thresholds that are tried for a variable."""
 
 
@@ -28,55 +33,82 @@ class Region:
     """Touches that a model predicts wrongly on average.
 
     Attributes:
-        words: Conditions on columns of the run file, `B_deg > 60 and time_s < 2400`.
+        limits: Lower and upper end of every column that bounds it, in the column's unit; of a
+            label such as `feature = pad4` the column is 1 where that is so, else 0.
         rows: Touches in it, (N,).
         mean: Mean residual over those poses that had no say in drawing the region, mm.
         rms: Root mean square residual over the same poses, mm.
         p_value: Probability of such a mean by chance, over the same poses, all regions together.
     """
 
-    words: str
+    limits: tuple[Limit, ...]
     rows: BoolArray
     mean: float
     rms: float
     p_value: float
 
+    @property
+    def conditions(self) -> str:
+        """Conditions on columns of the run file, `B_deg >= 60 and time_s < 2400`."""
+        return " and ".join(_condition(*limit) for limit in self.limits)
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Leaf:
-    conditions: tuple[tuple[str, bool, float], ...]
-    rows: BoolArray
+    @property
+    def words(self) -> str:
+        """The same as a reader says it, `B > 60 deg and time < 40 min`."""
+        return " and ".join(condition(*limit) for limit in self.limits)
 
 
 def regions(fit: Fit, most: int = 6) -> tuple[Region, ...]:
-    """Regions of a run where the mean residual is not zero, the largest share of misfit first.
+    """Regions of a run where the mean residual is not zero, what stands out most first.
 
-    One half of the table poses draws the tree, the other half judges its leaves, so that a
-    threshold chosen by chance is found out.
+    Each is without the touches of those before it.
+
+    Every condition on one column and every pair of them is tried, since a free set-up may leave
+    nothing of a misfit in either column alone; a third is joined where it says more. One half of
+    the table poses draws the regions, the other half judges them, so that a threshold chosen by
+    chance is found out.
 
     Args:
         fit: Any fit; rows in use count.
         most: Largest number of regions.
+
+    Reference:
+        Friedman and Fisher, Bump hunting in high-dimensional data, Statistics and Computing 9
+        (1999) 123-143.
     """
     known = {k: v for k, v in _explaining(fit).items() if np.ptp(v) > 0.0}
-    z = fit.residual / fit.u
     draws, judges = _halves(fit)
-    leaves = _grow(_Leaf((), np.ones(len(z), dtype=bool)), known, z, draws, judges, DEPTH)
+    offers = _offers(known, draws)
+    inside = np.stack([_within(known, limit) for limit in offers]) if offers else None
+    if inside is None:
+        return ()
+    z = fit.residual / fit.u
+    left = fit.used
     found = []
-    for leaf in leaves:
-        rows = leaf.rows & judges
-        n = int(rows.sum())
-        if not leaf.conditions or n < SMALLEST:
-            continue
-        score = abs(float(z[rows].sum())) / np.sqrt(n)
-        p = min(1.0, 2.0 * float(ndtr(-score)) * len(leaves))
-        if p < CHANCE:
-            r = fit.residual[rows]
-            inside = leaf.rows & fit.used
-            rms = float(np.sqrt(np.mean(r**2)))
-            found.append(Region(_words(leaf.conditions), inside, float(r.mean()), rms, p))
-    found.sort(key=lambda g: -abs(g.mean) * g.rows.sum())
-    return tuple(found[:most])
+    for _ in range(most):
+        box = _best_box(inside, z, draws & left, judges & left)
+        if box is None:
+            break
+        rows = np.all(inside[list(box)], axis=0) & left
+        region = _judged(fit, [offers[i] for i in box], rows, judges, most)
+        if region is not None:
+            found.append(region)
+        left = left & ~rows
+    return tuple(found)
+
+
+def _judged(
+    fit: Fit, limits: Sequence[Limit], rows: BoolArray, judges: BoolArray, count: int
+) -> Region | None:
+    """A region as those poses see it that had no say in drawing it; None if it may be chance."""
+    seen = rows & judges
+    z = fit.residual[seen] / fit.u[seen]
+    p = min(1.0, 2.0 * float(ndtr(-abs(float(z.sum())) / np.sqrt(len(z)))) * count)
+    if p >= CHANCE:
+        return None
+    r = fit.residual[seen]
+    rms = float(np.sqrt(np.mean(r**2)))
+    return Region(_joined(limits), rows, float(r.mean()), rms, p)
 
 
 def _explaining(fit: Fit) -> dict[str, Array]:
@@ -101,46 +133,61 @@ def _halves(fit: Fit) -> tuple[BoolArray, BoolArray]:
     return fit.used & odd, fit.used & ~odd
 
 
-def _grow(
-    leaf: _Leaf, known: dict[str, Array], z: Array, draws: BoolArray, judges: BoolArray, depth: int
-) -> list[_Leaf]:
-    """Leaves of the best tree below a leaf."""
-    split = _best_split(leaf, known, z, draws, judges) if depth > 0 else None
-    if split is None:
-        return [leaf]
-    name, cut = split
-    out = []
-    for below in (True, False):
-        side = known[name] < cut if below else known[name] >= cut
-        child = _Leaf((*leaf.conditions, (name, below, cut)), leaf.rows & side)
-        out += _grow(child, known, z, draws, judges, depth - 1)
+def _offers(known: dict[str, Array], draws: BoolArray) -> list[Limit]:
+    """Every condition on one column that is tried."""
+    out: list[Limit] = []
+    for name, values in known.items():
+        if " = " in name:
+            out.append((name, 0.5, np.inf))
+            continue
+        for cut in _cuts(values[draws]):
+            out += [(name, -np.inf, cut), (name, cut, np.inf)]
     return out
 
 
-def _best_split(
-    leaf: _Leaf, known: dict[str, Array], z: Array, draws: BoolArray, judges: BoolArray
-) -> tuple[str, float] | None:
-    """Variable and threshold that part the residuals best, or None if chance could do as well."""
-    here, other = leaf.rows & draws, leaf.rows & judges
-    if here.sum() < 2 * SMALLEST or other.sum() < 2 * SMALLEST:
-        return None
-    best, choice, tried = 0.0, None, 0
-    for name, values in known.items():
-        for cut in _cuts(values[here]):
-            low = values[here] < cut
-            n = int(low.sum())
-            m = len(low) - n
-            judged = int((values[other] < cut).sum())
-            if min(n, m, judged, int(other.sum()) - judged) < SMALLEST:
-                continue
-            tried += 1
-            difference = float(z[here][low].mean() - z[here][~low].mean())
-            score = abs(difference) / np.sqrt(1.0 / n + 1.0 / m)
-            if score > best:
-                best, choice = score, (name, cut)
-    if choice is None or 2.0 * float(ndtr(-best)) * tried > CHANCE:
-        return None
-    return choice
+def _within(known: dict[str, Array], limit: Limit) -> BoolArray:
+    """Touches that meet a condition, (N,)."""
+    name, low, high = limit
+    return np.asarray((known[name] >= low) & (known[name] < high))
+
+
+def _best_box(
+    inside: BoolArray, z: Array, draws: BoolArray, judges: BoolArray
+) -> tuple[int, ...] | None:
+    """Conditions of the region that stands out most, or None if chance could do as well.
+
+    Its worth is the log likelihood of a mean of its own less the log of the number of regions of
+    as many conditions that were tried.
+
+    Args:
+        inside: Touches that meet each condition, (C, N).
+        z: Residuals over their noise, (N,).
+        draws: Touches that draw, (N,).
+        judges: Touches that judge, (N,).
+    """
+    drawn, judged = inside[:, draws].astype(float), inside[:, judges].astype(float)
+    here = z[draws]
+    scores = _scores((drawn * here) @ drawn.T, drawn @ drawn.T, judged @ judged.T)
+    worth = 0.5 * scores**2 - np.log(len(inside)) * (2.0 - np.eye(len(inside)))
+    i, j = np.unravel_index(int(np.argmax(worth)), worth.shape)
+    box, best = tuple(dict.fromkeys((int(i), int(j)))), float(worth[i, j])
+    while len(box) < DEPTH:
+        part = np.all(drawn[list(box)] > 0.0, axis=0)
+        other = np.all(judged[list(box)] > 0.0, axis=0)
+        sums, counts = drawn[:, part] @ here[part], drawn[:, part].sum(axis=1)
+        more = _scores(sums, counts, judged[:, other].sum(axis=1))
+        gained = 0.5 * more**2 - np.log(len(inside)) * (len(box) + 1.0)
+        k = int(np.argmax(gained))
+        if gained[k] <= best:
+            break
+        box, best = (*box, k), float(gained[k])
+    return box if best > 0.0 else None
+
+
+def _scores(sums: Array, drawn: Array, judged: Array) -> Array:
+    """Sums of residuals over their standard deviation; zero where too few touches draw or judge."""
+    enough = (drawn >= SMALLEST) & (judged >= SMALLEST)
+    return np.asarray(np.where(enough, np.abs(sums) / np.sqrt(np.maximum(drawn, 1.0)), 0.0))
 
 
 def _cuts(values: Array) -> list[float]:
@@ -163,28 +210,25 @@ def _round_between(low: float, high: float) -> float:
     for digits in range(-6, 12):
         rounded = round(middle, digits)
         if low < rounded <= high:
-            return float(rounded)
+            return float(rounded) + 0.0  # no negative zero
     return high
 
 
-def _words(conditions: tuple[tuple[str, bool, float], ...]) -> str:
-    """Conditions with those on one variable joined to the tightest."""
-    low: dict[str, float] = {}
-    high: dict[str, float] = {}
-    for name, below, cut in conditions:
-        if below:
-            high[name] = min(cut, high.get(name, np.inf))
-        else:
-            low[name] = max(cut, low.get(name, -np.inf))
-    names = dict.fromkeys(name for name, _, _ in conditions)
-    parts = []
-    for name in names:
-        if " = " in name:
-            parts.append(name if name in low else name.replace(" = ", " != "))
-        elif name in low and name in high:
-            parts.append(f"{low[name]:.6g} <= {name} < {high[name]:.6g}")
-        elif name in high:
-            parts.append(f"{name} < {high[name]:.6g}")
-        else:
-            parts.append(f"{name} >= {low[name]:.6g}")
-    return " and ".join(parts)
+def _joined(limits: Sequence[Limit]) -> tuple[Limit, ...]:
+    """Conditions with those on one column joined to the tightest."""
+    out: dict[str, Limit] = {}
+    for name, low, high in limits:
+        _, lowest, highest = out.get(name, (name, -np.inf, np.inf))
+        out[name] = (name, max(low, lowest), min(high, highest))
+    return tuple(out.values())
+
+
+def _condition(name: str, low: float, high: float) -> str:
+    """One range of a column, as a file has it."""
+    if " = " in name:
+        return name if low > -np.inf else name.replace(" = ", " != ")
+    if np.isinf(low):
+        return f"{name} < {high:.6g}"
+    if np.isinf(high):
+        return f"{name} >= {low:.6g}"
+    return f"{low:.6g} <= {name} < {high:.6g}"

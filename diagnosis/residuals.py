@@ -17,7 +17,6 @@ from diagnosis.structure import Structure, find_structure
 from twin.frames import Array
 from twin.model import Model
 from twin.run import Run
-from twin.units import UM
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,19 +180,3 @@ def _prediction_variance(fit: Fit, estimates: Prior) -> Array:
     free = solve(fit.X[:, machine:] * fit.noise.factor, np.zeros(len(S))).Q
     left = S - free @ (free.T @ S)
     return np.asarray(np.einsum("np,np->n", left, left) * fit.run.u**2)
-
-
-def comparison_sentence(found: Comparison) -> str:
-    """The comparison in one sentence."""
-    text = (
-        f"{found.rms_measured / UM:.1f} µm were measured, {found.rms / UM:.2f} µm are left; "
-        f"chi-square per degree of freedom {found.chi2_ratio:.2f}"
-    )
-    if not found.structure:
-        return text + "; what is left looks like noise"
-    return text + f"; what is left is not noise: it {_verb(found.structure[0])}"
-
-
-def _verb(structure: Structure) -> str:
-    """Words of a structure as the end of a sentence."""
-    return structure.words if structure.shape == "smooth" else f"shows {structure.words}"

@@ -16,6 +16,7 @@ from diagnosis.quadratic import ratio_probability
 from diagnosis.waves import Wave, best_wave
 from twin.frames import Array
 from twin.touches import IntArray, Touches
+from twin.words import listed, noun, span
 
 CHANCE = 1e-3
 """Probability, all tests together, that white noise is said to have structure."""
@@ -138,9 +139,12 @@ def _as_structure(pattern: Pattern, tested: _Tested, count: int) -> Structure:
 
 
 def _words(names: tuple[str, ...], direction: str) -> str:
-    """`varies with X_mm and Y_mm, along Z`."""
-    along = "the normal" if direction == "normal" else direction
-    return f"varies with {' and '.join(names)}, along {along}"
+    """`varies with X and Y, along Z`."""
+    return f"varies with {listed([noun(name) for name in names])}, along {_along(direction)}"
+
+
+def _along(direction: str) -> str:
+    return "the normal" if direction == "normal" else direction
 
 
 def _with_columns(
@@ -170,7 +174,7 @@ def _wave_structure(effects: EffectSet, wave: Wave, count: int) -> Structure:
     fall = -np.log(max(1.0 - wave.drop / effects.objective, 1e-9))
     gained = 0.5 * n * fall - np.log1p(wave.drop) - np.log(max(wave.count, 1))
     p = min(1.0, wave.p_value * count)
-    words = f"a wave in time of {wave.period:.4g} s, along {wave.direction}"
+    words = f"a wave in time, every {span(wave.period)}, along {_along(wave.direction)}"
     C = effects.complement.project(wave.columns) if p < CHANCE else None
     along = wave.direction
     return Structure("wave", ("time_s",), along, p, float(gained), C, words, wave.period)
@@ -192,7 +196,7 @@ def _neighbours(effects: EffectSet) -> list[Structure]:
         mean = -float(np.einsum("np,np->", Q[left], Q[right]))
         score = (float(r[left] @ r[right]) - mean) / np.sqrt(max(len(left), 1))
         p = float(ndtr(-score))
-        words = f"neighbours in {' and '.join(variables)} agree"
+        words = f"neighbours in {listed([noun(v) for v in variables])} agree"
         out.append(Structure("neighbours", variables, "normal", p, -np.inf, None, words))
     return out
 
@@ -203,7 +207,7 @@ def _crowds(complement: Complement) -> list[Structure]:
     found = crowds(complement.touches, allowed, complement.gross)
     out = []
     for names, p in found.items():
-        words = f"gross errors crowd together in {' and '.join(names)}"
+        words = f"gross errors crowd together in {listed([noun(n) for n in names])}"
         out.append(Structure("crowd", names, "normal", p, -np.inf, None, words))
     return out
 

@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from enum import Enum
 
-import numpy as np
-
 from diagnosis.ambiguity import ConfusionClass
 from diagnosis.describe import Reported
 from diagnosis.detectable import Detectable
@@ -14,7 +12,6 @@ from diagnosis.regions import Region
 from diagnosis.structure import Structure
 from twin.effect import Effect
 from twin.run import Run
-from twin.units import UM
 
 
 class Verdict(Enum):
@@ -43,6 +40,11 @@ class Step:
     p_value: float
     reported: tuple[Reported, ...]
     confusion: ConfusionClass | None
+
+    @property
+    def is_named(self) -> bool:
+        """Whether the user named the effect; else the diagnosis found it."""
+        return self.effect is not None and self.confusion is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,29 +118,3 @@ class Diagnosis:
     def found(self) -> tuple[Effect, ...]:
         """Effects that were added."""
         return tuple(step.effect for step in self.steps if step.effect is not None)
-
-
-def sentence(diagnosis: Diagnosis) -> str:
-    """The verdict in one sentence, with sizes and what is left."""
-    noise = diagnosis.fit.noise
-    u = float(np.median(diagnosis.run.u)) / UM
-    if diagnosis.verdict is Verdict.UNEXPLAINED:
-        patterns = list(dict.fromkeys(d.words for d in diagnosis.depends_on))[:2]
-        return (
-            f"unexplained: a residual of {diagnosis.fit.rms / UM:.2f} µm is not noise, and no "
-            f"effect of the library accounts for it ({'; '.join(patterns) or 'no pattern found'})"
-        )
-    if diagnosis.verdict is Verdict.NONE:
-        text = f"no missing effect: residuals of {diagnosis.fit.rms / UM:.2f} µm are white"
-        if noise.is_wrongly_stated:
-            text += f"; the noise is {noise.factor * u:.2f} µm, not {u:.2f} µm as stated"
-        return text
-    parts = []
-    for step in diagnosis.steps[1:]:
-        rivals = len(step.confusion.rivals) if step.confusion else 0
-        name = step.effect.name if step.effect is not None else ""
-        parts.append(name + (f" (or one of {rivals} that look the same)" if rivals else ""))
-    return (
-        f"missing effect: {', '.join(parts)}; held-out error "
-        f"{diagnosis.start.test_rms / UM:.2f} -> {diagnosis.fit.test_rms / UM:.2f} µm"
-    )

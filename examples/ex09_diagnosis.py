@@ -8,7 +8,7 @@ import numpy as np
 from ex08_virtual_probing import MACHINE, probed
 
 from diagnosis.diagnose import diagnose
-from diagnosis.verdict import sentence
+from diagnosis.sentences import verdict_sentence
 from sensitivity.sampling import Population, drawn_errors
 from twin.files.machine_file import read_machine
 from twin.library import parse_effect
@@ -23,7 +23,7 @@ def main():
     run = probed(population, [*drawn_errors(population, rng), hidden], rng)
     found = diagnose(run, population.model)
     return {
-        "sentence": sentence(found),
+        "sentence": verdict_sentence(found),
         "effects": [effect.name for effect in found.found],
         "size": found.steps[-1].reported[0],
         "rms, µm": [step.fit.rms / UM for step in found.steps],

@@ -9,7 +9,7 @@ import numpy as np
 from ex08_virtual_probing import MACHINE, probed
 
 from diagnosis.diagnose import diagnose
-from diagnosis.verdict import sentence
+from diagnosis.sentences import verdict_sentence
 from sensitivity.sampling import Population, drawn_errors
 from twin.effect import Parameter, Term, Where
 from twin.effects.kind import Kind
@@ -52,7 +52,7 @@ if __name__ == "__main__":
 
     figure, panels = plt.subplots(1, 2, figsize=(7.6, 3.0), sharey=True, layout="constrained")
     for axes, (when, found) in zip(panels, main().items(), strict=True):
-        print(f"{when}: {sentence(found)} {found.steps[-1].reported}")
+        print(f"{when}: {verdict_sentence(found)} {found.steps[-1].reported}")
         colour = np.where(found.run.touches.last_move("C") > 0, "C0", "C3")
         axes.scatter(range(len(colour)), found.fit.residual / UM, 4, colour)
         axes.set(title=f"{when}: {found.verdict.value}", xlabel="touch; red: C from above")

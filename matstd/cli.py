@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 
@@ -28,15 +29,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser(arguments)
     args = parser.parse_args(arguments)
+    from matstd.console import clean_stop
     from twin.errors import DesignError
 
     try:
-        return int(args.run(args) or 0)
+        with clean_stop():
+            return int(args.run(args) or 0)
     except DesignError as error:
         print(f"matstd {args.command}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
+    except BrokenPipeError:  # whoever read our words has heard enough
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+        return 0
     except KeyboardInterrupt:
-        print(f"matstd {args.command}: stopped; nothing half-written is left", file=sys.stderr)
+        print(f"matstd {args.command}: stopped, and nothing half-written is left", file=sys.stderr)
         return 130
 
 

@@ -1,16 +1,45 @@
-"""Progress on the console: one line a stage, quiet where nobody watches."""
+"""What is said on the console: results on standard output, progress beside them."""
 
+import signal
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+WIDE = 120
+"""Letters of a line where no terminal says how wide it is."""
+
+
+def console() -> "Console":
+    """Standard output; a file or a pipe is wide enough for a table."""
+    from rich.console import Console
+
+    out = Console(highlight=False)
+    return out if out.is_terminal else Console(highlight=False, width=WIDE)
+
+
+def say(text: str, style: str | None = None) -> None:
+    """One line as it is: a terminal breaks it where it likes, a file keeps it whole."""
+    console().print(text, markup=False, style=style, soft_wrap=True)
 
 
 @contextmanager
 def stages() -> Iterator[Callable[[str, int, int], None]]:
-    """A function (stage, done, total) that shows every stage as a bar with its time."""
+    """A function (stage, done, total) that shows every stage as a bar with its time.
+
+    The bars go to standard error, and only where somebody watches.
+    """
+    from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
+    watched = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(30), TimeElapsedColumn())
-    with Progress(*columns, transient=False) as bars:
+    bars = Progress(*columns, console=watched, transient=False, disable=not watched.is_terminal)
+    with bars:
         known: dict[str, TaskID] = {}
 
         def show(stage: str, done: int, total: int) -> None:
@@ -24,3 +53,21 @@ def stages() -> Iterator[Callable[[str, int, int], None]]:
         yield show
         for task in known.values():
             bars.update(task, completed=bars.tasks[task].total)
+
+
+@contextmanager
+def clean_stop() -> Iterator[None]:
+    """Whoever is asked to end by the system (SIGTERM) tidies up as after Ctrl-C."""
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        if before is not None:  # else something that is not Python had set it
+            signal.signal(signal.SIGTERM, before)

@@ -2,30 +2,36 @@
 
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from twin.errors import DesignError
+from twin.files.whole import NOT_WRITABLE
 
 
 @contextmanager
-def results_folder(out: str | Path, force: bool = False) -> Iterator[Path]:
+def results_folder(
+    out: str | Path, force: bool = False, ours: Sequence[str] = ()
+) -> Iterator[Path]:
     """A neighbour folder to work in; its files move to `out` when the block ends well.
 
     Files of the same name are replaced, which is why a folder that is not empty needs `force`;
-    whatever else lies in it stays.
+    whatever else lies in it stays, but for results of an earlier run that this one does not have.
 
     Args:
         out: Where the results shall stand.
         force: Whether results of an earlier run may be replaced.
+        ours: Patterns of the names of results that not every run has.
 
     Raises:
         DesignError: The folder holds something and nobody asked to replace it, or it cannot be
             written to.
     """
     out = Path(out)
-    if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
+    if out.exists() and not out.is_dir():
+        raise DesignError(f"{out}: is a file, expected a folder or a name that is free")
+    if not force and out.exists() and any(out.iterdir()):
         raise DesignError(f"{out}: is there already; choose another folder or give --force")
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -34,10 +40,16 @@ def results_folder(out: str | Path, force: bool = False) -> Iterator[Path]:
         raise DesignError(f"{out}: cannot be written ({error.strerror})") from error
     try:
         yield work
+        for old in (file for pattern in ours for file in out.glob(pattern)):
+            old.unlink()
         for file in sorted(p for p in work.rglob("*") if p.is_file()):
             goal = out / file.relative_to(work)
             goal.parent.mkdir(parents=True, exist_ok=True)
             file.replace(goal)
         out.mkdir(exist_ok=True)
+    except OSError as error:
+        if error.errno not in NOT_WRITABLE:
+            raise
+        raise DesignError(f"{out}: cannot be written ({error.strerror or error})") from error
     finally:
         shutil.rmtree(work, ignore_errors=True)

@@ -1,13 +1,13 @@
 """Report pages: one self-contained HTML file each, nothing loaded from anywhere."""
 
 import base64
-import math
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from matstd.versions import versions
 from twin.files.whole import write_whole
+from twin.words import digits as digits
 
 
 def write_page(path: str | Path, template: str, **content: object) -> None:
@@ -35,18 +35,6 @@ def picture(path: str | Path) -> str:
     path = Path(path)
     kind = {".png": "image/png", ".svg": "image/svg+xml"}[path.suffix]
     return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
-
-
-def digits(value: float, significant: int = 3) -> str:
-    """A number with so many significant digits, without an exponent where it is readable."""
-    if value is None or not math.isfinite(value):
-        return "–"
-    if value == 0.0:
-        return "0"
-    exponent = math.floor(math.log10(abs(value)))
-    if not -4 <= exponent <= 6:
-        return f"{value:.{significant - 1}e}"
-    return f"{value:.{max(0, significant - 1 - exponent)}f}"
 
 
 def percent(value: float) -> str:

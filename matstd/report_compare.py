@@ -6,6 +6,7 @@ import numpy as np
 
 from diagnosis.pictures import draw_on_standard, is_spread
 from diagnosis.residuals import Comparison
+from diagnosis.sentences import comparison_sentence
 from matstd.page import write_page
 from matstd.report_residuals import (
     Picture,
@@ -14,7 +15,6 @@ from matstd.report_residuals import (
     residual_pictures,
     setting,
 )
-from matstd.report_words import comparison_words
 from twin.units import UM
 
 PAGE = "report.html"
@@ -47,7 +47,7 @@ def write_compare_page(
         place=place,
         title=title,
         found=found,
-        sentence=comparison_words(found),
+        sentence=comparison_sentence(found),
         um=UM,
         on_standard=on_standard,
         pictures=residual_pictures(place, "residual", found.fit, z),

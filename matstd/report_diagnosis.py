@@ -11,6 +11,7 @@ from diagnosis.detectable import Detectable
 from diagnosis.ink import CLASSES
 from diagnosis.pictures import draw_on_standard, is_spread
 from diagnosis.pictures_effects import draw_candidates, draw_effect, draw_fall, draw_rivals
+from diagnosis.sentences import named_value, sizes, values, verdict_sentence
 from diagnosis.verdict import Diagnosis, Step, Verdict
 from matstd.page import write_page
 from matstd.report_residuals import (
@@ -20,7 +21,6 @@ from matstd.report_residuals import (
     residual_pictures,
     setting,
 )
-from matstd.report_words import named_value, sizes, verdict_sentence
 from twin.files.pose_file import reading_columns
 from twin.library import kinds
 from twin.touches import Touches
@@ -115,10 +115,10 @@ def _effect(result: Diagnosis, i: int, place: Path) -> dict[str, Any]:
         "name": step.effect.name,
         "picture": name,
         "kind": kind,
-        "values": [named_value(r) for r in step.reported],
+        "values": values(step),
         "alike": _alike(step)[:NAMED],
         "alike_more": max(len(_alike(step)) - NAMED, 0),
-        "by_user": step.confusion is None,
+        "by_user": step.is_named,
         "rivals": _rivals(step, i, place, colour),
         "p": step.p_value,
     }

@@ -211,6 +211,34 @@ def _no_machine(key: str, found: str, expected: str) -> DesignError:
     return DesignError(message, key=key, found=found, expected=expected)
 
 
+def difference(one: Chain, other: Chain) -> tuple[str, str, str] | None:
+    """The first thing in which two machines differ: key of a machine file, one's value, other's.
+
+    Travels count too: the shapes of component errors are scaled to them.
+    """
+    if one.name != other.name:
+        return "name", repr(one.name), repr(other.name)
+    if one.notation.split() != other.notation.split():
+        return "chain", one.notation, other.notation
+    if not np.allclose(one.table_origin, other.table_origin, rtol=0.0, atol=_SAME):
+        return "workpiece.origin", _listed(one.table_origin), _listed(other.table_origin)
+    for a, b in zip(one.links, other.links, strict=True):
+        for key in ("range", "point", "direction"):
+            left, right = np.array(getattr(a, key)), np.array(getattr(b, key))
+            if not np.allclose(left, right, rtol=0.0, atol=_SAME):
+                factor = DEG if key == "range" and a.kind == "rotary" else 1.0
+                return f"axis.{a.name}.{key}", _listed(left / factor), _listed(right / factor)
+    return None
+
+
+_SAME = 1e-6
+"""Two machines whose numbers differ by less (mm, rad) are the same."""
+
+
+def _listed(values: Array) -> str:
+    return f"[{', '.join(f'{v:.9g}' for v in values)}]"
+
+
 def make_chain(
     name: str,
     notation: str,

@@ -105,10 +105,10 @@ def proposals(touches: Touches, only: Sequence[str] | None = None) -> list[Effec
     """
     wanted = [k for k in kinds() if only is None or k.word in only]
     by_name = {effect.name: effect for kind in wanted for effect in kind.propose(touches)}
-    return [effect for effect in by_name.values() if _is_seen(effect, touches)]
+    return [effect for effect in by_name.values() if is_seen(effect, touches)]
 
 
-def _is_seen(effect: Effect, touches: Touches) -> bool:
+def is_seen(effect: Effect, touches: Touches) -> bool:
     """Whether an effect of its expected size changes any deviation beyond rounding."""
     if isinstance(effect, Tunable):
         effect = effect.tuned(

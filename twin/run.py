@@ -1,5 +1,6 @@
 """`Run`: measured deviations of touches, with what the reader of the file noticed."""
 
+import hashlib
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -45,6 +46,15 @@ class Run:
 
     def __len__(self) -> int:
         return len(self.touches)
+
+    @property
+    def fingerprint(self) -> str:
+        """Short digest of readings, points and deviations: the same run has it whenever read."""
+        t = self.touches
+        digest = hashlib.sha256()
+        for values in (t.q, t.point, t.normal, self.deviation):
+            digest.update((np.round(values, 9) + 0.0).tobytes())  # + 0.0: no negative zeros
+        return digest.hexdigest()[:16]
 
     def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Run":
         """The measurements of some rows, as a new record."""

@@ -102,7 +102,7 @@ def quantity(column: str, value: float) -> str:
     """
     if column == "time_s":
         unit, name = time_unit(value)
-        return f"{value / unit:.4g} {name}"
+        return f"{value / unit:.3g} {name}"
     unit_name = unit_of(column)
     return f"{value:.6g} {unit_name}" if unit_name else f"{value:.6g}"
 

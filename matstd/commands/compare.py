@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from diagnosis.residuals import Comparison
 
+OURS = ("pictures/*.png", "report.html")
+"""Results that not every comparison leaves."""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
@@ -31,21 +34,15 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from diagnosis.diagnosis_file import write_comparison, write_residuals
-    from diagnosis.model_file import read_model
     from diagnosis.residuals import compare
     from matstd.console import stages
     from matstd.folder import results_folder
-    from twin.files.run_file import read_run
-    from twin.library import load_installed_effects, load_user_effects
+    from matstd.inputs import read_inputs
     from twin.ordinary import ordinary_model
 
-    load_installed_effects()
-    for path in args.effects:
-        load_user_effects(Path(path))
-    run = read_run(args.run_file)
-    saved = read_model(args.model) if args.model else None
+    run, saved = read_inputs(args.run_file, args.model, args.effects, "so that it flatters it")
     model = saved.model if saved else ordinary_model(run.touches.chain)
-    with results_folder(args.output, args.force) as folder, stages() as show:
+    with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         found = compare(
             run,
             model,
@@ -66,19 +63,14 @@ def run(args: argparse.Namespace) -> int:
 
 def _tell(args: argparse.Namespace, found: Comparison) -> None:
     """The comparison in words."""
-    from rich.console import Console
-
-    from diagnosis.residuals import comparison_sentence
+    from diagnosis.sentences import comparison_sentence
+    from matstd.console import say
     from twin.units import UM
 
-    console = Console(highlight=False)
-    console.print(comparison_sentence(found), markup=False, style="bold")
+    say(comparison_sentence(found), style="bold")
     for region in found.where:
-        console.print(
-            f"{region.words}: {region.mean / UM:+.2f} µm ({int(region.rows.sum())} touches)",
-            markup=False,
-        )
+        say(f"{region.words}: {region.mean / UM:+.2f} µm ({int(region.rows.sum())} touches)")
     for remark in found.remarks:
-        console.print(f"- {remark}", markup=False)
+        say(f"- {remark}")
     first = "" if args.no_report else "report.html, "
-    console.print(f"{args.output}: look at {first}comparison.json, residuals.csv", markup=False)
+    say(f"{args.output}: look at {first}comparison.json, residuals.csv")

@@ -9,8 +9,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from diagnosis.verdict import Diagnosis
+    from diagnosis.model_file import SavedModel
+    from diagnosis.verdict import Diagnosis, Step
     from twin.run import Run
+
+OURS = ("next_measurement_*.csv", "pictures/*.png", "report.html")
+"""Results that not every diagnosis leaves."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,16 +48,15 @@ def run(args: argparse.Namespace) -> int:
 
     from matstd.console import stages
     from matstd.folder import results_folder
-    from twin.files.run_file import read_run
-    from twin.library import load_installed_effects, load_user_effects
+    from matstd.inputs import read_inputs
 
-    load_installed_effects()
-    for path in args.effects:
-        load_user_effects(Path(path))
-    run = read_run(args.run_file)
-    with results_folder(args.output, args.force) as folder, stages() as show:
-        result = _diagnosed(args, run, lambda share, doing: show(doing, int(100 * share), 100))
-        _write(args, result, folder)
+    same = "so that its estimates are made anew: no touch counts twice"
+    run, saved = read_inputs(args.run_file, args.model, args.effects, same)
+    with results_folder(args.output, args.force, OURS) as folder, stages() as show:
+        result = _diagnosed(
+            args, run, saved, lambda share, doing: show(doing, int(100 * share), 100)
+        )
+        _write(args, result, saved, folder)
         if not args.no_report:
             from matstd.report_diagnosis import write_diagnosis_page
 
@@ -65,68 +68,80 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _diagnosed(
-    args: argparse.Namespace, run: Run, progress: Callable[[float, str], None]
+    args: argparse.Namespace,
+    run: Run,
+    saved: SavedModel | None,
+    progress: Callable[[float, str], None],
 ) -> Diagnosis:
     """The diagnosis, from the model file or from the ordinary model."""
     import numpy as np
 
     from diagnosis.diagnose import diagnose
-    from diagnosis.model_file import read_model
-    from twin.library import parse_effect
+    from matstd.inputs import is_learnt_from, named_effects
+    from twin.ordinary import ordinary_model
 
-    saved = read_model(args.model) if args.model else None
-    return diagnose(
-        run,
-        saved.model if saved else None,
-        saved.estimates if saved else None,
-        [parse_effect(name, run.touches.chain) for name in args.add],
-        progress=progress,
-        rng=np.random.default_rng(0),
-    )
+    start = saved.model if saved else ordinary_model(run.touches.chain)
+    known = saved.estimates if saved and not is_learnt_from(saved, run) else None
+    added = named_effects(args.add, start.effects, run)
+    return diagnose(run, start, known, added, progress=progress, rng=np.random.default_rng(0))
 
 
-def _write(args: argparse.Namespace, result: Diagnosis, folder: Path) -> None:
+def _write(
+    args: argparse.Namespace, result: Diagnosis, saved: SavedModel | None, folder: Path
+) -> None:
     """Result, model and plans as files."""
     from diagnosis.diagnosis_file import plan_text, write_diagnosis
-    from diagnosis.model_file import write_model
+    from diagnosis.model_writer import write_model
+    from matstd.inputs import is_learnt_from
+    from matstd.versions import versions
     from twin.files.whole import write_whole
 
     write_diagnosis(folder / "diagnosis.json", result)
     fit = result.fit if args.auto else result.steps[len(args.add)].fit
-    write_model(folder / "model.toml", fit, Path(args.run_file).name)
+    before = saved if saved and not is_learnt_from(saved, result.run) else None
+    made_with = f"material-standard {versions()['material-standard']}"
+    write_model(folder / "model.toml", fit, Path(args.run_file).name, before, made_with)
     for i, plan in enumerate(result.plans, start=1):
         write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
 
 
 def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     """The verdict, the error falling, and what else should be known."""
-    from rich.console import Console
     from rich.table import Column, Table
 
-    from diagnosis.verdict import sentence
+    from diagnosis.sentences import verdict_sentence
+    from matstd.console import console, say
+
+    say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
+    right = [
+        Column(word, justify="right") for word in ("p", "fitted µm", "held out µm", "chi²/dof")
+    ]
+    words = [Column(word, overflow="fold") for word in ("effect", "size", "not told from")]
+    table = Table(words[0], words[1], *right, words[2], box=None)
+    for step in result.steps:
+        table.add_row(*_row(step))
+    console().print(table)
+    for remark in result.remarks:
+        say(f"- {remark}")
+    if any(not s.is_named for s in result.steps[1:]) and not args.auto:
+        say("- the model file has what was named; --auto puts in what was found, --add one of them")
+    for i, plan in enumerate(result.plans, start=1):
+        say(f"- next_measurement_{i}.csv would tell {' from '.join(plan.tells_apart)}")
+    first = "" if args.no_report else "report.html, "
+    say(f"{args.output}: look at {first}diagnosis.json, model.toml")
+
+
+def _row(step: Step) -> tuple[str, ...]:
+    """One step of the table: what was added, how large it is, and how far the error fell."""
+    from diagnosis.sentences import rivals_words, sizes
     from twin.units import UM
 
-    console = Console(highlight=False)
-    console.print(sentence(result), markup=False, style="bold")
-    effect, rival = (Column(word, overflow="fold") for word in ("effect", "not told from"))
-    table = Table(effect, "p", "residual µm", "held out µm", "chi²/dof", rival, box=None)
-    for step in result.steps:
-        rivals = step.confusion.rivals if step.confusion else ()
-        table.add_row(
-            step.effect.name if step.effect is not None else "model to begin with",
-            f"{step.p_value:.1g}" if step.effect is not None else "",
-            f"{step.fit.rms / UM:.3f}",
-            f"{step.fit.test_rms / UM:.3f}",
-            f"{step.fit.noise.chi2_ratio:.2f}",
-            rivals[0].effect.name + (f" and {len(rivals) - 1} more" if len(rivals) > 1 else "")
-            if rivals
-            else "",
-        )
-    console.print(table)
-    for remark in result.remarks:
-        console.print(f"- {remark}", markup=False)
-    found = len(result.steps) - 1 - len(args.add)
-    if found and not args.auto:
-        console.print("--auto puts what was found into model.toml; --add EFFECT one of them")
-    first = "" if args.no_report else "report.html, "
-    console.print(f"{args.output}: look at {first}diagnosis.json, model.toml", markup=False)
+    return (
+        step.effect.name if step.effect is not None else "model to begin with",
+        sizes(step, most=2) if step.effect is not None else "",
+        f"{step.p_value:.0e}" if step.effect is not None else "",
+        f"{step.fit.rms / UM:.3f}",
+        f"{step.fit.test_rms / UM:.3f}",
+        f"{step.fit.noise.chi2_ratio:.2f}",
+        rivals_words(step, most=1),
+    )

@@ -9,7 +9,8 @@ from simulator_case import simulate_case
 
 from diagnosis.diagnosis_file import write_diagnosis
 from diagnosis.fit import fit_run
-from diagnosis.model_file import read_model, write_model
+from diagnosis.model_file import read_model
+from diagnosis.model_writer import write_model
 from diagnosis.remarks import remarks
 from matstd.cli import main
 from twin.errors import BadFile
@@ -216,7 +217,7 @@ def test_a_model_file_that_was_cut_off_is_refused(saved, tmp_path) -> None:
 def test_compare_writes_what_the_model_leaves(folder, tmp_path, capsys) -> None:
     out = tmp_path / "out"
     assert main(["compare", str(folder / "run.csv"), "-o", str(out), "--no-report"]) == 0
-    assert "what is left is not noise" in " ".join(capsys.readouterr().out.split())
+    assert "What is left is not noise" in " ".join(capsys.readouterr().out.split())
     told = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
     assert told["format"] == "comparison/1"
     assert told["rms_um"] < told["measured_rms_um"]
@@ -261,7 +262,7 @@ def test_auto_finds_puts_in_and_goes_on_from_its_own_model(folder, tmp_path, cap
     run, out, again = str(folder / "run.csv"), tmp_path / "out", tmp_path / "again"
     assert main(["diagnose", run, "--auto", "-o", str(out), "--no-report"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "missing effect: backlash(Y)" in printed
+    assert "The model lacks one effect: backlash(Y) (amplitude " in printed
     told = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert [s["effect"] for s in told["steps"]] == [None, "backlash(Y)"]
     model = out / "model.toml"
@@ -440,7 +441,7 @@ def backwards(rows):
     [
         (with_all("T_spindle_degC", lambda i, row: "20.0"), "T_spindle_degC is constant at 20"),
         (with_value("T_spindle_degC", "nan"), "the sensor is left out"),
-        (lambda rows: [rows[0], *rows], "1 rows stand twice; the copies are left out"),
+        (lambda rows: [rows[0], *rows], "1 row stands twice; the copy is left out"),
         (backwards, "time_s goes back"),
         (lambda rows: rows[:26], "1 table pose only"),
         (lambda rows: rows[:60], "60 touches for"),

@@ -11,7 +11,8 @@ import pytest
 from simulator_experiment import random_experiment, random_noise
 
 from diagnosis.diagnose import diagnose
-from diagnosis.verdict import Verdict, sentence
+from diagnosis.sentences import verdict_sentence
+from diagnosis.verdict import Verdict
 from twin.library import parse_effect
 from twin.model import columns
 from twin.units import UM
@@ -61,7 +62,7 @@ def test_nothing_hidden_nothing_found(diagnosed) -> None:
     assert d.left == ()
     assert d.depends_on == ()
     assert d.plans == ()
-    assert sentence(d).startswith("no missing effect")
+    assert verdict_sentence(d).startswith("Nothing is missing")
     assert d.fit.test_rms == pytest.approx(added_noise(*NOTHING[:2]), rel=HELD_OUT)
     assert min(c.p_value for c in d.candidates) > 1e-3
 
@@ -84,7 +85,7 @@ def test_one_effect_is_named_with_its_size(case, diagnosed, name) -> None:
         size = amplitude(step.reported)
         assert abs(abs(size.value) - told["amplitude"]) < WITHIN * size.u
         assert size.u < told["amplitude"] / 5.0  # else the line above says nothing
-    assert sentence(d).startswith("missing effect: ")
+    assert verdict_sentence(d).startswith("The model lacks one effect: ")
 
 
 def test_most_single_effects_are_named_themselves_first(diagnosed) -> None:
@@ -143,7 +144,7 @@ def test_an_effect_outside_the_library_is_called_unexplained(diagnosed) -> None:
     assert "time_s" in [one.variable for one in d.depends_on]
     assert d.left
     assert d.depends_on[0].p_value < 1e-4
-    assert sentence(d).startswith("unexplained")
+    assert verdict_sentence(d).startswith("Something is left")
 
 
 def test_below_the_limit_nothing_is_claimed_and_the_limit_is_told(case, diagnosed) -> None:

@@ -26,16 +26,17 @@ from diagnosis.pictures_residuals import (
     standardised,
 )
 from diagnosis.residuals import compare
+from diagnosis.sentences import named_value, verdict_sentence
 from diagnosis.verdict import Verdict
 from matstd.page import p_value
 from matstd.report_compare import write_compare_page
 from matstd.report_diagnosis import write_diagnosis_page
-from matstd.report_words import named_value, verdict_sentence, with_uncertainty
 from twin.effects.backlash import KIND as BACKLASH
 from twin.effects.periodic import KIND as PERIODIC
 from twin.effects.thermal_lag import KIND as LAG
 from twin.ordinary import ordinary_model
 from twin.units import MINUTE, NM, UM
+from twin.words import with_uncertainty
 
 ROUNDING = 1e-9
 SAME = 1e-6  # of quantities of order one, after a second solution of the same equations

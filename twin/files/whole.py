@@ -1,5 +1,6 @@
 """Files are written whole or not at all, and a user's file is never lost."""
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
@@ -8,13 +9,26 @@ from pathlib import Path
 
 from twin.errors import DesignError
 
+NOT_WRITABLE = (
+    errno.ENOSPC,
+    errno.EDQUOT,
+    errno.EFBIG,
+    errno.EROFS,
+    errno.EACCES,
+    errno.EPERM,
+    errno.EISDIR,
+    errno.ENOTDIR,
+    errno.EIO,
+)
+"""What a user can put right when a file cannot be written: a full disk, no right to write."""
+
 
 @contextmanager
 def written_whole(path: str | Path) -> Iterator[Path]:
     """A neighbour name to write to; renamed to `path` when the block ends well, else removed.
 
     Raises:
-        DesignError: The folder cannot be written to.
+        DesignError: The folder cannot be written to, or the disk is full.
     """
     path = Path(path)
     try:
@@ -23,7 +37,7 @@ def written_whole(path: str | Path) -> Iterator[Path]:
             prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent
         )
     except OSError as error:
-        raise DesignError(f"{path}: cannot be written ({error.strerror or error})") from error
+        raise _not_written(path, error) from error
     os.close(handle)
     # mkstemp makes private files; an output is as readable as any other file of the user
     umask = os.umask(0)
@@ -32,12 +46,17 @@ def written_whole(path: str | Path) -> Iterator[Path]:
     part = Path(name)
     try:
         yield part
-        try:
-            part.replace(path)
-        except OSError as error:
-            raise DesignError(f"{path}: cannot be written ({error.strerror or error})") from error
+        part.replace(path)
+    except OSError as error:
+        if error.errno is not None and error.errno not in NOT_WRITABLE:
+            raise  # a file that the block wanted to read, say
+        raise _not_written(path, error) from error
     finally:
         part.unlink(missing_ok=True)
+
+
+def _not_written(path: Path, error: OSError) -> DesignError:
+    return DesignError(f"{path}: cannot be written ({error.strerror or error})")
 
 
 def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
@@ -49,10 +68,7 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
         newline: How lines end in the file: a control wants carriage return and line feed.
     """
     with written_whole(path) as part:
-        try:
-            part.write_bytes(text.replace("\n", newline).encode("utf-8"))
-        except OSError as error:  # a full disk
-            raise DesignError(f"{path}: cannot be written ({error.strerror or error})") from error
+        part.write_bytes(text.replace("\n", newline).encode("utf-8"))
 
 
 def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:

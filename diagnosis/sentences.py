@@ -1,14 +1,15 @@
-"""What the pages on measurements say in words: verdicts with numbers, sizes with uncertainties."""
+"""What is said of a run: verdicts with numbers, sizes with uncertainties, what is left."""
 
 import math
+from collections.abc import Sequence
 
 from diagnosis.describe import Reported
 from diagnosis.fit import Fit
 from diagnosis.residuals import Comparison
 from diagnosis.verdict import Diagnosis, Step, Verdict
-from matstd.page import digits
 from twin.run import Run
 from twin.units import UM
+from twin.words import digits, listed, span, with_uncertainty
 
 _UNITS = (
     ("_um_per_m_K", "µm/(m K)"),
@@ -28,19 +29,8 @@ _UNITS = (
 
 _WORDS = {"tau": "time constant"}
 
-
-def with_uncertainty(value: float, u: float | None, unit: str = "") -> str:
-    """A number to two digits of its uncertainty.
-
-    Example:
-        >>> with_uncertainty(11.137, 0.538, "µm")
-        '11.14 ± 0.54 µm'
-    """
-    tail = f" {unit}" if unit else ""
-    if u is None or not u > 0.0 or not math.isfinite(u):
-        return f"{digits(value)}{tail}"
-    places = max(0, 1 - math.floor(math.log10(u)))
-    return f"{value:.{places}f} ± {u:.{places}f}{tail}"
+ALL_TOLD = 7
+"""Numbers of an effect that are told one by one; of more only the size is."""
 
 
 def named_value(reported: Reported) -> tuple[str, str]:
@@ -49,23 +39,37 @@ def named_value(reported: Reported) -> tuple[str, str]:
     Example:
         >>> named_value(Reported("tau_min", 42.07, 3.32, 60.0))
         ('time constant', '42.1 ± 3.3 min')
+        >>> named_value(Reported("instant_s", 7083.0, None, 1.0))
+        ('instant', '1.97 h')
     """
     name, unit = next(
         ((reported.name[: -len(end)], unit) for end, unit in _UNITS if reported.name.endswith(end)),
         (reported.name, ""),
     )
-    return _WORDS.get(name, name).replace("_", " "), with_uncertainty(
-        reported.value, reported.u, unit
-    )
+    words = _WORDS.get(name, name).replace("_", " ")
+    if unit == "s" and reported.u is None:
+        return words, span(reported.value)
+    return words, with_uncertainty(reported.value, reported.u, unit)
+
+
+def values(step: Step) -> list[tuple[str, str]]:
+    """Numbers of an added effect as a reader sees them, its size first.
+
+    Of an effect with many coefficients only what sums them up is told.
+    """
+    told = sorted(step.reported, key=lambda r: not r.name.startswith("amplitude"))
+    if len(told) > ALL_TOLD:
+        told = [r for r in told if r.name.startswith("amplitude")] or told[:ALL_TOLD]
+    return [named_value(r) for r in told]
 
 
 def sizes(step: Step, most: int) -> str:
-    """The leading numbers of an added effect in one clause."""
-    return ", ".join(" ".join(named_value(r)) for r in step.reported[:most])
+    """The leading numbers of an added effect in one clause, its size first."""
+    return ", ".join(" ".join(value) for value in values(step)[:most])
 
 
 def microns(value: float) -> str:
-    """A length in µm to two decimals, or to three digits where that would say nothing."""
+    """A length in µm to two decimals, or to two digits where that would say nothing."""
     um = value / UM
     return f"{um:.2f} µm" if abs(um) >= 0.095 else f"{digits(um, 2)} µm"
 
@@ -73,11 +77,6 @@ def microns(value: float) -> str:
 def stated_noise(run: Run) -> float:
     """Stated standard uncertainty of a touch, root mean square, mm."""
     return float((run.u**2).mean() ** 0.5)
-
-
-def _clause(words: str) -> str:
-    """Words on what a residual does, as a clause that stands after a colon."""
-    return f"it {words}" if words.startswith("varies") else words
 
 
 def noise_words(fit: Fit) -> str:
@@ -93,6 +92,11 @@ def excess(fit: Fit) -> float:
     """Root mean square of what is left beyond the stated noise, mm."""
     stated = stated_noise(fit.run)
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
+
+
+def clause(words: str) -> str:
+    """Words on what a residual does, as a clause that stands after a colon."""
+    return f"it {words}" if words.startswith("varies") else words
 
 
 def _fall(diagnosis: Diagnosis) -> str:
@@ -112,42 +116,62 @@ def _added(step: Step, most: int) -> str:
     return f"{name} ({sizes(step, most)}{alike})"
 
 
+def _them(steps: Sequence[Step]) -> str:
+    return "it" if len(steps) == 1 else "them"
+
+
 def verdict_sentence(diagnosis: Diagnosis) -> str:
     """The verdict in one plain sentence, with numbers and standard uncertainties."""
     most = 3 if len(diagnosis.steps) == 2 else 2 if len(diagnosis.steps) == 3 else 1
-    added = [_added(s, most) for s in diagnosis.steps[1:]]
+    steps = diagnosis.steps[1:]
+    named = [_added(s, most) for s in steps if s.is_named]
+    found = [_added(s, most) for s in steps if not s.is_named]
+    also = f" Added by name: {'; '.join(named)}." if named else ""
     if diagnosis.verdict is Verdict.MISSING:
-        what, them = ("one effect", "it") if len(added) == 1 else (f"{len(added)} effects", "them")
+        what = "one effect" if len(found) == 1 else f"{len(found)} effects"
         return (
-            f"The model lacks {what}: {'; '.join(added)}. With {them} {_fall(diagnosis)}; the "
-            f"noise is {noise_words(diagnosis.fit)}."
+            f"The model lacks {what}: {'; '.join(found)}.{also} With {_them(steps)} "
+            f"{_fall(diagnosis)}; the noise is {noise_words(diagnosis.fit)}."
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
-        words = "; ".join(dict.fromkeys(_clause(d.words) for d in diagnosis.depends_on[:2]))
-        named = f" Named were {'; '.join(added)}: {_fall(diagnosis)}." if added else ""
+        words = "; ".join(dict.fromkeys(clause(d.words) for d in diagnosis.depends_on[:2]))
+        what = f" Put in were {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
         return (
             f"Something is left that no effect of the library accounts for: "
             f"{microns(excess(diagnosis.fit))} rms beyond the stated noise of "
             f"{microns(stated_noise(diagnosis.run))}. It is no noise: "
-            f"{words or 'it varies with nothing that was recorded'}.{named}"
+            f"{words or 'it varies with nothing that was recorded'}.{what}"
         )
-    named = f" Added by name were {'; '.join(added)}: {_fall(diagnosis)}." if added else ""
+    fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""
     return (
-        f"Nothing is missing that this run could have shown: the error of held-out touches is "
-        f"{microns(diagnosis.fit.test_rms)}, and the noise is {noise_words(diagnosis.fit)}.{named}"
+        f"Nothing{' more' if named else ''} is missing that this run could have shown: the error "
+        f"of held-out touches is {microns(diagnosis.fit.test_rms)}, and the noise is "
+        f"{noise_words(diagnosis.fit)}.{also}{fall}"
     )
 
 
-def comparison_words(found: Comparison) -> str:
-    """What a model leaves of a run, in one plain sentence with numbers."""
+def comparison_sentence(found: Comparison) -> str:
+    """What a model leaves of a run, in plain words with numbers."""
     made = "predicts" if found.is_prediction else "fitted to the run explains"
     worst = found.worst
     text = (
         f"Of {microns(found.rms_measured)} rms that were measured the model {made} all but "
         f"{microns(found.rms)}; the noise is stated as {microns(stated_noise(found.run))}, "
         f"chi-square per degree of freedom is {digits(found.chi2_ratio)}, and the worst touch "
-        f"(line {found.run.line[worst]}) is off by {microns(float(found.residual[worst]))}."
+        f"(line {found.run.line[worst]}) is off by {microns(float(found.residual[worst]))}, "
+        f"{digits(abs(float(found.normalised[worst])), 2)} times its uncertainty."
     )
+    if found.rms > found.rms_measured:
+        text = text.replace(
+            f"all but {microns(found.rms)}", f"nothing: {microns(found.rms)} are left"
+        )
     if not found.structure:
         return f"{text} What is left looks like noise."
-    return f"{text} What is left is not noise: {_clause(found.structure[0].words)}."
+    return f"{text} What is left is not noise: {clause(found.structure[0].words)}."
+
+
+def rivals_words(step: Step, most: int = 2) -> str:
+    """What an effect cannot be told from, in a cell of a table."""
+    names = [r.effect.name for r in step.confusion.rivals] if step.confusion else []
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return (", ".join(names[:most]) if more else listed(names) if names else "") + more

@@ -1,0 +1,80 @@
+"""What compare and diagnose begin with: a run, a model that fits it, effects of the user's own."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from diagnosis.fit import MIN_TOUCHES
+from diagnosis.model_file import SavedModel, check_machine, read_model
+from twin.effect import Effect
+from twin.errors import DesignError, NotEnoughData
+from twin.files.run_file import read_run
+from twin.library import is_seen, load_installed_effects, load_user_effects, parse_effect
+from twin.run import Run
+
+
+def read_inputs(
+    run_file: str, model_file: str | None, effect_files: Iterable[str], same: str
+) -> tuple[Run, SavedModel | None]:
+    """A run and the model it is held against.
+
+    Args:
+        run_file: Measurements.
+        model_file: Of an earlier diagnosis; None for none.
+        effect_files: Python files with effects of the user's own.
+        same: What follows where the model was learnt from this very run, for the remark.
+
+    Raises:
+        BadFile: Either file, or a model of another machine.
+        NotEnoughData: Too few touches to place the standard.
+    """
+    load_installed_effects()
+    for path in effect_files:
+        load_user_effects(Path(path))
+    run = read_run(run_file)
+    if len(run) < MIN_TOUCHES:
+        raise NotEnoughData(
+            f"{run_file}: {len(run)} touch{'es' if len(run) > 1 else ''}, expected at least "
+            f"{MIN_TOUCHES}: fewer cannot even place the standard; add touches"
+        )
+    if model_file is None:
+        return run, None
+    saved = read_model(model_file)
+    check_machine(saved, run.touches.chain, model_file)
+    if is_learnt_from(saved, run):
+        remark = f"{model_file} was learnt from this very run, {same}"
+        run = replace(run, remarks=(*run.remarks, remark))
+    return run, saved
+
+
+def is_learnt_from(saved: SavedModel, run: Run) -> bool:
+    """Whether the estimates of a model rest upon this very run."""
+    return run.fingerprint in saved.source.learnt_from
+
+
+def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> list[Effect]:
+    """Effects that a user wants to add.
+
+    Args:
+        names: As given.
+        known: Effects that are in the model already.
+        run: The measurements.
+
+    Raises:
+        UnknownEffect, UnknownAxis, UnknownSymbol: A name that means nothing here.
+        DesignError: An effect that is there already, is given twice, or moves nothing in this run.
+    """
+    there = {effect.name for effect in known}
+    out: list[Effect] = []
+    for name in names:
+        effect = parse_effect(name, run.touches.chain)
+        if effect.name in there:
+            raise DesignError(f"--add {name}: is in the model already, expected another effect")
+        if effect.name in {e.name for e in out}:
+            raise DesignError(f"--add {name}: given twice, expected every effect once")
+        if not is_seen(effect, run.touches):
+            raise DesignError(
+                f"--add {name}: moves nothing at these touches, expected an effect that does"
+            )
+        out.append(effect)
+    return out

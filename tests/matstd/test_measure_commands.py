@@ -1,0 +1,207 @@
+"""compare and diagnose as a user meets them: models of other machines, of the same run, full disks.
+
+The run is that of a three-axis machine with a reversal of Y, made by the simulator of the oracles.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from simulator_case import simulate_case
+
+from diagnosis.model_file import read_model
+from matstd.cli import main
+from twin.files.run_file import read_run
+from twin.units import UM
+
+BAD = 2
+SAME_U = 0.1
+"""Touches that count twice would make an uncertainty smaller by 30 %."""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """run.csv, machine.toml, and a model that was learnt from that run with the effect added."""
+    place = tmp_path_factory.mktemp("measured")
+    run, machine, _ = simulate_case(
+        np.random.default_rng(21), "hmc1995", ("backlash(Y)",), with_alike=False
+    )
+    (place / "run.csv").write_text(run, encoding="utf-8")
+    (place / "machine.toml").write_text(machine, encoding="utf-8")
+    words = ["diagnose", str(place / "run.csv"), "--add", "backlash(Y)", "--no-report"]
+    assert main([*words, "-o", str(place / "added")]) == 0
+    return place
+
+
+def test_sizes_and_what_is_left_are_said_in_words(folder, tmp_path, capsys) -> None:
+    run = str(folder / "run.csv")
+    assert main(["diagnose", run, "-o", str(tmp_path / "out"), "--no-report"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("missing effect: The model lacks one effect: backlash(Y) (amplitude")
+    (row,) = [line for line in lines if line.startswith(" backlash(Y)")]
+    assert "±" in row
+    assert "µm" in row
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('name = "hmc1995"', 'name = "next door"', "machine.name: found 'hmc1995', expected"),
+        ("-375.0, 375.0", "-400.0, 375.0", "machine.axis.X.range: found [-375, 375]"),
+        ("-150.0, -560.0", "-150.0, -561.0", "machine.workpiece.origin"),
+    ],
+)
+def test_a_model_of_another_machine_is_refused(
+    folder, tmp_path, capsys, old, new, expected
+) -> None:
+    machine = (folder / "machine.toml").read_text(encoding="utf-8")
+    assert old in machine
+    (tmp_path / "machine.toml").write_text(machine.replace(old, new, 1), encoding="utf-8")
+    (tmp_path / "run.csv").write_text((folder / "run.csv").read_text(encoding="utf-8"))
+    model = str(folder / "added" / "model.toml")
+    for command in ("compare", "diagnose"):
+        words = [command, str(tmp_path / "run.csv"), "--model", model, "-o", str(tmp_path / "o")]
+        assert main(words) == BAD
+        told = capsys.readouterr().err
+        assert expected in told
+        assert told.count("\n") == 1
+    assert not (tmp_path / "o").exists()
+
+
+def test_no_touch_counts_twice(folder, tmp_path, capsys) -> None:
+    """Begun with a model of the same run, the same estimates come out, not surer ones."""
+    run, model = str(folder / "run.csv"), folder / "added" / "model.toml"
+    again = tmp_path / "again"
+    assert main(["diagnose", run, "--model", str(model), "-o", str(again), "--no-report"]) == 0
+    assert "learnt from this very run" in capsys.readouterr().out
+    first, second = read_model(model), read_model(again / "model.toml")
+    u = [float(np.linalg.norm(m.estimates.root[-1])) for m in (first, second)]  # of the reversal
+    assert u[1] == pytest.approx(u[0], rel=SAME_U)
+    assert abs(second.estimates.mean[-1] - first.estimates.mean[-1]) < u[0]
+    assert second.source.learnt_from == [read_run(run).fingerprint]
+    words = ["compare", run, "--model", str(model), "-o", str(tmp_path / "c"), "--no-report"]
+    assert main(words) == 0
+    assert "flatters" in capsys.readouterr().out
+
+
+def test_a_model_says_what_it_rests_upon(folder, tmp_path) -> None:
+    """A second run, here the first with another noise, makes the second revision."""
+    lines = (folder / "run.csv").read_text(encoding="utf-8").splitlines()
+    n = next(i for i, line in enumerate(lines) if not line.startswith("#"))
+    kept = [*lines[: n + 1], *lines[n + 1 :: 2]]
+    (tmp_path / "half.csv").write_text("\n".join(kept) + "\n", encoding="utf-8")
+    (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text(encoding="utf-8"))
+    model = folder / "added" / "model.toml"
+    words = ["diagnose", str(tmp_path / "half.csv"), "--model", str(model), "--no-report"]
+    assert main([*words, "-o", str(tmp_path / "o")]) == 0
+    source = read_model(tmp_path / "o" / "model.toml").source
+    assert source.revision == 2
+    assert source.learnt_from == [
+        read_run(folder / "run.csv").fingerprint,
+        read_run(tmp_path / "half.csv").fingerprint,
+    ]
+    assert source.made_with.startswith("material-standard ")
+
+
+@pytest.mark.parametrize(
+    ("effects", "expected"),
+    [
+        (["backlash(Y)", "backlash( Y )"], "given twice"),
+        (["artefact-form(nowhere)"], "moves nothing at these touches"),
+        (["location(EX0w)", "geometric(EXX,linear)"], "is in the model already"),
+        (["backlash(Q)"], "an axis of X, Z, Y"),
+        (["backlsh(Y)"], "unknown effect"),
+    ],
+)
+def test_effects_that_cannot_be_added(folder, tmp_path, capsys, effects, expected) -> None:
+    words = ["diagnose", str(folder / "run.csv"), "--add", *effects, "-o", str(tmp_path / "o")]
+    assert main(words) == BAD
+    assert expected in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_named_effect_is_not_called_missing(folder, tmp_path, capsys) -> None:
+    words = ["diagnose", str(folder / "run.csv"), "--add", "probe-radius", "--no-report"]
+    assert main([*words, "-o", str(tmp_path / "o")]) == 0
+    told = capsys.readouterr().out
+    assert "The model lacks one effect: backlash(Y)" in told
+    assert "Added by name: probe-radius" in told
+
+
+def test_a_file_is_no_folder(folder, tmp_path, capsys) -> None:
+    out = tmp_path / "precious.csv"
+    out.write_text("mine")
+    words = ["compare", str(folder / "run.csv"), "-o", str(out), "--force", "--no-report"]
+    assert main(words) == BAD
+    assert "is a file, expected a folder" in capsys.readouterr().err
+    assert out.read_text() == "mine"
+
+
+def test_old_plans_do_not_outlive_their_diagnosis(folder, tmp_path) -> None:
+    out = tmp_path / "o"
+    out.mkdir()
+    (out / "next_measurement_1.csv").write_text("of another day")
+    (out / "notes.txt").write_text("mine")
+    words = ["diagnose", str(folder / "run.csv"), "--add", "backlash(Y)", "--no-report"]
+    assert main([*words, "-o", str(out), "--force"]) == 0
+    assert sorted(p.name for p in out.iterdir()) == ["diagnosis.json", "model.toml", "notes.txt"]
+
+
+def test_a_full_disk_is_one_line(folder, tmp_path, capsys, monkeypatch) -> None:
+    """While a picture is drawn, which is where most of the bytes go."""
+    import diagnosis.ink
+
+    def full(figure: object, path: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(diagnosis.ink, "save", full)
+    monkeypatch.setattr("diagnosis.pictures_residuals.save", full)
+    monkeypatch.setattr("diagnosis.pictures.save", full)
+    words = ["compare", str(folder / "run.csv"), "-o", str(tmp_path / "o")]
+    assert main(words) == BAD
+    told = capsys.readouterr().err
+    assert told.endswith("o: cannot be written (No space left on device)\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_whoever_is_stopped_leaves_nothing_half_written(folder, tmp_path, number) -> None:
+    out = tmp_path / "o"
+    words = ["-m", "matstd", "diagnose", str(folder / "run.csv"), "-o", str(out)]
+    process = subprocess.Popen([sys.executable, *words], stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 60.0
+    while not list(tmp_path.iterdir()) and time.monotonic() < until:
+        time.sleep(0.02)  # until the working folder is there, so that there is something to tidy
+    os.kill(process.pid, number)
+    told = process.communicate(timeout=60.0)[1]
+    assert process.returncode == 130
+    assert told.strip().endswith("stopped, and nothing half-written is left")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_json_and_words_name_a_region_alike(folder, tmp_path, capsys) -> None:
+    """A run whose first half hour is lifted by 9 um: columns in the file, words on the console."""
+    lines = (folder / "run.csv").read_text(encoding="utf-8").splitlines()
+    n = next(i for i, line in enumerate(lines) if not line.startswith("#"))
+    columns = lines[n].split(",")
+    at = columns.index("time_s")
+    rows = []
+    for line, deviation in zip(lines[n + 1 :], read_run(folder / "run.csv").deviation, strict=True):
+        lift = 9.0 if float(line.split(",")[at]) < 1800.0 else 0.0
+        rows.append(f"{line},{lift + deviation / UM:.3f}")
+    text = [*lines[:n], lines[n] + ",dev_um", *rows]
+    (tmp_path / "lifted.csv").write_text("\n".join(text) + "\n", encoding="utf-8")
+    (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text(encoding="utf-8"))
+    out = tmp_path / "o"
+    model = Path(folder / "added" / "model.toml")
+    words = ["compare", str(tmp_path / "lifted.csv"), "--model", str(model), "--no-report"]
+    assert main([*words, "-o", str(out)]) == 0
+    told = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
+    assert any("time_s" in region["region"] for region in told["where"])
+    assert "time < " in capsys.readouterr().out
