@@ -6,17 +6,23 @@ deviation for every parameter and a standard uncertainty for every touch. Rows a
 ``W = rows * prior_sd / u``, so that one is what a typical error shows against the noise.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from sensitivity.identifiability import Freedom, Identifiability, identifiability
 from twin.errors import ShapeMismatch
 from twin.frames import Array
 
-DEPENDENT = 1e-6
-"""Share of a column that must be left, after all earlier ones are taken out, to call it new."""
+__all__ = [
+    "Freedom",
+    "Identifiability",
+    "Posterior",
+    "identifiability",
+    "prior_sd_of_tip",
+    "whitened",
+]
 
 
 def whitened(rows: Array, prior_sd: Array, u: Array | float) -> Array:
@@ -116,95 +122,3 @@ def prior_sd_of_tip(G: Array, prior_sd: Array) -> Array:
     scaled = G * prior_sd
     size: Array = np.sqrt(np.einsum("mip,mip->m", scaled, scaled))
     return size
-
-
-@dataclass(frozen=True)
-class Freedom:
-    """A parameter that the touches cannot tell from others: only their sum has a value.
-
-    Attributes:
-        parameter: That can be left out.
-        alike: What imitates it exactly, as (name, value per unit of the parameter), base units.
-    """
-
-    parameter: str
-    alike: tuple[tuple[str, float], ...]
-
-    def __str__(self) -> str:
-        if not self.alike:
-            return f"{self.parameter} moves no touch"
-        terms = " ".join(f"{value:+.4g} {name}" for name, value in self.alike)
-        return f"{self.parameter} cannot be told from {terms}"
-
-
-@dataclass(frozen=True, eq=False)
-class Identifiability:
-    """What the touches can and cannot separate.
-
-    Attributes:
-        parameters: Their number.
-        rank: Number of independent combinations that move any touch.
-        condition: Largest over smallest singular value of the independent columns, each scaled to
-            length one.
-        freedoms: One for every parameter beyond the rank.
-    """
-
-    parameters: int
-    rank: int
-    condition: float
-    freedoms: tuple[Freedom, ...]
-
-
-def identifiability(W: Array, prior_sd: Array, names: Sequence[str]) -> Identifiability:
-    """Rank and gauge freedoms of touches, the freedoms in words.
-
-    Columns are taken in their order, and one that lies in the span of those before it is a freedom:
-    so parameters that shall be the first to go (set-up, tool, zero positions) come last.
-
-    Args:
-        W: Whitened rows, shape (N, P).
-        prior_sd: Shape (P,).
-        names: Of the parameters.
-    """
-    length = np.linalg.norm(W, axis=0)
-    unit = W / np.where(length > 0.0, length, 1.0)
-    basis = np.zeros((len(W), 0))
-    kept: list[int] = []
-    gone: list[int] = []
-    silent = 1e-9 * max(float(length.max(initial=0.0)), 1e-300)
-    for p in range(unit.shape[1]):
-        rest = unit[:, p]
-        for _ in range(2):  # once more against rounding
-            rest = rest - basis @ (basis.T @ rest)
-        size = float(np.linalg.norm(rest))
-        if length[p] <= silent or size < DEPENDENT:
-            gone.append(p)
-            continue
-        kept.append(p)
-        basis = np.column_stack([basis, rest / size])
-    singular = np.linalg.svd(unit[:, kept], compute_uv=False) if kept else np.ones(1)
-    freedoms = [_freedom(p, kept, W, prior_sd, names, silent) for p in gone]
-    return Identifiability(
-        parameters=W.shape[1],
-        rank=len(kept),
-        condition=float(singular[0] / singular[-1]),
-        freedoms=tuple(freedoms),
-    )
-
-
-def _freedom(
-    p: int, kept: list[int], W: Array, prior_sd: Array, names: Sequence[str], silent: float
-) -> Freedom:
-    """Which of the kept columns make up a dependent one."""
-    length = np.linalg.norm(W[:, p])
-    if length <= silent or not kept:
-        return Freedom(names[p], ())
-    columns = W[:, kept]
-    share = np.linalg.lstsq(columns, W[:, p], rcond=None)[0]
-    weighty = np.abs(share) * np.linalg.norm(columns, axis=0) > 1e-3 * length
-    alike = [
-        (names[k], float(share[i] * prior_sd[k] / prior_sd[p]))
-        for i, k in enumerate(kept)
-        if weighty[i]
-    ]
-    return Freedom(names[p], tuple(sorted(alike, key=lambda term: -abs(term[1]))))

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from sensitivity.identifiability import identifiability
 from sensitivity.information import (
     Posterior,
-    identifiability,
     prior_sd_of_tip,
     whitened,
 )

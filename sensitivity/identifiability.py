@@ -1,0 +1,251 @@
+"""What touches can and cannot separate, in the words of a metrologist.
+
+A gauge freedom is a direction of parameter space that no touch notices: the constants of an axis
+and the set-up of the standard, the tilt of a ram and its straightness at one tool length. They come
+from the null space of the rows, by `sensitivity.nullspace`, and are checked, one by one, against
+richer touches that could have been made: another stylus length, another set-up, the whole travel.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sensitivity.nullspace import INVISIBLE, condition, groups, seen, sparse
+from sensitivity.parameter_words import in_words, weighted
+from twin.chain import Chain
+from twin.effect import Effect, Parameter
+from twin.frames import Array
+from twin.symbols import Family, Symbol
+from twin.units import UM, URAD
+
+NEVER = "nothing that touches a workpiece; it is fixed by convention"
+"""What resolves a freedom that is one of the machine and not of the touches."""
+
+_KEPT = 1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """A parameter that the touches cannot tell from others: only their sum has a value.
+
+    Attributes:
+        parameter: That can be left out.
+        alike: What imitates it exactly, as (name, value per unit of the parameter), base units.
+        words: The same as an equation in words.
+        why: What makes them alike.
+        resolved_by: Touches that would tell them apart.
+    """
+
+    parameter: str
+    alike: tuple[tuple[str, float], ...]
+    words: str = ""
+    why: str = ""
+    resolved_by: str = ""
+
+    def __str__(self) -> str:
+        if not self.alike:
+            return f"{self.parameter} moves no touch"
+        terms = " ".join(f"{value:+.4g} {name}" for name, value in self.alike)
+        return f"{self.parameter} cannot be told from {terms}"
+
+
+@dataclass(frozen=True)
+class Group:
+    """Parameters that are tied to one another by gauge freedoms, and to no others.
+
+    Attributes:
+        members: Names.
+        known: Number of their combinations that the touches see; the rest is gauge.
+        words: The same in words.
+    """
+
+    members: tuple[str, ...]
+    known: int
+    words: str
+
+
+@dataclass(frozen=True, eq=False)
+class Identifiability:
+    """What the touches can and cannot separate.
+
+    Attributes:
+        parameters: Their number.
+        rank: Number of independent combinations that move any touch.
+        condition: Largest over smallest visible singular value of the columns, each scaled to
+            length one.
+        condition_prior: The same with every column times its parameter's expected size.
+        condition_raw: The same unscaled, per µm and µrad.
+        freedoms: One for every parameter beyond the rank.
+        groups: Of parameters that are confounded with one another.
+    """
+
+    parameters: int
+    rank: int
+    condition: float
+    condition_prior: float
+    condition_raw: float
+    freedoms: tuple[Freedom, ...]
+    groups: tuple[Group, ...]
+
+
+Parameters = Sequence[tuple[Effect, Parameter]]
+
+
+def identifiability(
+    W: Array,
+    prior_sd: Array,
+    names: Sequence[str],
+    parameters: Parameters = (),
+    chain: Chain | None = None,
+    richer: Mapping[str, Array] | None = None,
+) -> Identifiability:
+    """Rank, condition, gauge freedoms and confounded groups of some touches.
+
+    Freedoms have as few members as could be found. Where it is free which member is named as the
+    one to leave out, set-up, tool and zero positions go first, as conventions have it.
+
+    Args:
+        W: Whitened rows, shape (N, P).
+        prior_sd: Shape (P,).
+        names: Of the parameters.
+        parameters: The same with their effects (`Model.parameters`), for words and conventions.
+        chain: The machine, for words; None to do without.
+        richer: Rows of touches that could be made instead, by what they are called, cheapest first;
+            columns as those of W, and after them those of set-ups and tools of their own.
+    """
+    found = seen(W)
+    null = found.null
+    richer = richer or {}
+    never = _never_seen(W, richer)
+    order = sorted(range(len(names)), key=lambda p: _convention(parameters, p))
+    units = [p.unit for _, p in parameters] or ["1"] * len(names)
+    freedoms = []
+    for lead, z in sparse(null, order, never):
+        size = np.abs(z).max()
+        base = -z * prior_sd / prior_sd[lead]
+        others = [k for k in np.argsort(-np.abs(z), kind="stable").tolist() if k != lead and z[k]]
+        alike = tuple((names[k], float(base[k])) for k in others)
+        words = why = ""
+        if chain is not None:
+            words = _equation(lead, others, base, names, units, chain)
+            why = _why([lead, *others], parameters, chain)
+        freedoms.append(Freedom(names[lead], alike, words, why, _resolved_by(z / size, richer)))
+    per_unit = np.array([URAD if u == "rad" else UM for u in units])
+    raw = W / np.where(prior_sd > 0.0, prior_sd, 1.0) * per_unit
+    return Identifiability(
+        parameters=W.shape[1],
+        rank=found.rank,
+        condition=found.condition,
+        condition_prior=condition(W, found.rank),
+        condition_raw=condition(raw, found.rank),
+        freedoms=tuple(freedoms),
+        groups=_groups(null, names),
+    )
+
+
+def _convention(parameters: Parameters, p: int) -> tuple[int, int]:
+    """Rank of a parameter among those by which a freedom is named: low ones are left out first."""
+    symbol = getattr(parameters[p][0], "symbol", None) if parameters else None
+    if not isinstance(symbol, Symbol):
+        is_setup = bool(parameters) and parameters[p][0].kind == "setup"
+        return (-2 if is_setup else 3, -p)
+    if symbol.family is Family.SETUP:
+        return (-2 if symbol.link == "w" else -1, -p)
+    if symbol.family is Family.LOCATION:
+        return (2 - int(symbol.is_angular), -p)
+    still = getattr(parameters[p][0], "shape", "") == "constant"
+    return (0 if still else 3 if symbol.is_angular else 4, -p)
+
+
+def _equation(
+    lead: int,
+    others: list[int],
+    base: Array,
+    names: Sequence[str],
+    units: Sequence[str],
+    chain: Chain,
+) -> str:
+    """`set-up rotation about Z (EC0w) = - zero position of C (EC0C)`."""
+    left = in_words(names[lead], chain)
+    if not others:
+        return f"{left} moves no touch"
+    right = " ".join(weighted(base[k], names[k], units[k], units[lead], chain) for k in others)
+    return f"{left} = {right.removeprefix('+ ')}"
+
+
+def _why(members: list[int], parameters: Parameters, chain: Chain) -> str:
+    """What makes the members of a freedom alike, from what they are."""
+    symbols = [getattr(parameters[p][0], "symbol", None) for p in members]
+    known = [s for s in symbols if isinstance(s, Symbol)]
+    if len(known) < len(members):
+        is_setup = any(parameters[p][0].kind == "setup" for p in members)
+        return "the standard moves as a whole" if is_setup else ""
+    still = [s for s in known if s.link not in "wt" and not chain.link(s.link).programmed]
+    if len(known) == 1:
+        if still:
+            return "the spindle stands still, and the ball hangs on its line"
+        return "it turns about the line from spindle to ball" if known[0].is_angular else ""
+    families, links = {s.family for s in known}, {s.link for s in known}
+    mixed = len({s.is_angular for s in known}) == 2
+    if "w" in links:
+        return "the standard on the table moves as a whole"
+    if len(known) == 2 and mixed and Family.LOCATION in families and len(links) == 1:
+        return "a squareness is the slope of a straightness"
+    if len(known) == 2 and mixed:
+        return "the ball hangs at one length, so a tilt is a displacement"
+    if "t" in links:
+        return "the tool moves as a whole"
+    if still:
+        return "the spindle stands still, so its errors are constant"
+    return "the body between two axes moves as a whole"
+
+
+def _never_seen(W: Array, richer: Mapping[str, Array]) -> Array | None:
+    """Directions that none of the richer touches shows either, (H, P)."""
+    if not richer:
+        return None
+    P = W.shape[1]
+    return seen(np.concatenate([W, *(_without_own(R, P) for R in richer.values())])).null
+
+
+def _without_own(W: Array, P: int) -> Array:
+    """Columns of the first P parameters, less what set-ups and tools of their own can imitate."""
+    own = W[:, P:]
+    length = np.linalg.norm(own, axis=0)
+    own = own[:, length > 0.0] / length[length > 0.0]
+    left = W[:, :P]
+    if own.shape[1]:
+        U, s, _ = np.linalg.svd(own, full_matrices=False)
+        U = U[:, s > INVISIBLE * s[0]]
+        left = left - U @ (U.T @ left)
+        left = left - U @ (U.T @ left)
+    return left
+
+
+def _resolved_by(z: Array, richer: Mapping[str, Array]) -> str:
+    """The first of the richer touches in which a gauge direction shows."""
+    if not richer:
+        return ""
+    for name, W in richer.items():
+        left = _without_own(W, len(z))
+        if np.linalg.norm(left @ z) > _KEPT * np.linalg.norm(left, axis=0).max():
+            return name
+    return NEVER
+
+
+def _groups(null: Array, names: Sequence[str]) -> tuple[Group, ...]:
+    """Confounded groups, the largest first; parameters that move nothing are in none."""
+    out = []
+    for group in groups(null):
+        if len(group) == 1:
+            continue
+        size = np.linalg.svd(null[:, group], compute_uv=False)
+        known = len(group) - int(np.sum(size > 1e-9 * size[0]))
+        members = tuple(names[p] for p in group)
+        out.append(
+            Group(
+                members, known, f"{len(group)} parameters, {known} combinations of which are seen"
+            )
+        )
+    return tuple(sorted(out, key=lambda g: -len(g.members)))

@@ -1,0 +1,247 @@
+"""What no touch of a run or design can show: the null space of its rows, in sparse directions.
+
+Columns are brought to length one first, so that units and expected sizes do not decide what counts
+as seen. Parameters that can be moved together without any touch noticing fall into groups that have
+nothing to do with one another; in every group the directions with the fewest parameters are looked
+for by the smallest sum of absolute values (a linear program), which for such geometry finds the
+pairs and triples that an engineer would name.
+
+Reference:
+    Coleman and Pothen, SIAM J. Alg. Disc. Meth. 7 (1986) 527 (sparse null bases, greedy and hard);
+    Chen, Donoho and Saunders, SIAM Review 43 (2001) 129 (sparsity by the sum of absolute values).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import linprog
+
+from twin.frames import Array
+
+INVISIBLE = 1e-8
+"""Singular value over the largest, columns of length one, below which a direction is never seen:
+far above rounding, far below the weakest direction that a probed run shows."""
+
+SILENT = 1e-9
+"""Length of a column over the longest below which its parameter moves nothing."""
+
+_NOTHING = 1e-6  # part of a direction's largest weight that counts as zero
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What rows see of their parameters, without any prior.
+
+    Attributes:
+        length: Of every column, (P,).
+        singular: Singular values of the columns brought to length one, largest first, (P,).
+        directions: Right singular vectors, one a row, (P, P); silent columns have their own.
+    """
+
+    length: Array
+    singular: Array
+    directions: Array
+
+    @property
+    def rank(self) -> int:
+        """Number of independent combinations that the rows see."""
+        return int(np.sum(self.singular > INVISIBLE * max(float(self.singular.max()), 1e-300)))
+
+    @property
+    def condition(self) -> float:
+        """Largest over smallest visible singular value, columns of length one."""
+        return float(self.singular[0] / self.singular[self.rank - 1]) if self.rank else 1.0
+
+    @cached_property
+    def null(self) -> Array:
+        """Directions that no row sees, weights of the parameters as they stand in W, (G, P)."""
+        rows = self.directions[self.rank :]
+        loud = self.length > SILENT * max(float(self.length.max(initial=0.0)), 1e-300)
+        return rows / np.where(loud, self.length, 1.0)
+
+
+def seen(W: Array) -> Seen:
+    """What rows (N, P) see of their parameters."""
+    P = W.shape[1]
+    length = np.linalg.norm(W, axis=0)
+    loud = np.flatnonzero(length > SILENT * max(float(length.max(initial=0.0)), 1e-300))
+    silent = np.setdiff1d(np.arange(P), loud)
+    singular, directions = np.zeros(P), np.zeros((P, P))
+    if len(loud):
+        _, s, Vt = np.linalg.svd(np.linalg.qr(W[:, loud] / length[loud], mode="r"))
+        singular[: len(s)] = s
+        directions[: len(loud), loud] = Vt
+    directions[np.arange(len(loud), P), silent] = 1.0
+    return Seen(length, singular, directions)
+
+
+def condition(W: Array, rank: int) -> float:
+    """Largest over smallest visible singular value of rows as they stand, `rank` being visible."""
+    s = np.linalg.svd(np.linalg.qr(W, mode="r"), compute_uv=False)
+    return float(s[0] / s[rank - 1]) if rank else 1.0
+
+
+def groups(null: Array) -> list[list[int]]:
+    """Parameters that share a null direction, directly or over others; silent ones alone.
+
+    Args:
+        null: Null directions, (G, P).
+    """
+    if not len(null):
+        return []
+    basis = np.linalg.qr(_unit(null)[0].T)[0]
+    tied = np.abs(basis @ basis.T) > _NOTHING
+    left, out = set(np.flatnonzero(np.diag(tied)).tolist()), []
+    while left:
+        group, fresh = set(), {min(left)}
+        while fresh:
+            group |= fresh
+            fresh = set(np.flatnonzero(tied[list(fresh)].any(axis=0)).tolist()) - group
+        out.append(sorted(group))
+        left -= group
+    return out
+
+
+def _unit(null: Array) -> tuple[Array, Array]:
+    """Null directions with every parameter's largest weight made one, and those weights, (P,)."""
+    size = np.abs(null).max(axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    return null / size, size
+
+
+def sparse(
+    null: Array, last: Sequence[int] = (), inside: Array | None = None
+) -> list[tuple[int, Array]]:
+    """Independent null directions with few parameters, as many as there are.
+
+    Args:
+        null: Null directions, (G, P), in units in which the parameters are of like size.
+        last: Parameters by which a direction is named where it has a choice, most wanted first.
+        inside: Null directions, (H, P), that shall be spanned by the first of those returned; None
+            for none.
+
+    Returns:
+        Pairs of the naming parameter, each used once if that can be, and weights (P,), one at that
+        parameter.
+    """
+    P = null.shape[1]
+    rank_of = {p: i for i, p in enumerate(last)}
+    key = [(rank_of.get(p, len(rank_of)), -p) for p in range(P)]
+    vectors: list[Array] = []
+    for some in (inside, null):
+        if some is None or not len(some):
+            continue
+        for group in groups(some):
+            N = np.linalg.svd(some[:, group])[2][: _dimension(some[:, group])]
+            have = [v[group] for v in vectors if set(np.flatnonzero(v).tolist()) <= set(group)]
+            order = sorted(range(len(group)), key=lambda i: key[group[i]])
+            for vector in _fewest(N, have, order):
+                vectors.append(np.zeros(P))
+                vectors[-1][group] = vector
+    return _named(vectors, key)
+
+
+def _named(vectors: list[Array], key: list[tuple[int, int]]) -> list[tuple[int, Array]]:
+    """Directions with a naming parameter each, which has weight one."""
+    out, taken = [], set()
+    for vector in vectors:
+        members = np.flatnonzero(vector).tolist()
+        free = [p for p in members if p not in taken] or members
+        lead = min(free, key=lambda p: key[p])
+        taken.add(lead)
+        out.append((lead, vector / vector[lead]))
+    return out
+
+
+def _dimension(null: Array) -> int:
+    s = np.linalg.svd(null, compute_uv=False)
+    return int(np.sum(s > 1e-9 * s[0]))
+
+
+def _fewest(N: Array, have: list[Array], order: list[int]) -> list[Array]:
+    """Independent directions of the span of rows N (g, p), those with the fewest weights first.
+
+    Args:
+        N: Orthonormal directions.
+        have: Directions of the span that are there already.
+        order: Of the parameters; of two that are the same but for size the earlier is eliminated.
+    """
+    g, p = N.shape
+    pairs, gone = _pairs(N, order)
+    rest = N
+    if gone:
+        _, s, Vt = np.linalg.svd(N[:, gone].T)
+        rest = Vt[int(np.sum(s > 1e-9)) :] @ N
+    chosen = _independent([*have, *pairs], [], g)
+    if len(chosen) < g:
+        found = [z for lead in range(p) if (z := _smallest(rest, lead)) is not None]
+        found.sort(key=lambda z: (np.count_nonzero(z), float(np.abs(z).sum())))
+        chosen = _independent([*found, *N], chosen, g)
+    return chosen[len(have) :]
+
+
+def _independent(vectors: list[Array], chosen: list[Array], most: int) -> list[Array]:
+    """Those chosen and of some vectors, in their order, as many as are independent."""
+    chosen = list(chosen)
+    basis = np.linalg.qr(np.array(chosen).T)[0].T if chosen else np.zeros((0, len(vectors[0])))
+    for z in vectors:
+        if len(chosen) == most:
+            break
+        left = z - basis.T @ (basis @ z)
+        left = left - basis.T @ (basis @ left)
+        if np.linalg.norm(left) > _NOTHING * np.linalg.norm(z):
+            chosen.append(np.where(np.abs(z) > _NOTHING * np.abs(z).max(), z, 0.0))
+            basis = np.vstack([basis, left / np.linalg.norm(left)])
+    return chosen
+
+
+def _pairs(N: Array, order: list[int]) -> tuple[list[Array], list[int]]:
+    """Null directions of two parameters, and the parameter of each that they eliminate."""
+    p = N.shape[1]
+    seen_part = np.eye(p) - N.T @ N
+    size = np.sqrt(np.maximum(np.diag(seen_part), 0.0))
+    vectors, gone = [], []
+    for at, i in enumerate(order):
+        if size[i] < 1e-7:  # moves nothing by itself
+            vectors.append(np.eye(p)[i])
+            gone.append(i)
+            continue
+        for j in reversed(order[at + 1 :]):
+            if size[j] > 1e-7 and abs(seen_part[i, j]) > (1.0 - 1e-10) * size[i] * size[j]:
+                z = np.zeros(p)
+                z[i], z[j] = 1.0, -np.sign(seen_part[i, j]) * size[i] / size[j]
+                vectors.append(z)
+                gone.append(i)
+                break
+    return vectors, gone
+
+
+def _smallest(N: Array, lead: int) -> Array | None:
+    """Direction with weight one at a parameter and the smallest sum of absolute weights, (p,)."""
+    g, p = N.shape
+    if not g or np.abs(N[:, lead]).max() < 1e-9:
+        return None
+    # z = N^T c with -t <= z <= t, smallest sum of t
+    unit = np.eye(p)
+    found = linprog(
+        np.concatenate([np.zeros(g), np.ones(p)]),
+        A_ub=np.block([[N.T, -unit], [-N.T, -unit]]),
+        b_ub=np.zeros(2 * p),
+        A_eq=np.concatenate([N[:, lead], np.zeros(p)])[None],
+        b_eq=[1.0],
+        bounds=[(None, None)] * g + [(0.0, None)] * p,
+        method="highs",
+    )
+    if found.status != 0:
+        return None
+    z = N.T @ found.x[:g]
+    support = np.abs(z) > _NOTHING * np.abs(z).max()
+    # the same support again, exactly: what is outside it is made zero by least squares
+    outside = N[:, ~support]
+    c = found.x[:g]
+    if outside.size:
+        c = c - np.linalg.lstsq(outside.T, outside.T @ c, rcond=None)[0]
+    z = np.where(support, N.T @ c, 0.0)
+    return np.asarray(z / z[lead], dtype=np.float64)
