@@ -116,8 +116,8 @@ def identifiability(
     """
     found = seen(W)
     null = found.null
-    richer = richer or {}
-    never = _never_seen(W, richer)
+    more = {name: _without_own(R, W.shape[1]) for name, R in (richer or {}).items()}
+    never = seen(np.concatenate([W, *more.values()])).null if more else None
     order = sorted(range(len(names)), key=lambda p: _convention(parameters, p))
     units = [p.unit for _, p in parameters] or ["1"] * len(names)
     freedoms = []
@@ -130,7 +130,7 @@ def identifiability(
         if chain is not None:
             words = _equation(lead, others, base, names, units, chain)
             why = _why([lead, *others], parameters, chain)
-        freedoms.append(Freedom(names[lead], alike, words, why, _resolved_by(z / size, richer)))
+        freedoms.append(Freedom(names[lead], alike, words, why, _resolved_by(z / size, more)))
     per_unit = np.array([URAD if u == "rad" else UM for u in units])
     raw = W / np.where(prior_sd > 0.0, prior_sd, 1.0) * per_unit
     return Identifiability(
@@ -201,14 +201,6 @@ def _why(members: list[int], parameters: Parameters, chain: Chain) -> str:
     return "the body between two axes moves as a whole"
 
 
-def _never_seen(W: Array, richer: Mapping[str, Array]) -> Array | None:
-    """Directions that none of the richer touches shows either, (H, P)."""
-    if not richer:
-        return None
-    P = W.shape[1]
-    return seen(np.concatenate([W, *(_without_own(R, P) for R in richer.values())])).null
-
-
 def _without_own(W: Array, P: int) -> Array:
     """Columns of the first P parameters, less what set-ups and tools of their own can imitate."""
     own = W[:, P:]
@@ -224,14 +216,11 @@ def _without_own(W: Array, P: int) -> Array:
 
 
 def _resolved_by(z: Array, richer: Mapping[str, Array]) -> str:
-    """The first of the richer touches in which a gauge direction shows."""
-    if not richer:
-        return ""
+    """The first of the richer touches, freed of what is their own, in which a direction shows."""
     for name, W in richer.items():
-        left = _without_own(W, len(z))
-        if np.linalg.norm(left @ z) > _KEPT * np.linalg.norm(left, axis=0).max():
+        if np.linalg.norm(W @ z) > _KEPT * np.linalg.norm(W, axis=0).max():
             return name
-    return NEVER
+    return NEVER if richer else ""
 
 
 def _groups(null: Array, names: Sequence[str]) -> tuple[Group, ...]:

@@ -1,0 +1,112 @@
+"""To which degree the touches support every component error."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sensitivity.parameter_words import in_words
+from twin.chain import Link
+from twin.effects.geometric import HigherOrder
+from twin.frames import Array
+from twin.model import Model, columns
+from twin.symbols import Family, Symbol
+from twin.touches import Touches
+from twin.units import shown
+
+HIGHEST = 8
+"""Highest degree that is tried."""
+
+SUPPORTED = 0.5
+"""A coefficient is supported when the touches leave less than this part of its expected size."""
+
+
+@dataclass(frozen=True)
+class Degree:
+    """What touches support of one component error over its reading.
+
+    Attributes:
+        symbol: Name, `EXX`.
+        supported: Degrees (harmonics on a rotary axis) whose coefficients the touches determine,
+            each with all lower ones free, without a gap; the first may be 2.
+        largest: Largest of them; 0 where there is none.
+        u: Standard uncertainty of the coefficient of that degree, mm or rad; 0 where there is none.
+        words: The same in words.
+    """
+
+    symbol: str
+    supported: tuple[int, ...]
+    largest: int
+    u: float
+    words: str
+
+
+def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) -> tuple[Degree, ...]:
+    """Largest degree of every component error of an axis that a program positions.
+
+    The error's own distributions are replaced by Chebyshev polynomials, or harmonics, of expected
+    size ``sd/k^1.5``; all other errors and the set-up stay free. Of the coefficient of degree n,
+    with those below it free, ``(1 + C^T C - C^T W M^-1 W^T C)^-1`` is left.
+
+    Args:
+        model: Machine and its expected errors.
+        touches: The touches, (N,).
+        W: Their whitened rows with the set-up free, (N, P).
+        noise: Standard deviation of a touch, mm.
+    """
+    symbols = [getattr(effect, "symbol", None) for effect, _ in model.parameters]
+    out = []
+    for symbol in model.chain.symbols:
+        link = model.chain.link(symbol.link)
+        own = np.array([s == symbol for s in symbols])
+        if symbol.family is not Family.COMPONENT or not link.programmed or not own.any():
+            continue
+        sd = float(model.prior_sd[own].max())
+        effect = HigherOrder(symbol, HIGHEST, sd, link.kind == "rotary")
+        size = np.array([p.sd for p in effect.parameters])
+        C = columns([effect], touches) * size / noise
+        rest = W[:, ~own]
+        shared = rest.T @ C
+        M = np.eye(rest.shape[1]) + rest.T @ rest
+        A = C.T @ C - shared.T @ np.linalg.solve(M, shared)
+        out.append(_degree(symbol, link, A, size, model))
+    return tuple(out)
+
+
+def _degree(symbol: Symbol, link: Link, A: Array, size: Array, model: Model) -> Degree:
+    """Degrees that an information A supports, in units of the expected sizes."""
+    each = 2 if link.kind == "rotary" else 1
+    left = np.zeros(HIGHEST)
+    for k in range(HIGHEST):
+        upto = each * (k + 1)
+        covariance = np.linalg.solve(np.eye(upto) + A[:upto, :upto], np.eye(upto))
+        left[k] = np.sqrt(np.diag(covariance)[upto - each :].max())
+    supported = _first_run((left < SUPPORTED).tolist())
+    largest = max(supported, default=0)
+    u = float(left[largest - 1] * size[each * largest - 1]) if largest else 0.0
+    return Degree(symbol.name, supported, largest, u, _words(symbol, link, supported, u, model))
+
+
+def _first_run(is_supported: list[bool]) -> tuple[int, ...]:
+    """Degrees from the first that is supported to the last before one that is not.
+
+    The first may be 2, where degree 1 is tied to a location error or the set-up.
+    """
+    start = next((k for k in (0, 1) if is_supported[k]), None)
+    if start is None:
+        return ()
+    end = start
+    while end < len(is_supported) and is_supported[end]:
+        end += 1
+    return tuple(range(start + 1, end + 1))
+
+
+def _words(symbol: Symbol, link: Link, supported: tuple[int, ...], u: float, model: Model) -> str:
+    """`straightness of X in Y (EYX): degrees 2 to 5, degree 5 to 0.4 µm`."""
+    what = in_words(f"geometric({symbol.name},)", model.chain).strip()
+    kind = "harmonic" if link.kind == "rotary" else "degree"
+    if not supported:
+        return f"{what}: no {kind}"
+    label, factor = shown("rad" if symbol.is_angular else "mm")
+    first, last = supported[0], supported[-1]
+    which = f"{kind} {last}" if first == last else f"{kind}s {first} to {last}"
+    return f"{what}: {which}, {kind} {last} to {u / factor:.2g} {label}"
