@@ -22,7 +22,7 @@ Progress = Callable[[float, str], None]
 BLOCK = 256
 """Columns that are projected at a time."""
 
-GRID_MOST = 400
+GRID_MOST = 1000
 """Most points of the grid of one effect's inner parameters."""
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from diagnosis.ambiguity import ConfusionClass, confusion_class
 from diagnosis.candidates import (
+    Complement,
     Progress,
     Sized,
     projected,
@@ -138,8 +139,9 @@ def _steps(
     heads = [classes[i].sized for i in order]
     effects = [*added, *heads]
     last = task.fit(effects, gross, free_inner=True)
-    told = sizes(task, effects, gross, final.library.complement)
-    out = [Step(None, task.fit((), gross), 1.0, (), None)]
+    first = task.fit((), gross)
+    told = sizes(task, effects, gross, Complement.of(first))
+    out = [Step(None, first, 1.0, (), None)]
     for k, sized in enumerate(effects):
         fit = last if k + 1 == len(effects) else task.fit(effects[: k + 1], gross)
         i = order[k - len(added)] if k >= len(added) else -1
