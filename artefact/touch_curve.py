@@ -14,6 +14,7 @@ import numpy as np
 from artefact.criterion import Criterion
 from artefact.touchable import Requests
 from sensitivity.design import Selection, fill
+from sensitivity.purpose import purpose
 from twin.errors import DesignError
 from twin.frames import Array
 
@@ -65,9 +66,11 @@ def touch_curve(
         raise DesignError(f"{len(touches)} touches looked at by {list(counts)}, expected some")
     designed = len(touches)
     numbers = tuple(sorted({*counts, designed}))
-    predict = aim.purposes["I"]
-    W = predict.rows(aim.whitened(touches))
-    forms = [_form(aim, tip) for tip in (aim.tip_volume, aim.tip_user)]
+    areas = (aim.tip_volume, aim.tip_user)
+    rows = aim.whitened(touches)
+    predict = purpose(np.concatenate(areas), rows, aim.prior_sd)
+    W = predict.rows(rows)
+    forms = [_form(aim, tip, predict.directions) for tip in areas]
     left = np.empty((2, len(numbers)))
     rounds, part = np.zeros_like(forms[0]), np.empty(0)
     selection = Selection(predict, W)
@@ -86,9 +89,8 @@ def touch_curve(
     return TouchCurve(name, designed, numbers, left[0], left[1])
 
 
-def _form(aim: Criterion, tip: Array) -> Array:
+def _form(aim: Criterion, tip: Array, directions: Array) -> Array:
     """Mean square of the tool point's deviation in the directions that matter, (R, R), mm^2."""
-    directions = aim.purposes["I"].directions
     scaled = (tip * aim.prior_sd).reshape(-1, len(aim.prior_sd)) @ directions
     mean: Array = scaled.T @ scaled / len(tip)
     return mean

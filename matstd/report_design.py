@@ -8,16 +8,26 @@ import numpy as np
 from artefact.constraints import max_slope, min_concave_radius
 from artefact.criterion import CRITERIA
 from artefact.freeform import FreeformPatch
+from artefact.touch_curve import touch_curve
+from artefact.touch_curve_picture import draw_touch_curves
 from cad_out.picture import draw_standard
 from diagnosis.estimable import shown_value
 from diagnosis.proof_picture import write_proof_picture
 from matstd.design import Design, Proven
 from matstd.page import digits, write_page
+from matstd.report_study import draw_study_volumes, study_content
 from probe_paths.picture import write_order_picture, write_touches_picture
+from sensitivity.canvas import save
+from sensitivity.correlation import STRONG, ties
+from sensitivity.correlation_picture import draw_ties, short
 from twin.errors import DesignError
 from twin.units import DEG, UM
 
+MAPS, CURVES, CORRELATION = "sensitivity", "touch_curves.png", "correlation.png"
+"""Folder of the maps, files of two pictures."""
+
 _SHOWN_COMBINATIONS = 25
+_SHOWN_TIES = 12  # pairs; the others are folded
 _EXCERPT = 46  # lines of the first program
 
 
@@ -33,6 +43,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
     """
     remarks: list[str] = []
     pictures = _standard_pictures(design, folder, remarks)
+    maps = [*design.maps, *_volumes(design, folder, remarks)]
     write_touches_picture(folder / "plan_touches.png", design.plan)
     write_order_picture(folder / "plan_order.png", design.plan)
     write_proof_picture(folder / "proof.png", [m.proof for m in design.machines])
@@ -41,16 +52,16 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         "design.html",
         folder=folder,
         project=design.project,
-        chain=design.project.chain,
         standard=design.placement.standard,
         plan=design.plan,
         programs=design.programs,
         pictures=pictures,
         remarks=remarks,
         placeholders=(folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER"),
-        maps=design.maps,
         known=design.known,
-        **_study(design),
+        curves_caption=_draw_curves(design, folder),
+        **study_content(design.study, maps),
+        **_ties(design, folder),
         **_standard(design),
         **_proof(design),
         **_known(design),
@@ -71,17 +82,32 @@ def _standard_pictures(design: Design, folder: Path, remarks: list[str]) -> list
     return made
 
 
-def _study(design: Design) -> dict[str, Any]:
-    """Figures of the Monte Carlo."""
-    v = design.study.volumetric
-    return {
-        "study": design.study,
-        "study_poses": len(design.study.q),
-        "study_mean_um": float(v.mean.mean()) / UM,
-        "study_p95_um": float(v.p95.mean()) / UM,
-        "study_p95_u_um": float(v.p95_u.mean()) / UM,
-        "exact_um": design.study.exact.rms / UM,
-    }
+def _volumes(design: Design, folder: Path, remarks: list[str]) -> list[tuple[str, str]]:
+    """Maps in three dimensions, with the standard in its place."""
+    stands = design.project.setup.T_table_artefact
+    place = folder / MAPS
+    return draw_study_volumes(design.study, place, remarks, folder / "standard.stl", stands)
+
+
+def _draw_curves(design: Design, folder: Path) -> str:
+    """Error left against the number of touches, on every artefact; returns the caption."""
+    placement = design.placement
+    curves = [touch_curve(placement.criterion, r.name, r.touches) for r in placement.rivals]
+    save(draw_touch_curves(curves, design.project.noise), folder / CURVES)
+    return (
+        "Error left against the number of touches, predicted for every artefact by one rule: its "
+        "touches in the order in which each helps most, and beyond their number all of them again. "
+        f"Marked: the {len(placement.requests)} touches of the table above. No machine is drawn "
+        "for it: it is the spread that the touches leave to machines of the stated error ranges."
+    )
+
+
+def _ties(design: Design, folder: Path) -> dict[str, Any]:
+    """Which parameters the touches tie together."""
+    fit = design.machines[0].fit
+    found = ties(fit.covariance, [short(name) for name in fit.names])
+    save(draw_ties(found), folder / CORRELATION)
+    return {"ties": found, "ties_limit": STRONG, "ties_first": _SHOWN_TIES}
 
 
 def _standard(design: Design) -> dict[str, Any]:

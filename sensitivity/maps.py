@@ -9,6 +9,9 @@ import numpy as np
 
 from sensitivity.canvas import GRID, INK, SHADES, axis_title, figure, nothing, reading_label, save
 from sensitivity.pictures import maps_of_S, overview
+from sensitivity.regions import region_totals, regions
+from sensitivity.regions_picture import draw_regions
+from sensitivity.rotary_picture import draw_rotary
 from sensitivity.study import Study
 from twin.frames import Array
 from twin.units import DEG, UM
@@ -20,20 +23,28 @@ _BARS = 24
 _BINS = 12
 
 
-def draw_maps(study: Study, folder: Path) -> list[tuple[str, str]]:
+def draw_maps(
+    study: Study, folder: Path, rng: np.random.Generator | None = None
+) -> list[tuple[str, str]]:
     """Draw every map of a study into a folder.
+
+    Args:
+        study: The study.
+        folder: For the pictures.
+        rng: Source of the random machines that show what errors do to the length |d|; None to do
+            without.
 
     Returns:
         File name and caption of each.
     """
-    v = study.volumetric
-    draws = f"{v.draws} random machines, {len(study.q)} poses"
+    sampled = f"Monte Carlo: {study.volumetric.statement}; {len(study.q)} poses."
     maps = [
         (
             "sensitivity.png",
             overview(study),
             "Sensitivity S of the tool point to every error parameter, smallest to largest over "
-            "the workspace. A translation counts once everywhere; an angle by its lever arm.",
+            "the workspace. A translation counts once everywhere; an angle by its lever arm. "
+            "Exact to first order.",
         ),
         (
             "sensitivity_maps.png",
@@ -44,25 +55,33 @@ def draw_maps(study: Study, folder: Path) -> list[tuple[str, str]]:
         (
             "volumetric_sections.png",
             _volumetric_sections(study),
-            f"Volumetric error over pairs of readings ({draws}), all other readings as in the "
-            f"worst of these poses ({_pose_words(study)}). Above: 95 % of the machines stay below. "
-            "Below: share of the machines for which a pose is among the worst 5 % of the "
-            "workspace; 5 % would be chance.",
+            "Volumetric error over pairs of readings, all other readings as in the worst pose "
+            f"({_pose_words(study)}). Above: 95 % of the machines stay below. Below: share of the "
+            "machines for which a pose is among the worst 5 % of the workspace; 5 % would be "
+            f"chance. {sampled}",
+        ),
+        (
+            "volumetric_rotary.png",
+            draw_rotary(study),
+            "Four points of the workpiece while the table turns and the linear axes follow; a "
+            "point is named by the linear readings that reach it with the table level. Above: "
+            "volumetric error, 95 % quantile. Below: S of errors that matter, at the last of the "
+            f"points. Grey: beyond the travel. {unsampled(study)}",
         ),
         (
             "volumetric_axes.png",
             _volumetric_axes(study),
-            f"Volumetric error against each reading ({draws}): median over the poses of the mean "
-            "and of the 95 % quantile, with the range that holds 80 % of the poses. Standard error "
-            f"of the 95 % quantile by sampling: {np.mean(v.p95_u) / UM:.2g} µm. This quantile "
-            "differs from that of normal errors of the same covariance by "
-            f"{100.0 * study.tail[0]:+.1f} % on average, {100.0 * study.tail[1]:+.1f} % at worst.",
+            "Volumetric error against each reading: median over the poses of the mean and of the "
+            f"95 % quantile, with the range that holds 80 % of the poses. {sampled}",
+        ),
+        (
+            "variance_regions.png",
+            *_regions(study, rng),
         ),
         (
             "variance_shares.png",
             _shares(study),
-            "Share of the error parameters in the variance of the deviation: mean over the "
-            "workspace, and the range that holds 90 % of the poses. Exact to first order.",
+            "The same over the whole workspace, with more of the parameters.",
         ),
     ]
     for name, drawn, _ in maps:
@@ -70,13 +89,42 @@ def draw_maps(study: Study, folder: Path) -> list[tuple[str, str]]:
     return [(name, caption) for name, _, caption in maps]
 
 
+def _regions(study: Study, rng: np.random.Generator | None) -> tuple[Figure, str]:
+    """Tornado of every region, with its caption."""
+    found = regions(study.population, study.workspace)
+    words = (
+        "Share of the error parameters in the variance of the deviation, region by region: of the "
+        "variance summed over the region, and the range that holds 90 % of its poses. Exact to "
+        "first order."
+    )
+    if rng is None or study.population.dependence is not None:
+        return draw_regions(study.chain, found), words
+    totals = region_totals(study.population, study.workspace, found, rng)
+    return draw_regions(study.chain, found, totals), (
+        f"{words} Diamonds: total effect on the length |d|, interactions included, with twice its "
+        f"standard error (Monte Carlo: {totals.machines} pairs of random machines, seed "
+        f"{totals.seed}, at {totals.poses} poses of every region); these make more than 100 % "
+        "together, because the errors interact in a length."
+    )
+
+
+def unsampled(study: Study) -> str:
+    """What has to stand beside a volumetric error that was not sampled."""
+    mean, worst = study.tail
+    return (
+        "Without sampling, to first order and as if errors were normally distributed: the 95 % "
+        f"quantile that was sampled at {len(study.q)} poses differs from it by {100.0 * mean:+.1f} "
+        f"% on average, {100.0 * worst:+.1f} % at worst."
+    )
+
+
 def _pose_words(study: Study) -> str:
     """Readings of the pose through which the sections run."""
     words = []
     for axis in study.chain.programmed_axes:
-        unit, shown = (1.0, "mm") if study.chain.link(axis).kind == "linear" else (DEG, "°")
+        unit, shown = (1.0, " mm") if study.chain.link(axis).kind == "linear" else (DEG, "°")
         value = study.worst_pose[study.chain.axis_index(axis)] / unit
-        words.append(f"{axis} {value:.0f} {shown}")
+        words.append(f"{axis} {value:.0f}{shown}")
     return ", ".join(words)
 
 
@@ -144,7 +192,7 @@ def _shares(study: Study) -> Figure:
     order = order[mean[order] > 0.0]
     low, high = np.quantile(study.shares[:, order], (0.05, 0.95), axis=0)
     colour = {link.name: SHADES[i % len(SHADES)] for i, link in enumerate(chain.links)}
-    drawn = figure(8.0, 0.24 * len(order) + 1.2)
+    drawn = figure(7.0, 0.2 * len(order) + 1.0)
     axes = drawn.subplots()
     y = np.arange(len(order))
     links = [chain.symbols[i].link for i in order]

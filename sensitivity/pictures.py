@@ -17,6 +17,7 @@ from twin.units import UM, URAD
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_COLUMNS = 5  # maps in a row: their numbers stay readable in print
 _PLANE = 31  # values of each reading of a map of S
 _CURVE = 121  # values of the reading of a curve of S
 _STILL = 1e-3  # relative spread of S below which a parameter is the same everywhere
@@ -99,9 +100,9 @@ def maps_of_S(study: Study) -> Figure:
     moving = np.flatnonzero(matters.any(axis=1))
     if not len(moving):
         return nothing("No sensitivity depends on the pose.")
-    columns = min(6, len(moving))
+    columns = min(_COLUMNS, len(moving))
     rows = -(-len(moving) // columns)
-    drawn = figure(2.55 * columns, 2.1 * rows, layout=None)  # constrained: seconds for 36 maps
+    drawn = figure(2.3 * columns, 2.0 * rows, layout=None)  # constrained: seconds for 36 maps
     gap = {"left": 0.5, "right": 0.35, "bottom": 0.4, "top": 0.3}  # inch
     width, height = drawn.get_size_inches()
     drawn.subplots_adjust(
@@ -109,8 +110,8 @@ def maps_of_S(study: Study) -> Figure:
         right=1.0 - gap["right"] / width,
         bottom=gap["bottom"] / height,
         top=1.0 - gap["top"] / height,
-        wspace=0.48,
-        hspace=0.48,
+        wspace=0.62,
+        hspace=0.52,
     )
     grid = drawn.subplots(rows, columns, squeeze=False).ravel()
     free = study.workspace.open_axes
@@ -127,10 +128,10 @@ def _map_of_S(axes: Any, workspace: Workspace, symbol: Symbol, readings: list[st
     """S over one reading as a curve, over two as colours."""
     chain, length = workspace.chain, workspace.length
     unit = "µm/µrad" if symbol.is_angular else "µm/µm"
-    axes.set_title(f"{symbol.name}  {unit}", fontsize=8)
-    axes.tick_params(labelsize=6, length=2)
+    axes.set_title(f"{symbol.name}  {unit}", fontsize=8.5)
+    axes.tick_params(labelsize=7, length=2)
     label_a, unit_a = reading_label(chain, readings[0])
-    axes.set_xlabel(label_a, fontsize=7, labelpad=1)
+    axes.set_xlabel(label_a, fontsize=8, labelpad=1)
     if len(readings) == 1:
         q = np.tile(workspace.centre, (_CURVE, 1))
         a = np.linspace(*workspace.limit(readings[0]), _CURVE)
@@ -147,6 +148,6 @@ def _map_of_S(axes: Any, workspace: Workspace, symbol: Symbol, readings: list[st
     mesh = axes.pcolormesh(
         a / unit_a, b / unit_b, S.T / _unit(symbol), cmap="viridis", shading="gouraud"
     )
-    axes.set_ylabel(label_b, fontsize=7, labelpad=1)
+    axes.set_ylabel(label_b, fontsize=8, labelpad=0)
     bar = axes.figure.colorbar(mesh, ax=axes, pad=0.03, fraction=0.06)
-    bar.ax.tick_params(labelsize=6, length=2)
+    bar.ax.tick_params(labelsize=7, length=2)

@@ -2,7 +2,8 @@
 
 The shares are those of `sensitivity.indices`: exact for the deviation to first order. What is
 sampled are only the poses of a region, evenly and without chance; the range of the shares over them
-is real and no uncertainty.
+is real and no uncertainty. What an error does to the length |d|, interactions included, is another
+matter and takes random machines.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,6 +13,7 @@ import numpy as np
 
 from sensitivity.indices import parts
 from sensitivity.sampling import Population
+from sensitivity.total_effects import MACHINES, norm_shares
 from sensitivity.workspace import Workspace
 from twin.frames import Array
 from twin.kinematics import tip
@@ -20,6 +22,7 @@ from twin.units import DEG
 POSES = 256
 """Poses that stand for a region."""
 
+_TOTAL_POSES = 16  # of a region, at which random machines are looked at
 _OUTER = 1.0 / 6.0  # of a travel at either end that counts as its end
 _MIDDLE = (1.0 / 3.0, 2.0 / 3.0)
 _TURN = 350.0 * DEG  # travel of a rotary axis that has no ends: they meet
@@ -75,6 +78,60 @@ def regions(population: Population, workspace: Workspace) -> tuple[Region, ...]:
         of_all = each.sum(axis=0) / (whole if whole > 0.0 else 1.0)
         out.append(Region(words, q, shares, of_all, float(np.sqrt(total.mean()))))
     return tuple(out)
+
+
+@dataclass(frozen=True, eq=False)
+class RegionTotals:
+    """Total effect of every error on the length |d|, region by region.
+
+    Attributes:
+        total: Index of every error, mean over poses of the region, (R, P).
+        u: Its standard error by sampling, (R, P).
+        machines: Pairs of random machines.
+        poses: Of each region.
+        seed: Where the machines came from.
+    """
+
+    total: Array
+    u: Array
+    machines: int
+    poses: int
+    seed: str
+
+
+def region_totals(
+    population: Population,
+    workspace: Workspace,
+    found: Sequence[Region],
+    rng: np.random.Generator,
+    machines: int = MACHINES,
+) -> RegionTotals:
+    """What the errors do to the length |d| in each region, by Monte Carlo.
+
+    The same machines stand at all poses, so the standard error of a mean over poses is taken as the
+    mean of theirs, which errs to the safe side.
+
+    Args:
+        population: Errors that are expected, independent ones.
+        workspace: Limits, tool length.
+        found: The regions.
+        rng: Source of the random numbers.
+        machines: Pairs of random machines.
+
+    Raises:
+        DesignError: The errors depend on each other.
+    """
+    some = [r.q[:_TOTAL_POSES] for r in found]
+    # so few poses are done before a compiler has begun
+    each = norm_shares(
+        population, np.concatenate(some), workspace.length, rng, machines, compiled=False
+    )
+    ends = np.cumsum([len(q) for q in some])[:-1]
+    total, u = (
+        np.stack([part.mean(axis=1) for part in np.split(values, ends, axis=1)])
+        for values in (each.total, each.u)
+    )
+    return RegionTotals(total, u, each.machines, _TOTAL_POSES, each.seed)
 
 
 def region_words(region: Region, names: Sequence[str], enough: float = 0.5) -> str:

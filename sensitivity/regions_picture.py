@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sensitivity.canvas import GRID, INK, SHADES, axis_title, figure, nothing
-from sensitivity.regions import Region
+from sensitivity.regions import Region, RegionTotals
 from twin.chain import Chain
+from twin.frames import Array
 from twin.units import UM
 
 if TYPE_CHECKING:
@@ -17,18 +18,23 @@ if TYPE_CHECKING:
 
 _BARS = 8
 _COLUMNS = 3
+_TOTAL: dict[str, Any] = {"marker": "D", "ms": 4.5, "linestyle": "none"}
 
 
-def draw_regions(chain: Chain, regions: Sequence[Region]) -> Figure:
+def draw_regions(
+    chain: Chain, regions: Sequence[Region], totals: RegionTotals | None = None
+) -> Figure:
     """Bars of the largest shares of variance in every region, coloured by the link they belong to.
 
     Args:
         chain: The machine.
         regions: As `sensitivity.regions.regions` gives them.
+        totals: What the errors do to |d|, drawn as diamonds with twice their standard error.
     """
+    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    shown = [r for r in regions if r.largest(1)]
+    shown = [k for k, r in enumerate(regions) if r.largest(1)]
     if not shown:
         return nothing("No error moves the tool point.")
     columns = min(_COLUMNS, len(shown))
@@ -36,19 +42,24 @@ def draw_regions(chain: Chain, regions: Sequence[Region]) -> Figure:
     drawn = figure(3.5 * columns, 2.35 * rows + 0.5)
     grid = drawn.subplots(rows, columns, squeeze=False, sharex=True)
     colour = {link.name: SHADES[i % len(SHADES)] for i, link in enumerate(chain.links)}
-    for axes, region in zip(grid.ravel(), shown, strict=False):
-        _tornado(axes, chain, region, colour)
+    for axes, k in zip(grid.ravel(), shown, strict=False):
+        of_length = None if totals is None else (totals.total[k], totals.u[k])
+        _tornado(axes, chain, regions[k], colour, of_length)
     for axes in grid.ravel()[len(shown) :]:
         axes.set_axis_off()
     for axes in grid.ravel()[max(0, len(shown) - columns) : len(shown)]:  # the lowest of a column
         axes.set_xlabel("share of the variance / %", fontsize=9)
         axes.tick_params(axis="x", labelbottom=True)
-    present = {chain.symbols[i].link for r in shown for i in r.largest(_BARS)}
-    handles = [
+    present = {chain.symbols[i].link for k in shown for i in regions[k].largest(_BARS)}
+    handles: list[Any] = [
         Patch(color=colour[link.name], label=axis_title(link))
         for link in chain.links
         if link.name in present
     ]
+    if totals is not None:
+        handles.append(
+            Line2D([], [], color=INK, mfc="white", label="total effect on |d|", **_TOTAL)
+        )
     if len(shown) < grid.size:
         grid.ravel()[-1].legend(handles=handles, loc="center", frameon=False, fontsize=9.5)
     else:
@@ -56,8 +67,14 @@ def draw_regions(chain: Chain, regions: Sequence[Region]) -> Figure:
     return drawn
 
 
-def _tornado(axes: Any, chain: Chain, region: Region, colour: dict[str, str]) -> None:
-    """One region: shares of the summed variance, and their range over the poses."""
+def _tornado(
+    axes: Any,
+    chain: Chain,
+    region: Region,
+    colour: dict[str, str],
+    of_length: tuple[Array, Array] | None,
+) -> None:
+    """One region: shares of the summed variance, their range over the poses, effects on |d|."""
     order = region.largest(_BARS)
     share = 100.0 * region.mean_shares[order]
     low, high = 100.0 * np.quantile(region.shares[:, order], (0.05, 0.95), axis=0)
@@ -67,7 +84,14 @@ def _tornado(axes: Any, chain: Chain, region: Region, colour: dict[str, str]) ->
     axes.plot(low, y, "|", high, y, "|", color=INK, ms=5)
     axes.set_yticks(y, [chain.symbols[i].name for i in order], fontsize=9)
     axes.set_ylim(_BARS - 0.4, -0.6)
-    axes.set_xlim(0.0, max(axes.get_xlim()[1], 1.04 * high.max()))
+    top = high.max()
+    if of_length is not None:
+        total, u = (100.0 * values[order] for values in of_length)
+        axes.errorbar(
+            total, y, xerr=2.0 * u, color=INK, mfc="white", lw=0.0, elinewidth=1.0, **_TOTAL
+        )
+        top = max(top, (total + 2.0 * u).max())
+    axes.set_xlim(min(0.0, axes.get_xlim()[0], low.min()), max(axes.get_xlim()[1], 1.04 * top))
     title = f"{region.words}\n{region.rms / UM:.0f} µm rms"
     axes.set_title(title, fontsize=9.5, loc="left", color=INK)
     axes.grid(axis="x", color=GRID, lw=0.6)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sensitivity.regions import region_words, regions
+from sensitivity.regions import region_totals, region_words, regions
 from sensitivity.regions_picture import draw_regions
 from sensitivity.sampling import Population
 from sensitivity.workspace import Workspace
@@ -83,6 +83,38 @@ def test_shares_of_two_constants_by_hand():
         assert region_words(region, names) == "EZ0Z makes 64 % of the variance"
     words = region_words(all_of_them[0], names, enough=0.9)
     assert words == "EZ0Z 64 %, EX0X 36 % make 100 % of the variance together"
+
+
+def test_the_only_error_makes_all_of_the_length():
+    # Jansen's index of the one error there is: mean (f(a) - f(b))^2 / (2 Var f) = 1 on average.
+    none = {name: (0.0, 0.0) for name in DEFAULT_RANGES}
+    ranges = Ranges(none, {"EX0X": (1 * UM, 9 * UM)})
+    lathe = make_chain(
+        "lathe",
+        "[w f X Z t]",
+        {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
+    )
+    area, population = Workspace(lathe, {}, 50.0), Population(lathe, ranges)
+    found = regions(population, area)
+    totals = region_totals(population, area, found, np.random.default_rng(3), machines=4000)
+    i = [s.name for s in lathe.symbols].index("EX0X")
+    assert totals.total.shape == totals.u.shape == (3, len(lathe.symbols))
+    np.testing.assert_allclose(totals.total[:, i], 1.0, atol=4.0 * totals.u[0, i])
+    assert 0.0 < totals.u[0, i] < 0.03
+    assert np.all(np.delete(totals.total, i, axis=1) == 0.0)
+
+
+def test_diamonds_stand_at_the_total_effects(found, chain, workspace):
+    totals = region_totals(
+        Population(chain), workspace, found[:2], np.random.default_rng(3), machines=100
+    )
+    panel = draw_regions(chain, found[:2], totals).axes[1]
+    (markers,) = [line for line in panel.lines if line.get_marker() == "D"]
+    expected = 100.0 * totals.total[1, found[1].largest(8)]
+    np.testing.assert_allclose(markers.get_xdata(), expected)
+    low, high = panel.get_xlim()
+    assert low <= 0.0
+    assert high > expected.max()
 
 
 def test_a_machine_without_errors_is_named(chain, workspace):

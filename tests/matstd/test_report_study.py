@@ -1,0 +1,125 @@
+"""The sensitivity page: every map once and in order, regions in words, 3-D scenes of the study."""
+
+import re
+
+import numpy as np
+import pytest
+
+from matstd.report_study import (
+    ERROR_3D,
+    S_3D,
+    draw_study_volumes,
+    error_scenes,
+    sensitivity_scenes,
+    write_study_page,
+)
+from sensitivity.canvas import figure, save
+from sensitivity.sampling import Population
+from sensitivity.study import run_study
+from sensitivity.workspace import Workspace
+from twin.chain import Axis, make_chain
+from twin.files.machine_file import read_machine
+from twin.frames import apply
+from twin.kinematics import tip
+from twin.units import DEG, UM
+
+from .test_design import EXAMPLES
+
+NM = 1e-6  # mm
+
+
+@pytest.fixture(scope="module")
+def study():
+    chain = read_machine(EXAMPLES / "hsm600u-machine.toml")
+    limits = {
+        "X": (-150.0, 150.0),
+        "Y": (-120.0, 120.0),
+        "Z": (-400.0, -150.0),
+        "B": (-90.0 * DEG, 20.0 * DEG),
+        "C": (-180.0 * DEG, 180.0 * DEG),
+    }
+    area = Workspace(chain, limits, 160.0)
+    return run_study(Population(chain), area, 100, 100, np.random.default_rng(5))
+
+
+def test_error_scenes_show_level_and_worst_table_with_the_standard_in_its_place(study):
+    T = np.eye(4)
+    T[:3, 3] = [5.0, -6.0, 7.0]
+    level, worst = error_scenes(study, T)
+    assert level.title == "table level: B 0°, C 0°"
+    assert worst.title.startswith("worst pose: B -")
+    assert level.labels == ("X / mm", "Y / mm", "Z / mm")
+    assert level.unit == "95 % quantile / µm"
+    # normal errors have longer tails than bounded ones, by a few percent
+    assert worst.values.max() == pytest.approx(study.volumetric.p95.max() / UM, rel=0.15)
+    for scene, rotary in ((level, (0.0, 0.0)), (worst, None)):
+        # readings at which the map shows a point of the standard do bring the tool point there
+        q = study.worst_pose[None].copy()
+        if rotary is not None:
+            q[0, [study.chain.axis_index(a) for a in "BC"]] = rotary
+        point = np.array([[10.0, 20.0, 30.0]])
+        reading = apply(scene.T_readings_artefact, point)
+        q[:, [study.chain.axis_index(a) for a in "XYZ"]] = reading
+        np.testing.assert_allclose(tip(study.chain, q, 160.0), apply(T, point), atol=NM)
+
+
+def test_scenes_of_S_are_of_different_links_and_change_in_the_volume(study):
+    scenes = sensitivity_scenes(study)
+    assert len(scenes) == 3
+    names = [re.fullmatch(r"S of (\w+): B 0°, C 0°", s.title).group(1) for s in scenes]
+    assert len({study.chain.symbol(n).link for n in names}) == 3
+    for scene in scenes:
+        assert scene.unit == "µm/µrad"
+        assert np.ptp(scene.values) > 0.02 * scene.values.max()
+        assert scene.values.max() < 1.0  # arms of less than a metre
+        assert scene.T_readings_artefact is None
+
+
+def test_the_page_holds_every_map_once_and_the_regions_in_words(study, tmp_path):
+    maps = [
+        ("variance_shares.png", "Shares of the parameters. More words."),
+        ("sensitivity.png", "Overview of the sensitivities."),
+    ]
+    for name, _ in maps:
+        save(figure(2.0, 1.0), tmp_path / name)
+    remarks = write_study_page(study, tmp_path, maps, "project.toml")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    drawn = len(maps) + (0 if remarks else 2)  # without OpenGL a remark stands for two pictures
+    assert page.count("<figure>") == drawn
+    assert page.count("data:image/png;base64,") == drawn
+    assert study.volumetric.statement in page
+    assert "corners: X, Y and Z in their outer sixths" in page
+    assert "of the variance together" in page
+    assert "project.toml" in page
+    alternatives = re.findall(r'alt="([^"]*)"', page)
+    assert len(set(alternatives)) == drawn
+    assert all(10 < len(text) < 200 for text in alternatives)
+    order = ["Overview of the", "Volumetric error over the linear", "Shares of the"]
+    if not remarks:
+        order.insert(1, "S of angular errors")
+        assert np.all(np.diff([page.index(f"<figcaption>{words}") for words in order]) > 0)
+    assert {p.name for p in tmp_path.iterdir()} >= {name for name, _ in maps} | {"report.html"}
+
+
+def test_without_opengl_the_page_is_written_with_a_remark(study, tmp_path, monkeypatch):
+    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
+    (remark,) = write_study_page(study, tmp_path, [])
+    assert "apt-get install libegl1" in remark
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "No maps in three dimensions" in page
+    assert not (tmp_path / ERROR_3D).exists()
+    assert not (tmp_path / S_3D).exists()
+
+
+def test_a_machine_without_a_volume_is_told_so(tmp_path):
+    lathe = make_chain(
+        "lathe",
+        "[w f X Z t]",
+        {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
+    )
+    small = run_study(
+        Population(lathe), Workspace(lathe, {}, 50.0), 40, 50, np.random.default_rng(1)
+    )
+    remarks: list[str] = []
+    assert draw_study_volumes(small, tmp_path, remarks) == []
+    assert remarks == ["No maps in three dimensions: they need three linear axes with room."]
