@@ -242,6 +242,8 @@ def _smallest(N: Array, lead: int) -> Array | None:
     outside = N[:, ~support]
     c = found.x[:g]
     if outside.size:
-        c = c - np.linalg.lstsq(outside.T, outside.T @ c, rcond=None)[0]
+        U, s, _ = np.linalg.svd(outside, full_matrices=False)
+        U = U[:, s > 1e-9]
+        c = c - U @ (U.T @ c)
     z = np.where(support, N.T @ c, 0.0)
     return np.asarray(z / z[lead], dtype=np.float64)

@@ -1,0 +1,207 @@
+"""Criteria: published designs, brute force over all choices, bounds under shares."""
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from sensitivity.certificate import relaxed, rounded
+from sensitivity.design import Quota, Selection, exchange, fill
+from sensitivity.purpose import (
+    Purpose,
+    determinant,
+    parameters,
+    purpose,
+    robust,
+    with_potential,
+    without_potential,
+    worst_pattern,
+    worst_pose,
+)
+from sensitivity.shares import keeps, largest_sum
+from twin.errors import DesignError
+
+ROUNDING = 1e-9
+WEIGHT = 3e-3
+"""Weights of published designs, to which the relaxed problem is solved."""
+SLACK = 1e3
+"""Rows so long that a prior does not matter."""
+
+MOMENTS = np.array([[1.0, 0.0, 1 / 3], [0.0, 1 / 3, 0.0], [1 / 3, 0.0, 1 / 5]])
+PLACES = np.linspace(-1.0, 1.0, 21)
+QUADRATIC = np.stack([np.ones(21), PLACES, PLACES**2], axis=1)
+PUBLISHED = {  # weights at -1, 0, 1 for a parabola (Pukelsheim 1993; Kiefer and Wolfowitz 1960)
+    "I": (1 / 4, 1 / 2, 1 / 4),
+    "A": (1 / 4, 1 / 2, 1 / 4),
+    "D": (1 / 3, 1 / 3, 1 / 3),
+    "G": (1 / 3, 1 / 3, 1 / 3),
+    "E": (1 / 5, 3 / 5, 1 / 5),
+}
+
+
+def parabola():
+    mean = Purpose(np.eye(3), MOMENTS)
+    unit = parameters(mean)
+    return {
+        "I": mean,
+        "A": unit,
+        "D": determinant(mean),
+        "E": worst_pattern(unit),
+        "G": worst_pose(mean, np.repeat(QUADRATIC[:, None], 3, axis=1), np.ones(3)),
+    }
+
+
+@pytest.mark.parametrize("name", list(PUBLISHED))
+def test_published_designs_of_the_parabola(name):
+    W, place = np.repeat(SLACK * QUADRATIC, 60, axis=0), np.repeat(np.arange(21), 60)
+    start = np.zeros(len(W), dtype=bool)
+    start[np.random.default_rng(0).choice(len(W), 60, replace=False)] = True
+    aim = parabola()[name]
+    found = relaxed(aim, W, 60, start, 1e-4)
+    weight = np.bincount(place, weights=found.weight) / 60
+    np.testing.assert_allclose(weight[[0, 10, 20]], PUBLISHED[name], atol=WEIGHT)
+    exact = Selection(aim, W)
+    fill(exact, 60)
+    exchange(exact)
+    count = np.bincount(place[exact.chosen], minlength=21)[[0, 10, 20]]
+    np.testing.assert_array_equal(count, np.round(60 * np.array(PUBLISHED[name])))
+    assert found.bound / exact.value > 0.999
+
+
+def criteria(rng):
+    half = rng.normal(size=(4, 4))
+    mean = Purpose(np.eye(4), half @ half.T)
+    worst = replace(mean, K=np.zeros((4, 4)), roots=rng.normal(size=(6, 4, 2)))
+    scale = rng.uniform(0.3, 2.0, (5, 4))
+    plain = [mean, determinant(mean), worst_pattern(mean), worst]
+    return plain + [robust(aim, scale, tail) for aim in plain for tail in (1.0, 0.4)]
+
+
+def by_definition(aim, W, weight):
+    """With nothing of the code that is tested; a tail of 0.4 is the worst two of five machines."""
+    F, each = W.T @ (W * weight[:, None]), []
+    for prior in np.eye(len(W[0]))[None] if aim.priors is None else aim.priors:
+        inverse = np.linalg.inv(prior + F)
+        if aim.is_determinant:
+            each.append(np.log(np.linalg.det(inverse)))
+            continue
+        value = np.trace(aim.K @ inverse)
+        if aim.is_spectral:
+            value += np.linalg.eigvalsh(aim.roots[0].T @ inverse @ aim.roots[0])[-1]
+        elif aim.roots is not None:
+            value += max(np.trace(root.T @ inverse @ root) for root in aim.roots)
+        each.append(value)
+    count = max(1, round(aim.tail * len(each)))
+    mean = float(np.mean(np.sort(each)[::-1][:count]))
+    return float(np.exp(mean / len(F))) if aim.is_determinant else mean
+
+
+@pytest.mark.parametrize("shares", [False, True])
+def test_no_choice_beats_any_bound_and_values_are_those_of_the_definition(shares):
+    rng = np.random.default_rng(1)
+    kind, side = np.arange(11) % 3, np.arange(11) // 6
+    quotas = ()
+    if shares:
+        quotas = (
+            Quota(kind, np.array([2, 2, 3]), np.array([1, 0, 1])),
+            Quota(side, np.array([3, 4])),
+        )
+    rows = [np.isin(np.arange(11), c) for c in combinations(range(11), 5)]
+    allowed = [r for r in rows if all(keeps(q, r) for q in quotas)]
+    assert (len(allowed) < len(rows)) == shares
+    near, gaps = [], []
+    for _ in range(3):
+        W = 2.0 * rng.normal(size=(11, 4))
+        for aim in criteria(rng):
+            best = min(by_definition(aim, W, r.astype(float)) for r in allowed)
+            start = allowed[int(rng.integers(len(allowed)))]
+            found = relaxed(aim, W, 5, start, 1e-3, quotas)
+            assert found.bound <= best * (1.0 + ROUNDING)
+            assert found.value == pytest.approx(by_definition(aim, W, found.weight), rel=1e-8)
+            assert all(keeps(q, found.weight) for q in quotas)
+            whole = rounded(aim, W, found.weight, 5, quotas=quotas)
+            assert all(keeps(q, whole.chosen) for q in quotas)
+            value = by_definition(aim, W, whole.chosen.astype(float))
+            assert whole.value == pytest.approx(value, rel=1e-8)
+            near.append(value / best)
+            gaps.append(found.gap)
+    assert min(near) >= 1.0 - ROUNDING
+    assert np.median(near) < 1.01
+    assert np.median(gaps) < 2e-3
+
+
+def test_gains_are_the_slope_of_the_criterion():
+    rng = np.random.default_rng(4)
+    W = rng.normal(size=(20, 4))
+    for aim in criteria(rng)[:2] + criteria(rng)[4:6]:
+        selection = Selection(aim, W, np.arange(20) < 8)
+        with_row = [
+            by_definition(aim, W, (selection.chosen | (np.arange(20) == i)).astype(float))
+            for i in range(8, 20)
+        ]
+        fall = selection.value - np.array(with_row)
+        if aim.is_determinant:
+            fall = 4.0 * np.log(selection.value / np.array(with_row))
+        np.testing.assert_allclose(selection.gains[8:], fall, rtol=1e-6)
+
+
+def test_drawn_machines_keep_to_the_directions_that_matter():
+    """What is left out is left out exactly, also where the priors differ from one another."""
+    rng = np.random.default_rng(6)
+    felt, sd = rng.normal(size=(4, 9)), np.ones(9)
+    W, G = rng.normal(size=(30, 4)) @ felt, rng.normal(size=(5, 3, 4)) @ felt
+    scale = rng.uniform(0.5, 2.0, (3, 9))
+    aim = robust(purpose(G, W, sd), scale)
+    assert len(aim.K) == 4
+    whole = [
+        np.mean([np.trace(g @ np.linalg.inv(np.diag(s**-2.0) + W.T @ W) @ g.T) for g in G])
+        for s in scale
+    ]
+    rows = aim.rows(W)
+    assert aim.value(rows.T @ rows) == pytest.approx(np.mean(whole), rel=1e-8)
+
+
+def test_potential_terms_go_from_a_line_to_a_parabola():
+    """A straight line with a potential square (DuMouchel and Jones 1994), against its closed form.
+
+    With half of the weight 1 - w at either end, ``det M`` of the information without a prior on the
+    line is ``n^2 (1 - w) (1 + s^2 n (1 - w) w)`` for the prior standard deviation s of the square.
+    """
+    runs = 40
+    for s in (0.02, 0.3, 3.0):
+        square = s * PLACES**2
+        rows = np.stack([SLACK * np.ones(21), SLACK * PLACES, square], axis=1)
+        W, place = np.repeat(rows, runs, axis=0), np.repeat(np.arange(21), runs)
+        aim = with_potential(determinant(Purpose(np.eye(2), np.eye(2))), 1, 0.0)
+        start = np.zeros(len(W), dtype=bool)
+        start[np.random.default_rng(1).choice(len(W), runs, replace=False)] = True
+        found = relaxed(aim, W, runs, start, 1e-5)
+        w = np.linspace(0.0, 1.0, 100001)[:-1]
+        best = w[np.argmax((1.0 - w) * (1.0 + s * s * runs * (1.0 - w) * w))]
+        weight = np.bincount(place, weights=found.weight) / runs
+        assert weight[10] == pytest.approx(best, abs=WEIGHT)
+        assert weight[0] == pytest.approx(weight[20], abs=WEIGHT)
+
+
+def test_potential_terms_join_the_mean_and_can_be_left_out_again():
+    rng = np.random.default_rng(2)
+    half, W = rng.normal(size=(3, 3)), rng.normal(size=(9, 5))
+    aim = with_potential(Purpose(np.eye(3), half @ half.T), 2, 0.7)
+    inverse = np.linalg.inv(np.eye(5) + W.T @ W)
+    by_hand = np.trace(inverse[:3, :3] @ half @ half.T) + 0.7 * np.trace(inverse[3:, 3:]) / 2.0
+    assert aim.value(W.T @ W) == pytest.approx(by_hand, rel=1e-10)
+    np.testing.assert_array_equal(without_potential(aim).K, half @ half.T)
+
+
+def test_shares_that_nothing_keeps_are_refused():
+    quota = Quota(np.arange(6) % 2, np.array([1, 1]))
+    with pytest.raises(DesignError, match="keep the shares"):
+        largest_sum(np.ones(6), 4, (quota,))
+
+
+def test_tail_and_scales_that_mean_nothing_are_refused():
+    with pytest.raises(DesignError, match="tail"):
+        Purpose(np.eye(2), np.eye(2), tail=0.0)
+    with pytest.raises(DesignError, match="expected above zero"):
+        robust(Purpose(np.eye(2), np.eye(2)), np.array([[1.0, 0.0]]))
