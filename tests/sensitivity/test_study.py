@@ -22,7 +22,7 @@ def study(chain, workspace):
 def written(study, tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
     write_study(study, folder)
-    return folder, draw_maps(study, folder)
+    return folder, draw_maps(study, folder, np.random.default_rng(6))
 
 
 def test_the_same_seed_gives_the_same_study(chain, workspace, study):
@@ -68,11 +68,16 @@ def test_data_files_hold_the_numbers(study, written, chain):
         np.testing.assert_array_equal(arrays["XY_p95"], section)
 
 
-def test_pictures_show_something(written):
+def test_pictures_show_something(study, written):
     from matplotlib.image import imread
 
     folder, maps = written
-    assert len(maps) == 5
+    assert len(maps) == 7
+    words = dict(maps)
+    for name in ("volumetric_sections.png", "volumetric_axes.png"):
+        assert study.volumetric.statement in words[name]  # draws, seed, precision
+    assert "1024 pairs of random machines, seed" in words["variance_regions.png"]
+    assert "Without sampling" in words["volumetric_rotary.png"]
     for name, caption in maps:
         picture = imread(folder / name)
         assert min(picture.shape[:2]) > 250
