@@ -148,7 +148,7 @@ def test_three_axes_by_counting_monomials():
         fields += [reading * e[:, None] for e in up]
         fields += [reading * np.cross(e, arm.T).T for e in up]
     fields += [one * e[:, None] for e in up]  # zeros, set-up, tool
-    fields += [np.cross(e, (tool + [[0.0], [0.0], [500.0]]).T).T for e in up]  # set-up turned
+    fields += [np.cross(e, (tool.T + [0.0, 0.0, 500.0])).T for e in up]  # set-up turned
     fields += [z * up[0][:, None], z * up[1][:, None], y * up[0][:, None], x * up[1][:, None]]
     M = np.array([f.ravel() for f in fields]).T
     M = M[:, np.linalg.norm(M, axis=0) > 0.0]
@@ -156,7 +156,7 @@ def test_three_axes_by_counting_monomials():
 
 
 def test_a_second_stylus_adds_what_hangs_on_the_ram():
-    """Of the table/table machine, linear and parabolic tilts of Z: two each of four distributions."""
+    """On the table/table machine the tilts of Z: about X and Y, in four distributions each."""
     model, q, found = found_on("table/table")
     resolved = [f for f in found.freedoms if f.resolved_by != NEVER]
     tilts = [f for f in resolved if "tilt of Z" in f.words]
@@ -174,7 +174,9 @@ def test_sparse_directions_are_found_again():
     planted[2, 11] = 1.0
     W = rng.normal(size=(40, 12)) @ (np.eye(12) - np.linalg.pinv(planted) @ planted)
     got = sparse(seen(W).null)
-    assert sorted(np.flatnonzero(z).tolist() for _, z in got) == [[1, 4], [4, 6, 9], [11]]
+    found = sorted(np.flatnonzero(z).tolist() for _, z in got)
+    # 1 in the place of 4 makes a triple as small
+    assert found in ([[1, 4], [4, 6, 9], [11]], [[1, 4], [1, 6, 9], [11]])
     pair = next(z for _, z in got if np.count_nonzero(z) == 2)
     assert pair[4] / pair[1] == pytest.approx(-2.0, rel=1e-6)
 
