@@ -7,6 +7,7 @@ import numpy as np
 
 from twin.files.whole import written_whole
 from twin.frames import Array
+from twin.words import noun, time_unit, unit_of
 
 INK, SOFT, LINE = "#1c2430", "#7d8794", "#d8dee6"
 BLUE, ORANGE, GREEN, RED, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
@@ -47,6 +48,21 @@ def robust_limit(values: Array, share: float = 0.99) -> float:
     """End of a symmetric scale that a few large values do not decide; 1 where all are zero."""
     limit = float(np.quantile(np.abs(values), share)) if len(values) else 0.0
     return limit or 1.0
+
+
+def axis_of(column: str, values: Array) -> tuple[str, Array]:
+    """Label of an axis for a column of a run file, and its values in the unit of the label.
+
+    Example:
+        >>> axis_of("B_deg", np.array([-90.0, 0.0]))[0], axis_of("time_s", np.array([0.0, 9e4]))[0]
+        ('B in °', 'time in h')
+    """
+    if column == "time_s":
+        # two days are better told in hours than in days: the axis has room for two digits
+        factor, unit = time_unit(min(float(np.max(np.abs(values), initial=1.0)), 86400.0))
+        return f"time in {unit}", values / factor
+    unit = unit_of(column).replace("deg", "°")
+    return (f"{noun(column)} in {unit}" if unit else noun(column)), values
 
 
 def tidy(text: str) -> str:

@@ -31,6 +31,10 @@ SEEN = 0.05
 sides."""
 
 
+MOST_NAMED = 24
+"""Features whose names are written on the standard."""
+
+
 def is_spread(touches: Touches) -> bool:
     """Whether the touched points cover something that can be drawn."""
     return bool(np.sort(np.ptp(touches.point, axis=0))[1] > EXTENT)
@@ -46,23 +50,36 @@ def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> Non
     """
     figure = new_figure(4.2, layout=None)  # what lays out by itself cuts axes in space
     limit = robust_limit(np.concatenate([f.residual[f.used] / UM for _, f in fits]))
-    for (title, fit), left in zip(fits, (-0.02, 0.425), strict=False):
-        ax = figure.add_axes((left, 0.03, 0.46, 0.9), projection="3d")
+    for (title, fit), left in zip(fits, (0.0, 0.435), strict=False):
+        ax = figure.add_axes((left, 0.03, 0.43, 0.9), projection="3d")
         marks = _points(ax, fit, limit, fit.run.touches.point)
         _standing(ax, fit.run.touches)
-        ax.set_title(title, fontsize=10, color=INK)
+        ax.set_title(title, fontsize=10, color=INK, y=0.86)
     if len(fits) == 1:
-        flat = figure.add_axes((0.53, 0.13, 0.36, 0.78))
+        flat = figure.add_axes((0.54, 0.13, 0.33, 0.78))
         _points(flat, fits[0][1], limit, fits[0][1].run.touches.point[:, :2])
         flat.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
         flat.set_title("from above", fontsize=10, color=INK)
         plain(flat)
-    bar = figure.colorbar(marks, cax=figure.add_axes((0.93, 0.14, 0.014, 0.72)), extend="both")
+        _name_features(flat, fits[0][1].run.touches)
+    bar = figure.colorbar(marks, cax=figure.add_axes((0.905, 0.14, 0.014, 0.72)), extend="both")
     bar.set_label("residual in µm (positive: outside)", fontsize=9)
+    bar.ax.tick_params(labelsize=8.5)
     if any(f.gross.rows.any() for _, f in fits):
         handles = figure.axes[0].get_legend_handles_labels()
         figure.legend(*handles, loc="lower left", fontsize=8.5, frameon=False)
     save(figure, path)
+
+
+def _name_features(ax: Any, touches: Touches) -> None:
+    """Name of every feature at its middle, seen from above; features too many to read have none."""
+    names = np.unique(touches.feature)
+    if not 1 < len(names) <= MOST_NAMED:
+        return
+    for name in names:
+        at = touches.point[touches.feature == name, :2].mean(axis=0)
+        box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75}
+        ax.text(*at, str(name), fontsize=7.5, color=INK, ha="center", va="center", bbox=box)
 
 
 def _points(ax: Any, fit: Fit, limit: float, p: Array) -> Any:
@@ -104,11 +121,11 @@ def _standing(ax: Any, touches: Touches) -> None:
     for set_limit, m, s in zip((ax.set_xlim, ax.set_ylim, ax.set_zlim), middle, size, strict=True):
         set_limit(m - 0.5 * s, m + 0.5 * s)
     ax.patch.set_visible(False)  # else it covers the label of the axes to its left
-    ax.set_box_aspect(size, zoom=1.06)
+    ax.set_box_aspect(size, zoom=1.0)
     ax.view_init(26.0, -58.0)
     for letter, axis in zip("xyz", (ax.xaxis, ax.yaxis, ax.zaxis), strict=True):
         axis.set_label_text(f"{letter} in mm", fontsize=8)
-        axis.labelpad = 0.0
+        axis.labelpad = 0.0 if letter != "z" else -3.0  # else it runs into the axes to the right
         axis.set_major_locator(_few_ticks())
         axis.pane.set_facecolor("#f4f6f9")
         axis.pane.set_edgecolor(LINE)

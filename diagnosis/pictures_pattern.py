@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.fit import Fit
-from diagnosis.ink import BLUE, DIVERGING, INK, SOFT, new_figure, plain, robust_limit, save
+from diagnosis.ink import BLUE, DIVERGING, INK, SOFT, axis_of, new_figure, plain, robust_limit, save
 from diagnosis.partial import SEES
 from diagnosis.patterns import directions, groups, variables
 from diagnosis.pictures_residuals import binned, kept
@@ -15,6 +15,7 @@ from diagnosis.structure import Structure
 from twin.frames import Array
 from twin.touches import IntArray
 from twin.units import UM
+from twin.words import span, time_unit
 
 NEIGHBOURS = 14
 """Touches over which a map of two variables is averaged."""
@@ -41,10 +42,7 @@ def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Ge
     if not 1 <= len(found.variables) <= 2 or not set(found.variables) <= set(known):
         return False
     rows, r, weight = _seen(fit, found.direction)
-    x = np.stack([known[name][rows] for name in found.variables])
-    names = list(found.variables)
-    if found.period > 0.0:
-        x, names = x % found.period, [f"{names[0]} within a period of {found.period:.4g} s"]
+    names, x = _axes(found, {name: known[name][rows] for name in found.variables})
     word = "the normal" if found.direction == "normal" else found.direction
     figure = new_figure(3.7 if len(x) == 1 else 4.3)
     axes = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -64,6 +62,16 @@ def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Ge
         plain(ax)
     save(figure, path)
     return True
+
+
+def _axes(found: Structure, known: dict[str, Array]) -> tuple[list[str], Array]:
+    """Labels of the variables of a pattern, and their values, (1 or 2, M)."""
+    if found.period > 0.0:
+        factor, unit = time_unit(found.period)
+        label = f"time within a wave of {span(found.period)}, in {unit}"
+        return [label], (known[found.variables[0]] % found.period)[None] / factor
+    labelled = [axis_of(name, values) for name, values in known.items()]
+    return [label for label, _ in labelled], np.stack([values for _, values in labelled])
 
 
 def _seen(fit: Fit, direction: str) -> tuple[IntArray, Array, Array]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.fit import Fit
-from diagnosis.ink import BLUE, INK, LINE, RED, SOFT, new_figure, plain, robust_limit, save
+from diagnosis.ink import BLUE, INK, LINE, RED, SOFT, axis_of, new_figure, plain, robust_limit, save
 from diagnosis.patterns import variables
 from twin.frames import Array
 from twin.touches import IntArray, Touches
@@ -134,8 +134,9 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[Panel]) -> 
     axes = figure.subplots(count, COLUMNS, sharey=True, squeeze=False)
     limit = robust_limit(r, 0.995)
     for ax, panel in zip(axes.flat, panels, strict=False):
-        _panel(ax, panel.values, r, weight, limit)
-        ax.set_xlabel(panel.name, fontsize=8.5, labelpad=1)
+        label, values = axis_of(panel.name, panel.values)
+        _panel(ax, values, r, weight, limit)
+        ax.set_xlabel(label, fontsize=8.5, labelpad=1)
         if panel.labels is not None:
             turned = 90 if len(panel.labels) > 4 else 0
             ax.set_xticks(np.arange(len(panel.labels)), panel.labels, rotation=turned)

@@ -1,5 +1,6 @@
 """The page of a diagnosis: verdict, the error falling, what was tried, what stays open."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from diagnosis.detectable import Detectable
 from diagnosis.ink import CLASSES
 from diagnosis.pictures import draw_on_standard, is_spread
 from diagnosis.pictures_effects import draw_candidates, draw_effect, draw_fall, draw_rivals
+from diagnosis.pictures_form import draw_form, is_form
 from diagnosis.sentences import named_value, sizes, values, verdict_sentence
 from diagnosis.verdict import Diagnosis, Step, Verdict
 from matstd.page import write_page
@@ -25,12 +27,13 @@ from twin.files.pose_file import reading_columns
 from twin.library import kinds
 from twin.touches import Touches
 from twin.units import UM
+from twin.words import digits
 
 PAGE = "report.html"
 PICTURES = "pictures"
 
-NAMED = 8
-"""Rivals of an effect that are named in a sentence."""
+NEXT = 3
+"""Effects that were told apart, but come next, that are listed."""
 
 SAME = 0.1
 """Log odds below which two effects are the same as far as a picture can show."""
@@ -109,24 +112,72 @@ def _effect(result: Diagnosis, i: int, place: Path) -> dict[str, Any]:
     assert step.effect is not None
     colour = CLASSES[(i - 1) % len(CLASSES)]
     name = f"effect_{i}.png"
-    draw_effect(place / name, result.fit, step.effect, colour)
+    form = is_form(result.fit, step.effect)
+    if form:
+        draw_form(place / name, result.fit, step.effect)
+    else:
+        draw_effect(place / name, result.fit, step.effect, colour)
     kind = next((k for k in kinds() if k.word == step.effect.kind), None)
     return {
         "name": step.effect.name,
         "picture": name,
+        "caption": _FORM if form else _COURSE,
         "kind": kind,
         "values": values(step),
-        "alike": _alike(step)[:NAMED],
-        "alike_more": max(len(_alike(step)) - NAMED, 0),
+        "more": len(values(step)) < len(step.reported),
+        "alike": _alike(step),
+        "against": _against(step),
         "by_user": step.is_named,
         "rivals": _rivals(step, i, place, colour),
         "p": step.p_value,
     }
 
 
+_COURSE = (
+    "Left: what the run shows of this effect alone, with its fitted course. Right: the same "
+    "touches once it is in the model. Dots: means with standard errors."
+)
+_FORM = (
+    "Left: what the touches on this feature show of its form, on the fitted form. Right: the same "
+    "touches once it is in the model."
+)
+
+
 def _alike(step: Step) -> list[str]:
     """Names of what cannot be told from an effect, the likeliest first."""
     return [r.effect.name for r in step.confusion.rivals] if step.confusion else []
+
+
+def _against(step: Step) -> list[dict[str, Any]]:
+    """Everything that explains the same touches, by the odds against it."""
+    if step.confusion is None:
+        return []
+    rivals = [(r, True) for r in step.confusion.rivals]
+    rivals += [(r, False) for r in step.confusion.told_apart[:NEXT]]
+    return [
+        {
+            "effect": r.effect.name,
+            "odds": odds(r.log_odds),
+            "overlap": r.overlap,
+            "is_confused": is_confused,
+        }
+        for r, is_confused in rivals
+    ]
+
+
+def odds(log_odds: float) -> str:
+    """Odds of a natural logarithm as a reader sees them.
+
+    Example:
+        >>> odds(0.02), odds(2.3), odds(30.0)
+        ('1 : 1', '10 : 1', '10^13 : 1')
+    """
+    ratio = math.exp(min(max(log_odds, 0.0), 700.0))
+    if ratio < 1.05:
+        return "1 : 1"
+    if ratio < 1e4:
+        return f"{digits(ratio, 2)} : 1"
+    return f"10^{math.floor(math.log10(ratio))} : 1"
 
 
 def _rivals(step: Step, i: int, place: Path, colour: str) -> str:

@@ -133,12 +133,12 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
 def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
-    from diagnosis.sentences import rivals_words, sizes
+    from diagnosis.sentences import rivals_words, values
     from twin.units import UM
 
     return (
         step.effect.name if step.effect is not None else "model to begin with",
-        sizes(step, most=2) if step.effect is not None else "",
+        ", ".join(value for _, value in values(step)[:2]),
         f"{step.p_value:.0e}" if step.effect is not None else "",
         f"{step.fit.rms / UM:.3f}",
         f"{step.fit.test_rms / UM:.3f}",
