@@ -148,7 +148,7 @@ def test_three_axes_by_counting_monomials():
         fields += [reading * e[:, None] for e in up]
         fields += [reading * np.cross(e, arm.T).T for e in up]
     fields += [one * e[:, None] for e in up]  # zeros, set-up, tool
-    fields += [np.cross(e, (tool.T + [0.0, 0.0, 500.0])).T for e in up]  # set-up turned
+    fields += [np.cross(e, tool.T - np.array([0.0, 0.0, -500.0])).T for e in up]  # set-up turned
     fields += [z * up[0][:, None], z * up[1][:, None], y * up[0][:, None], x * up[1][:, None]]
     M = np.array([f.ravel() for f in fields]).T
     M = M[:, np.linalg.norm(M, axis=0) > 0.0]
