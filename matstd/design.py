@@ -28,9 +28,12 @@ from probe_paths.plan import TouchPlan
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from probe_paths.program import ProgramSet, make_programs
+from sensitivity.crew import Crew
 from sensitivity.maps import draw_maps
 from sensitivity.sampling import Population, drawn_errors
-from sensitivity.study import Study, run_study, write_study
+from sensitivity.study import Study, run_study
+from sensitivity.study_file import write_study
+from sensitivity.trajectory_pictures import draw_path
 from sensitivity.workspace import Workspace
 from twin.effect import Effect, contribution
 from twin.files.error_file import errors_toml
@@ -83,24 +86,36 @@ class Design:
     known: Estimable
 
 
-def design(project: Project, folder: Path, progress: Stage) -> Design:
+def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -> Design:
     """Run all stages and write their files into a folder.
 
     Args:
         project: What shall be designed, for which machine.
         folder: Empty folder.
         progress: Told what is going on.
+        crew: Who draws the random machines of the maps; None for this process.
 
     Raises:
         DesignError: A stage that cannot do its work; its message says which constraint binds.
     """
-    rng_study, rng_place, rng_proof = np.random.default_rng(project.seed).spawn(3)
+    rng_study, rng_place, rng_proof, rng_maps = np.random.default_rng(project.seed).spawn(4)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
-    population = Population(project.chain, project.ranges)
+    population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
-    study = run_study(population, workspace, project.poses, project.draws, rng_study, progress)
+    study = run_study(
+        population,
+        workspace,
+        project.poses,
+        project.draws,
+        rng_study,
+        progress,
+        project.tolerance,
+        project.digits,
+        crew,
+    )
     write_study(study, folder / "sensitivity")
-    maps = draw_maps(study, folder / "sensitivity")
+    maps = draw_maps(study, folder / "sensitivity", rng_maps)
+    maps += draw_path(study, folder / "sensitivity")
     placement = _placement(project, workspace, rng_place, progress)
     write_standard(folder / "standard.toml", placement.standard)
     progress("STEP and STL", 0, 1)

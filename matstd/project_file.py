@@ -1,5 +1,6 @@
 """Project file (TOML, format "project/1"): all that `matstd design` is told."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -7,14 +8,17 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
+from matstd.errors_table import ErrorsTable, Expected, expected_errors
+from sensitivity.batches import MACHINES_A_BATCH
+from sensitivity.sampling import Population
 from twin.chain import Chain
-from twin.errors import BadFile, UnknownAxis, UnknownSymbol
-from twin.files.machine_file import Pair, Vector, read_machine
+from twin.errors import BadFile, UnknownAxis
+from twin.files.machine_file import Vector, read_machine
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
-from twin.ranges import DEFAULT_RANGES, Ranges
+from twin.ranges import Ranges
 from twin.touches import Setup
-from twin.units import DEG, UM, URAD
+from twin.units import DEG, UM
 
 
 class ProbeTable(Table):
@@ -24,17 +28,12 @@ class ProbeTable(Table):
     length_mm: float = Field(gt=0.0)
 
 
-class ErrorsTable(Table):
-    """`[errors]`: amplitude ranges by class and by parameter, µm or µrad."""
-
-    classes: dict[str, Pair] = Field(default_factory=dict)
-    parameters: dict[str, Pair] = Field(default_factory=dict)
-
-
 class MonteCarloTable(Table):
-    """`[montecarlo]`: number of random machines."""
+    """`[montecarlo]`: number of random machines, and when it is enough of them."""
 
     draws: int = Field(default=2000, ge=100)
+    digits: int = Field(default=0, ge=0, le=3)
+    tolerance_um: float = Field(default=float("inf"), gt=0.0)
 
 
 class StandardTable(Table):
@@ -92,8 +91,10 @@ class Project:
         probe_length: Gauge point to ball centre, mm.
         workspace: Smallest and largest reading of every programmed axis, mm or rad.
         poses: Number of poses for the maps.
-        draws: Number of random machines for the maps.
-        ranges: Expected amplitudes of the errors.
+        draws: Number of random machines for the maps; at most so many where digits are asked for.
+        digits: Significant digits that have to be stable (JCGM 101); 0 for none.
+        tolerance: Volumetric error that users allow, mm; infinite where they said nothing.
+        expected: Errors that the machine is expected to have.
         standard: Name, material, expansion, number of patches and touches, criterion.
         setup: Where the standard stands on the table.
         noise: Standard deviation of one simulated touch, mm.
@@ -109,15 +110,32 @@ class Project:
     workspace: dict[str, tuple[float, float]]
     poses: int
     draws: int
-    ranges: Ranges
+    digits: int
+    tolerance: float
+    expected: Expected
     standard: StandardTable
     setup: Setup
     noise: float
     machines: int
 
+    @property
+    def ranges(self) -> Ranges:
+        """Expected amplitudes of the errors."""
+        return self.expected.ranges
 
-def read_project(path: str | Path) -> Project:
+    @property
+    def population(self) -> Population:
+        """Machines to draw from."""
+        known = self.expected
+        return Population(self.chain, known.ranges, known.distributions, known.dependence)
+
+
+def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None) -> Project:
     """Project with its machine.
+
+    Args:
+        path: The file.
+        montecarlo: Keys of `[montecarlo]` that stand in place of those of the file.
 
     Raises:
         BadFile: File, key, what stood there, what was expected.
@@ -125,12 +143,21 @@ def read_project(path: str | Path) -> Project:
     path = Path(path)
     data = parse_toml(read_text(path), path)
     check_format(data, "project/1", path)
+    if montecarlo and isinstance(data.setdefault("montecarlo", {}), dict):
+        data["montecarlo"] |= montecarlo
     table = checked(ProjectTable, data, path)
     machine_path = path.parent / table.machine
     chain = read_machine(machine_path)
     workspace, poses = _workspace(table, chain, path)
     if len(table.setup) != 1:
         raise BadFile(path, "setup", f"{len(table.setup)} set-ups", "one set-up")
+    if table.montecarlo.digits and table.montecarlo.draws < 2 * MACHINES_A_BATCH:
+        raise BadFile(
+            path,
+            "montecarlo.draws",
+            f"{table.montecarlo.draws} with digits = {table.montecarlo.digits}",
+            f"{2 * MACHINES_A_BATCH} or more: stable digits need two batches",
+        )
     name, setup = next(iter(table.setup.items()))
     return Project(
         path=path,
@@ -142,7 +169,9 @@ def read_project(path: str | Path) -> Project:
         workspace=workspace,
         poses=poses,
         draws=table.montecarlo.draws,
-        ranges=_ranges(table.errors, chain, path),
+        digits=table.montecarlo.digits,
+        tolerance=table.montecarlo.tolerance_um * UM,
+        expected=expected_errors(table.errors, chain, path),
         standard=table.standard,
         setup=Setup(
             name,
@@ -193,30 +222,3 @@ def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
     if not low <= high:
         raise BadFile(path, key, [low, high], "the smaller number first")
     return low, high
-
-
-def _ranges(table: ErrorsTable, chain: Chain, path: Path) -> Ranges:
-    """Amplitude ranges in base units."""
-    by_class = dict(DEFAULT_RANGES)
-    for name, pair in table.classes.items():
-        if name not in by_class:
-            raise BadFile(
-                path, f"errors.classes.{name}", "an unknown class", f"one of {', '.join(by_class)}"
-            )
-        angular = name.split("_")[-1] in ("rotation", "tilt", "squareness") or name == "rotary_zero"
-        by_class[name] = _amplitudes(pair, URAD if angular else UM, path, f"errors.classes.{name}")
-    by_name = {}
-    for name, pair in table.parameters.items():
-        key = f"errors.parameters.{name}"
-        try:
-            symbol = chain.symbol(name)
-        except UnknownSymbol as error:
-            raise BadFile(path, key, "an unknown error name", str(error).split("; ")[-1]) from None
-        by_name[name] = _amplitudes(pair, URAD if symbol.is_angular else UM, path, key)
-    return Ranges(by_class, by_name)
-
-
-def _amplitudes(pair: Pair, unit: float, path: Path, key: str) -> tuple[float, float]:
-    if not 0.0 <= pair[0] <= pair[1]:
-        raise BadFile(path, key, list(pair), "amplitudes from zero up, the smaller first")
-    return pair[0] * unit, pair[1] * unit

@@ -64,6 +64,7 @@ class Dependence:
                 f"the correlation matrix of {listed} is not positive semidefinite: its smallest "
                 f"eigenvalue is {smallest:.3g}, so no machines can have these correlations"
             )
+        object.__setattr__(self, "correlation", r)
 
 
 @dataclass(frozen=True)

@@ -1,29 +1,29 @@
-"""The sensitivities of one machine over one workspace: computed once, written as data and maps."""
+"""The sensitivities of one machine over one workspace, computed once."""
 
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 
 from sensitivity.blocks import Progress, silent
+from sensitivity.crew import Crew
 from sensitivity.exact import ExactCheck, exact_check
 from sensitivity.indices import covariance, rms, variance_shares
 from sensitivity.jacobian import sensitivity
 from sensitivity.montecarlo import Volumetric, volumetric
 from sensitivity.normal_length import NormalLength, normal_length
 from sensitivity.sampling import Population
+from sensitivity.total_effects import TotalEffects, norm_shares
+from sensitivity.trajectory import AlongPath, Trajectory, axis_effect, paper_trajectory
 from sensitivity.workspace import Workspace, latin_hypercube, section
 from twin.chain import Chain
-from twin.files.pose_file import reading_columns
-from twin.files.whole import write_whole, written_whole
 from twin.frames import Array
-from twin.units import UM, URAD
 
 SECTION = 25
 """Values of each of the two readings of a section."""
 
+_TOTAL_POSES = 300  # at which total effects are taken: their mean over a workspace needs no more
 _CHECKED = (20, 60)  # machines and poses on which first order is compared with the exact product
 
 
@@ -47,6 +47,23 @@ class Section:
 
 
 @dataclass(frozen=True, eq=False)
+class PathStudy:
+    """Volumetric error along a trajectory.
+
+    Attributes:
+        trajectory: The path.
+        volumetric: Statistics at its poses; the worst ones are those of the workspace.
+        closed: The same without sampling, as if every error were normally distributed.
+        effects: What the error motions of single axes do on the way.
+    """
+
+    trajectory: Trajectory
+    volumetric: Volumetric
+    closed: NormalLength
+    effects: tuple[AlongPath, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Study:
     """Where errors show on a machine.
 
@@ -60,6 +77,9 @@ class Study:
         volumetric: Its statistics over random machines.
         sections: The same over pairs of readings.
         exact: How far first order is from the exact product.
+        total: Total effects of the errors on the length |d| at the first poses; None for errors
+            that depend on each other.
+        path: Volumetric error along a trajectory; None where nothing moves.
     """
 
     population: Population
@@ -71,6 +91,8 @@ class Study:
     volumetric: Volumetric
     sections: tuple[Section, ...]
     exact: ExactCheck
+    total: TotalEffects | None
+    path: PathStudy | None
 
     @property
     def chain(self) -> Chain:
@@ -111,35 +133,53 @@ class Study:
 def run_study(
     population: Population,
     workspace: Workspace,
-    poses: int,
+    poses: int | Array,
     draws: int,
     rng: np.random.Generator,
     progress: Progress = silent,
+    tolerance: float = np.inf,
+    digits: int = 0,
+    crew: Crew = None,
 ) -> Study:
-    """Sensitivities, shares of variance and Monte Carlo over a workspace.
+    """Sensitivities, shares of variance and Monte Carlo over a workspace and along a trajectory.
 
     Args:
         population: Machines to draw from.
         workspace: Where to look.
-        poses: Number of poses.
-        draws: Number of random machines.
+        poses: Number of poses, or their readings, shape (N, A).
+        draws: Number of random machines, at most so many with digits.
         rng: Source of the random numbers.
         progress: Told what is being done.
+        tolerance: For the exceedance, mm.
+        digits: Significant digits that have to be stable (JCGM 101); 0 for none.
+        crew: Who draws the machines (`sensitivity.crew`).
 
     Raises:
         NotReachable: The workspace has no pose.
         DesignError: Too few draws or poses.
     """
-    rng_poses, rng_draws, rng_check = rng.spawn(3)
+    rng_poses, rng_draws, rng_check, rng_total = rng.spawn(4)
     length = workspace.length
-    q = latin_hypercube(workspace, poses, rng_poses)
+    q = latin_hypercube(workspace, poses, rng_poses) if isinstance(poses, int) else poses
     spread = rms(population, q, length)
     worst = q[np.argmax(spread)]
     planes = [
         (pair, *section(workspace, *pair, SECTION, worst)) for pair in section_pairs(workspace)
     ]
-    everywhere = np.concatenate([q, *(plane[3] for plane in planes)])
-    found = volumetric(population, everywhere, length, draws, rng_draws, progress, reference=len(q))
+    way = paper_trajectory(workspace) if workspace.open_axes else None
+    everywhere = np.concatenate([q, *(plane[3] for plane in planes), *([way.q] if way else [])])
+    found = volumetric(
+        population,
+        everywhere,
+        length,
+        draws,
+        rng_draws,
+        progress,
+        reference=len(q),
+        tolerance=tolerance,
+        digits=digits,
+        crew=crew,
+    )
     sections = []
     start = len(q)
     for pair, first, second, q_plane in planes:
@@ -157,7 +197,21 @@ def run_study(
         volumetric=found[slice(0, len(q))],
         sections=tuple(sections),
         exact=exact_check(population, q[:checked], length, machines, rng_check),
+        total=None
+        if population.dependence
+        else norm_shares(population, q[:_TOTAL_POSES], length, rng_total),
+        path=_along(population, way, found[slice(start, None)]) if way else None,
     )
+
+
+def _along(population: Population, way: Trajectory, found: Volumetric) -> PathStudy:
+    """What random machines and single axes do along a trajectory."""
+    closed = normal_length(covariance(population, way.q, way.length))
+    span = dict(zip(way.chain.axes, np.ptp(way.q, axis=0), strict=True))
+    linear = [a for a in way.moving if a in way.chain.linear_axes]
+    rotary = sorted((a for a in way.moving if a in way.chain.rotary_axes), key=lambda a: -span[a])
+    effects = tuple(axis_effect(way, axis) for axis in (*linear[:1], *rotary[:1]))
+    return PathStudy(way, found, closed, effects)
 
 
 def section_pairs(workspace: Workspace) -> list[tuple[str, str]]:
@@ -170,62 +224,3 @@ def section_pairs(workspace: Workspace) -> list[tuple[str, str]]:
     if len(rotary) == 1:
         pairs += [(a, rotary[0]) for a in linear[:3]]
     return pairs[:6]
-
-
-def write_study(study: Study, folder: str | Path) -> None:
-    """Write the data of a study into a folder; `sensitivity.maps.draw_maps` draws it.
-
-    `poses.csv` (readings and statistics of the volumetric error with their standard errors by
-    sampling), `sensitivity.csv` (S a column a parameter), `shares.csv` and `sections.npz`.
-
-    Args:
-        study: The study.
-        folder: Made where it does not exist; files in it are replaced.
-    """
-    folder = Path(folder)
-    columns = reading_columns(study.chain)
-    readings = {
-        column: study.q[:, study.chain.axis_index(axis)] / factor
-        for axis, (column, factor) in columns.items()
-        if study.chain.link(axis).programmed
-    }
-    v = study.volumetric
-    statistics = {"mean": v.mean, "mean_u": v.mean_u, "sd": v.sd, "rms": study.rms}
-    statistics["p95_normal"] = study.closed.p95
-    for i, level in enumerate(v.levels):
-        statistics[f"p{100 * level:g}"] = v.quantile[i]
-        statistics[f"p{100 * level:g}_u"] = v.quantile_u[i]
-    table = readings | {f"{name}_um": value / UM for name, value in statistics.items()}
-    table |= {"recurrence": v.recurrence, "recurrence_u": v.recurrence_u}
-    write_whole(folder / "poses.csv", csv_text(table))
-    symbols = study.chain.symbols
-    unit = [URAD / UM if s.is_angular else 1.0 for s in symbols]
-    S = {s.name: study.sensitivity[:, i] * unit[i] for i, s in enumerate(symbols)}
-    write_whole(folder / "sensitivity.csv", csv_text(readings | S))
-    shares = {s.name: study.shares[:, i] for i, s in enumerate(symbols)}
-    write_whole(folder / "shares.csv", csv_text(readings | shares))
-    _write_sections(study, folder / "sections.npz")
-
-
-def _write_sections(study: Study, path: Path) -> None:
-    """Sections as arrays: readings in mm and rad, deviations in mm."""
-    arrays: dict[str, Array] = {}
-    for s in study.sections:
-        n = len(s.first)
-        name = "".join(s.axes)
-        arrays |= {
-            f"{name}_first": s.first,
-            f"{name}_second": s.second,
-            f"{name}_mean": s.volumetric.mean.reshape(n, n),
-            f"{name}_p95": s.volumetric.p95.reshape(n, n),
-            f"{name}_recurrence": s.volumetric.recurrence.reshape(n, n),
-        }
-    with written_whole(path) as part, part.open("wb") as stream:
-        np.savez_compressed(stream, allow_pickle=False, **arrays)
-
-
-def csv_text(table: dict[str, Array]) -> str:
-    """Columns of numbers as CSV with seven digits."""
-    rows = np.stack(list(table.values()), axis=1)
-    lines = [",".join(table)] + [",".join(f"{v:.7g}" for v in row) for row in rows]
-    return "\n".join(lines) + "\n"

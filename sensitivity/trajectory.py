@@ -6,7 +6,7 @@ trajectory too: `montecarlo.volumetric(population, path.q, path.length, ...)`.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -143,12 +143,14 @@ class AlongPath:
         errors: Effects with their amplitudes, mm and rad.
         deviation: Exact deviation of the tool point in the table frame, (N, 3), mm.
         each: Length of the deviation that each error makes alone, by its name, (N,) each, mm.
+        axis: Whose error motions they are; empty for any others.
     """
 
     trajectory: Trajectory
     errors: tuple[tuple[Effect, Array], ...]
     deviation: Array
     each: Mapping[str, Array] = field(default_factory=dict)
+    axis: str = ""
 
     @property
     def size(self) -> Array:
@@ -224,4 +226,4 @@ def axis_effect(trajectory: Trajectory, axis: str) -> AlongPath:
     Reference:
         D-MT paper, figure 2 (X) and figure 3 (C).
     """
-    return along_path(trajectory, axis_errors(trajectory.chain, axis))
+    return replace(along_path(trajectory, axis_errors(trajectory.chain, axis)), axis=axis)

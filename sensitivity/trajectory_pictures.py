@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sensitivity.canvas import GRID, INK, SHADES, figure, reading_label
+from sensitivity.canvas import GRID, INK, SHADES, figure, reading_label, save
 from sensitivity.montecarlo import Volumetric
+from sensitivity.study import Study
 from sensitivity.trajectory import AlongPath, Trajectory
 from twin.chain import Chain
 from twin.effects.geometric import ComponentError
@@ -129,3 +131,26 @@ def _error_words(chain: Chain, effect: object, size: float) -> str:
     value = f"{size / URAD:.3g} µrad" if symbol.is_angular else f"{size / UM:.3g} µm"
     shape = f", {effect.shape}" if isinstance(effect, ComponentError) else ""
     return f"{symbol.name} ({value}{shape})"
+
+
+def draw_path(study: Study, folder: Path) -> list[tuple[str, str]]:
+    """Draw what random machines and single axes do along the trajectory of a study.
+
+    Args:
+        study: The study.
+        folder: For the pictures.
+
+    Returns:
+        File name and caption of each; none where nothing moves.
+    """
+    if study.path is None:
+        return []
+    way, out = study.path.trajectory, []
+    for effect in study.path.effects:
+        drawn, caption = axis_effect_picture(effect)
+        out.append((f"trajectory_{effect.axis}.png", caption, drawn))
+    drawn, caption = statistics_picture(way, study.path.volumetric, study.path.closed.p95)
+    out.append(("trajectory.png", caption, drawn))
+    for name, _, drawn in out:
+        save(drawn, folder / name)
+    return [(name, caption) for name, caption, _ in out]

@@ -2,16 +2,20 @@
 
 import argparse
 
+from matstd.crew import add_scheduler
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("project", metavar="PROJECT.toml", help="what to design, for which machine")
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
+    add_scheduler(parser)
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
 
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
+    from matstd.crew import hired
     from matstd.folder import results_folder
     from matstd.project_file import read_project
 
@@ -21,8 +25,8 @@ def run(args: argparse.Namespace) -> int:
         from matstd.design import design
         from matstd.report_design import write_design_page
 
-        with stages() as progress:
-            made = design(project, folder, progress)
+        with stages() as progress, hired(args.scheduler) as crew:
+            made = design(project, folder, progress, crew)
             progress("report", 0, 1)
             remarks = write_design_page(made, folder)
     for remark in remarks:

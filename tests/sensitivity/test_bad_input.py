@@ -5,7 +5,8 @@ import pytest
 
 from sensitivity.maps import draw_maps
 from sensitivity.sampling import Population
-from sensitivity.study import run_study, write_study
+from sensitivity.study import run_study
+from sensitivity.study_file import write_study
 from sensitivity.workspace import Workspace
 from twin.errors import NotReachable
 from twin.ranges import DEFAULT_RANGES, Ranges

@@ -7,7 +7,8 @@ import pytest
 
 from sensitivity.maps import draw_maps
 from sensitivity.sampling import Population
-from sensitivity.study import run_study, section_pairs, write_study
+from sensitivity.study import run_study, section_pairs
+from sensitivity.study_file import write_study
 from sensitivity.workspace import Workspace
 from twin.chain import Axis, make_chain
 from twin.units import DEG, UM

@@ -1,0 +1,37 @@
+"""`--scheduler`: the random machines of the Monte Carlo drawn by the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sensitivity.crew import Crew
+
+
+def add_scheduler(parser: argparse.ArgumentParser) -> None:
+    """The argument `--scheduler`."""
+    parser.add_argument(
+        "--scheduler",
+        metavar="tcp://HOST:PORT",
+        help="let the workers of this Dask scheduler draw the random machines; the results are "
+        "those of a run without",
+    )
+
+
+@contextmanager
+def hired(address: str | None) -> Iterator[Crew]:
+    """The workers at an address; nobody but this process without one.
+
+    Raises:
+        DesignError: Nobody answers there.
+    """
+    if address is None:
+        yield None
+        return
+    from sensitivity.cluster import cluster
+
+    with cluster(address) as client:
+        yield client
