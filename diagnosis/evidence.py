@@ -188,13 +188,18 @@ class Scores:
     p: Array
 
 
-def score_all(effects: EffectSet, pool: Signatures) -> Scores:
+def score_all(effects: EffectSet, pool: Signatures, inside: Array | None = None) -> Scores:
     """Score every variant of a pool as an addition to a set of effects.
 
     One product of the set's columns with all signatures, then small eigenproblems of the width of
     each variant.
+
+    Args:
+        effects: The set.
+        pool: Signatures of all candidates.
+        inside: That product, (K, M), where it is known; the touches are then not gone through.
     """
-    E = effects.whiten(pool.C)
+    E = effects.whiten(pool.C) if inside is None else effects.lower_solve(inside)
     return _scores(effects, pool, E, pool.along - E.T @ effects.along, 1.0)
 
 

@@ -10,6 +10,7 @@ left out of the fit.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -129,6 +130,7 @@ class Search:
         self.fixed = fixed
         self.progress = progress
         self._scores: dict[tuple[tuple[int, float], ...], Scores] = {}
+        self._products: dict[int, Array] = {}
 
     def chosen(self, members: Iterable[Member]) -> Chosen:
         """A set in the projection."""
@@ -149,8 +151,28 @@ class Search:
         """Scores of all variants as additions to a set, computed once."""
         key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
         if key not in self._scores:
-            self._scores[key] = score_all(chosen.effects, self.pool)
+            self._scores[key] = score_all(chosen.effects, self.pool, self._inside(chosen))
         return self._scores[key]
+
+    def _inside(self, chosen: Chosen) -> Array:
+        """Inner products of a set's columns with all signatures, (K, M).
+
+        Those of a variant are made once: a long run has few variants that are ever members.
+        """
+        rows = [np.zeros((0, self.pool.C.shape[1]))]
+        if self.fixed is not None:
+            rows.append(self._fixed_product)
+        for m in chosen.members:
+            if m.variant not in self._products:
+                self._products[m.variant] = self.pool.columns_of(m.variant).T @ self.pool.C
+            rows.append(m.scale * self._products[m.variant])
+        return np.vstack(rows)
+
+    @cached_property
+    def _fixed_product(self) -> Array:
+        """The same of the columns that are in every set."""
+        assert self.fixed is not None
+        return np.asarray(self.fixed.T @ self.pool.C)
 
     def ranking(self, chosen: Chosen) -> list[int]:
         """Best variant of every candidate that is not in a set, most evidence first."""

@@ -160,6 +160,7 @@ def simulate_case(
     signal_to_noise=(12.0, 40.0),
     with_alike=True,
     keep_weak=False,
+    poses=10,
 ):
     """One case: texts of the run file and the machine file, and the truth.
 
@@ -172,8 +173,9 @@ def simulate_case(
         signal_to_noise: Range from which the visibility of each effect is drawn.
         with_alike: Whether the truth tells what could be mistaken for each effect (a second).
         keep_weak: Whether an effect stays whose largest amplitude cannot be detected.
+        poses: Table poses of every set-up, of some two dozen touches each.
     """
-    e = random_experiment(rng, machine)
+    e = random_experiment(rng, machine, poses)
     n = len(e.time)
     noise, sd, chips = random_noise(rng, n, hard)
     plain = probe(e, [], np.zeros(n))

@@ -154,17 +154,17 @@ def random_setups(rng, label):
     return stated, actual
 
 
-def random_poses(rng, label, setups):
-    """(set-up, tilt, turn) in rad of every table pose, in time order."""
+def random_poses(rng, label, setups, each=10):
+    """(set-up, tilt, turn) in rad of every table pose, in time order, so many each set-up."""
     poses = []
     for s in range(setups):
         if label == "hmc1995":
-            poses += [(s, 0.0, 0.0)] * 6
+            poses += [(s, 0.0, 0.0)] * (each * 6 // 10)
             continue
         poses.append((s, 0.0, 0.0))
-        for i in range(1, 10):
+        for i in range(1, each):
             tilt = rng.uniform(*TILTS[label])
-            turned = min(36.0 * i + rng.uniform(-6.0, 6.0) * 3.0, 360.0)
+            turned = min(360.0 / each * i + rng.uniform(-6.0, 6.0) * 3.0, 360.0)
             poses.append((s, np.radians(np.round(tilt, 7)), np.radians(np.round(turned, 7))))
     return poses
 
@@ -213,13 +213,19 @@ def temperatures(rng, t):
     }
 
 
-def random_experiment(rng, label):
-    """One of the three machines with random errors, a random standard and a random plan."""
+def random_experiment(rng, label, each=10):
+    """One of the three machines with random errors, a random standard and a random plan.
+
+    Args:
+        rng: Source of all that is random.
+        label: Which machine.
+        each: Table poses of every set-up.
+    """
     machine = read_machine(MACHINES[label])
     pads = random_pads(rng)
     stated, actual = random_setups(rng, label)
     parts = []
-    for k, (s, tilt, turned) in enumerate(random_poses(rng, label, len(stated))):
+    for k, (s, tilt, turned) in enumerate(random_poses(rng, label, len(stated), each)):
         planned = plan_pose(rng, machine, pads, stated[s], tilt, turned)
         if planned is not None:
             q, pad, place = planned
