@@ -22,15 +22,15 @@ from twin.units import UM, URAD
 class MixTable(Table):
     """`EXX = { shapes = ["linear", "sinusoidal"], weights = [2, 1], periods = [1, 2] }`."""
 
-    shapes: tuple[ShapeName, ...]
-    weights: tuple[float, ...] = ()
-    periods: tuple[int, ...] = (1,)
+    shapes: list[ShapeName]
+    weights: list[float] = Field(default_factory=list)
+    periods: list[int] = Field(default_factory=lambda: [1])
 
 
 class GroupTable(Table):
     """`[[errors.groups]]`: errors of one cause."""
 
-    names: tuple[str, ...]
+    names: list[str]
     correlation: float = 1.0
     same_shape: bool = False
 
@@ -38,8 +38,8 @@ class GroupTable(Table):
 class CorrelationTable(Table):
     """`[errors.correlation]`: a matrix over some errors."""
 
-    names: tuple[str, ...]
-    matrix: tuple[tuple[float, ...], ...]
+    names: list[str]
+    matrix: list[list[float]]
 
 
 class ErrorsTable(Table):
@@ -124,7 +124,7 @@ def _distributions(table: ErrorsTable, chain: Chain, path: Path) -> Distribution
     for name, mix in table.shapes.items():
         key = f"errors.shapes.{name}"
         try:
-            made = Mix(mix.shapes, mix.periods, mix.weights)
+            made = Mix(tuple(mix.shapes), tuple(mix.periods), tuple(mix.weights))
         except DesignError as error:
             found, _, expected = str(error).partition(": expected ")
             raise BadFile(path, key, found, expected) from error
@@ -153,9 +153,11 @@ def _dependence(table: ErrorsTable, path: Path) -> Dependence | None:
         if table.correlation:
             if any(len(row) != len(table.correlation.names) for row in table.correlation.matrix):
                 raise DesignError("rows of another length than the names")
-            return Dependence(table.correlation.names, np.array(table.correlation.matrix))
+            return Dependence(tuple(table.correlation.names), np.array(table.correlation.matrix))
         if table.groups:
-            return grouped([Group(g.names, g.correlation, g.same_shape) for g in table.groups])
+            return grouped(
+                [Group(tuple(g.names), g.correlation, g.same_shape) for g in table.groups]
+            )
     except DesignError as error:
         key = "errors.groups" if table.groups else "errors.correlation"
         raise BadFile(path, key, str(error), "what machines can have") from error
