@@ -1,14 +1,16 @@
 """Patches that could be made: smooth random shapes on sites all over a blank."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.constraints import Limits
+from artefact.constraints import Limits, overhang
 from artefact.freeform import graph_patch
-from artefact.sites import Frame, Site
+from artefact.sites import Frame, Site, patch_of_site
 from artefact.spline import Jet
+from artefact.standard import Base
+from twin.errors import NotBuildable
 from twin.frames import Array
 from twin.units import DEG
 
@@ -18,7 +20,7 @@ CONTROL = 8
 _MARGIN = 1.15
 """Shapes stay this far from the limits of curvature and slope, which are measured on grids."""
 
-_STEEPEST = 35.0 * DEG  # within a patch: beyond it a three-axis finishing cut leaves ridges
+STEEPEST = 35.0 * DEG  # within a patch: beyond it a three-axis finishing cut leaves ridges
 TALLEST = 7.0
 """What the shape of a patch may rise above its plane, mm, for the room that neighbours keep."""
 
@@ -34,6 +36,7 @@ class Ring:
         radius: From the axis, mm.
         height: Above the seat, mm.
         tilt: Of the patch's own direction from the vertical, rad.
+        lean: Away from outwards, to either side, rad.
         half_size: Half sides, mm.
     """
 
@@ -41,18 +44,23 @@ class Ring:
     radius: tuple[float, float]
     height: tuple[float, float]
     tilt: tuple[float, float]
+    lean: tuple[float, float]
     half_size: tuple[float, float]
 
 
 RINGS = (
-    Ring(0.06, (0.0, 6.0), (130.0, 160.0), (0.0, 15.0 * DEG), (17.0, 24.0)),
-    Ring(0.38, (54.0, 76.0), (95.0, 140.0), (18.0 * DEG, 42.0 * DEG), (15.0, 22.0)),
-    Ring(0.56, (92.0, 122.0), (64.0, 104.0), (40.0 * DEG, 66.0 * DEG), (15.0, 22.0)),
+    Ring(0.08, (0.0, 6.0), (130.0, 160.0), (0.0, 15.0 * DEG), (0.0, 0.0), (17.0, 24.0)),
+    Ring(0.30, (50.0, 90.0), (90.0, 150.0), (10 * DEG, 45 * DEG), (40 * DEG, 100 * DEG), (15, 22)),
+    Ring(0.62, (80.0, 122.0), (60.0, 120.0), (20 * DEG, 60 * DEG), (35 * DEG, 110 * DEG), (15, 22)),
 )
 """Top, shoulder and flank of a blank of 280 mm; scaled to other blanks by their size.
 
-All sites look outwards, straight away from the axis, so that their columns meet in the middle.
+Shoulder and flank lean sideways like the blades of a fan. Faces that all look straight outwards are
+nearly a sphere, which hides every rotation about its centre: after as many touches on faces alone
+they leave twice the uncertainty.
 """
+
+_TRIES = 200  # draws for each site until its column stands within the blank
 
 
 def smooth_heights(
@@ -87,10 +95,10 @@ def smooth_heights(
     k = 2.0 * np.pi / wave
     h += rng.uniform(0.3, 0.9) / k * np.sin(k * across + phase)
     h -= h.mean()
-    return h * _strength(half_size, h, limits, tallest)
+    return h * strength(half_size, h, limits, tallest)
 
 
-def _strength(
+def strength(
     half_size: tuple[float, float], heights: Array, limits: Limits, tallest: float
 ) -> float:
     """Factor that brings a shape to its limits; derivatives grow in proportion, curvature does not.
@@ -100,7 +108,7 @@ def _strength(
     """
     patch = graph_patch("trial", np.eye(4), half_size, heights)
     j = patch.jet(patch.grid(_PITCH))
-    steepest = np.tan(min(limits.max_slope, _STEEPEST) / _MARGIN)
+    steepest = np.tan(min(limits.max_slope, STEEPEST) / _MARGIN)
     high = float(min(steepest / np.hypot(j.hu, j.hv).max(), tallest / np.abs(j.h).max()))
     low = 0.0
     for _ in range(20):
@@ -122,36 +130,55 @@ def _largest_curvature(j: Jet, factor: float) -> float:
 
 
 def random_sites(frame: Frame, count: int, rng: np.random.Generator) -> list[Site]:
-    """Sites all over a blank, each with a random shape.
+    """Sites all over a blank, each with a random shape, its column within the blank's outline.
 
     Args:
         frame: Base, blank height and limits.
         count: Number of sites, shared out over the rings.
         rng: Source of the random numbers.
+
+    Raises:
+        NotBuildable: A blank on which no column of some ring can stand.
     """
-    wide = min(frame.base.half_size) / 140.0
-    tall = frame.blank_height / 220.0
     sites = []
     for ring in RINGS:
         n = max(1, round(ring.share * count))
         azimuth = 2.0 * np.pi * (rng.permutation(n) + rng.random(n)) / n
-        for a in azimuth:
-            half = rng.uniform(*ring.half_size, 2) * min(wide, 1.0)
-            half_size = (float(half[0]), float(half[1]))
-            sites.append(
-                Site(
-                    azimuth=float(a),
-                    radius=float(rng.uniform(*ring.radius)) * wide,
-                    height=float(rng.uniform(*ring.height)) * tall,
-                    tilt=float(rng.uniform(*ring.tilt)),
-                    half_size=half_size,
-                    heights=np.round(smooth_heights(half_size, frame.limits, rng), 6),
-                )
-            )
+        sites += [_site(frame, ring, float(a), rng) for a in azimuth]
     return sites
 
 
-def neighbours_fit(sites: list[Site], limits: Limits, depth: float = 60.0) -> NDArray[np.bool_]:
+def _site(frame: Frame, ring: Ring, azimuth: float, rng: np.random.Generator) -> Site:
+    """One site of a ring, as near to an azimuth as its column can stand."""
+    wide = min(frame.base.half_size) / 140.0
+    tall = frame.blank_height / 220.0
+    for turn in range(_TRIES):
+        half = rng.uniform(*ring.half_size, 2) * min(wide, 1.0)
+        site = Site(
+            azimuth=azimuth + turn * 2.0 * np.pi / _TRIES,
+            radius=float(rng.uniform(*ring.radius)) * wide,
+            height=float(rng.uniform(*ring.height)) * tall,
+            tilt=float(rng.uniform(*ring.tilt)),
+            half_size=(float(half[0]), float(half[1])),
+            heights=np.zeros((CONTROL, CONTROL)),
+            lean=float(rng.choice((-1.0, 1.0)) * rng.uniform(*ring.lean)),
+        )
+        if _is_within(site, frame.base):
+            heights = smooth_heights(site.half_size, frame.limits, rng)
+            return replace(site, heights=np.round(heights, 6))
+    a, b = (2.0 * side for side in frame.base.half_size)
+    raise NotBuildable(f"no column stands within the outline of a blank of {a:g} x {b:g} mm")
+
+
+def _is_within(site: Site, base: Base) -> bool:
+    """Whether the column of a site stands within the outline of a base."""
+    try:
+        return overhang(patch_of_site("trial", site, base), base) <= 0.0
+    except NotBuildable:  # it meets neither base nor core
+        return False
+
+
+def neighbours_fit(sites: list[Site], frame: Frame) -> NDArray[np.bool_]:
     """Which sites can stand beside each other, (S, S).
 
     The ball must have room over every face before the other column, taken as a box as tall as the
@@ -160,16 +187,16 @@ def neighbours_fit(sites: list[Site], limits: Limits, depth: float = 60.0) -> ND
 
     Args:
         sites: S sites.
-        limits: Ball radius and gap.
-        depth: Of the columns as far as it matters here, mm.
+        frame: Base, ball radius and gap.
     """
+    limits = frame.limits
     needed = 2.0 * limits.ball_radius + limits.gap + 2.0
     faces = np.stack([_face(site, limits.ball_radius) for site in sites])  # (S, K, 3)
     out = np.ones((len(sites), len(sites)), dtype=bool)
     for j, site in enumerate(sites):
         T = site.T_artefact_patch
         local = (faces - T[:3, 3]) @ T[:3, :3]
-        top = float(site.heights.max())
+        top, depth = float(site.heights.max()), patch_of_site("trial", site, frame.base).depth
         middle = np.array([0.0, 0.0, 0.5 * (top - depth)])
         half = np.array([*site.half_size, 0.5 * (top + depth)])
         beyond = np.abs(local - middle) - half

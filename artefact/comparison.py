@@ -128,7 +128,7 @@ def compare(
     """
     out = []
     for name, body in rivals(aim.volume, frame, rng).items():
-        own = chosen_poses(aim, body, all_poses, options)
+        own = chosen_poses(aim.plain, body, all_poses, options)
         tried = some_touches(aim, body, own, options, rng)
         lots = random_lots(tried, options.touches, rng)
         chosen = chosen_touches(aim, aim.purpose, tried, options)

@@ -9,8 +9,8 @@ from artefact.body import Body
 from artefact.datum import DatumSphere, outline_distance
 from artefact.freeform import FreeformPatch
 from artefact.patch import rows
-from artefact.standard import Standard
-from twin.frames import Array
+from artefact.standard import Base, Standard
+from twin.frames import Array, apply
 from twin.units import DEG
 
 BURIED = 2.0
@@ -109,6 +109,19 @@ def max_slope(patch: FreeformPatch) -> float:
     return float(patch.slope(patch.grid(1.0)).max())
 
 
+def overhang(patch: FreeformPatch, base: Base) -> float:
+    """How far the column of a patch reaches beyond the outline of the base, mm; negative inside.
+
+    Its four edges are followed from the mean plane of the face down to the top of the base.
+    """
+    (a, b), T = patch.half_size, patch.T_artefact_patch
+    corners = apply(T, np.array([[x, y, 0.0] for x in (-a, a) for y in (-b, b)]))
+    to_base = (corners[:, 2] - base.thickness) / max(T[2, 2], 1e-9)
+    ends = corners - np.clip(to_base, 0.0, patch.depth)[:, None] * T[:3, 2]
+    both = np.concatenate([corners, ends])[:, :2]
+    return float(outline_distance(both, base.half_size, base.corner_radius).max())
+
+
 def _of_patch(standard: Standard, patch: FreeformPatch, limits: Limits) -> Iterator[Constraint]:
     smallest = max(limits.min_concave_radius, limits.ball_radius)
     yield _at_least("smallest concave radius", patch.name, min_concave_radius(patch), smallest)
@@ -116,7 +129,8 @@ def _of_patch(standard: Standard, patch: FreeformPatch, limits: Limits) -> Itera
     uv = patch.grid(_FACE_PITCH)
     face, base = patch.point(uv), standard.base
     outside = outline_distance(face[:, :2], base.half_size, base.corner_radius).max()
-    yield _at_most("reach beyond the outline of the blank", patch.name, float(outside), 0.0)
+    outside = max(float(outside), overhang(patch, base))
+    yield _at_most("reach beyond the outline of the blank", patch.name, outside, 0.0)
     yield _at_most("height", patch.name, float(face[:, 2].max()), standard.blank_height)
     yield _at_least(
         "depth of the column's end in the body", patch.name, _burial(standard, patch), BURIED

@@ -16,6 +16,7 @@ from artefact.candidates import neighbours_fit, random_sites
 from artefact.comparison import Rival, before, compare, judged, random_lots
 from artefact.constraints import Constraint
 from artefact.criterion import Criterion, criterion, random_touches
+from artefact.shaping import shaped
 from artefact.sites import Frame, Site, patch_of_site, standard_from_sites
 from artefact.standard import Base, Standard
 from artefact.touch_choice import (
@@ -32,7 +33,8 @@ from artefact.visibility import visibility
 from sensitivity.blocks import Progress, silent
 from sensitivity.certificate import Certificate, certificate
 from sensitivity.groups import best_groups
-from sensitivity.information import Identifiability, identifiability, whitened
+from sensitivity.identifiability import Identifiability, identifiability
+from sensitivity.information import whitened
 from sensitivity.sampling import Population
 from sensitivity.workspace import Workspace
 from twin.errors import NotBuildable
@@ -42,7 +44,7 @@ from twin.ranges import Ranges
 __all__ = ["Placement", "PlacementOptions", "place"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
-_REBUILDS = 15  # choices of sites tried before giving up
+_REBUILDS = 8  # choices of sites tried before giving up
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,13 +105,25 @@ def place(
     """
     options = options or PlacementOptions()
     _check_blank(frame.base, probing)
-    model = Population(probing.chain, ranges or Ranges()).model
-    aim = criterion(probing, model, frame, workspace, options.noise, rng, options.criterion)
+    ranges = ranges or Ranges()
+    model = Population(probing.chain, ranges).model
+    aim = criterion(
+        probing,
+        model,
+        frame,
+        workspace,
+        options.noise,
+        rng,
+        options.criterion,
+        options.wishes,
+        ranges,
+    )
     progress("placement", 1, 6)
     all_poses = table_poses(aim, options.poses)
-    standard = _standard(aim, frame, all_poses, options, rng)
+    standard = _standard(aim.plain, frame, all_poses, options, rng)
     progress("placement", 3, 6)
-    poses = chosen_poses(aim, standard, all_poses, options)
+    poses = chosen_poses(aim.plain, standard, all_poses, options)
+    standard = shaped(aim.plain, standard, poses, frame.limits, options, rng)
     progress("placement", 4, 6)
     tried = touches_to_choose_from(aim, standard, poses, options)
     chosen = chosen_touches_on(aim, standard, tried, options)
@@ -150,7 +164,7 @@ def _standard(
 ) -> Standard:
     """Choose sites until the whole body meets every limit."""
     sites = random_sites(frame, options.sites, rng)
-    fits = neighbours_fit(sites, frame.limits)
+    fits = neighbours_fit(sites, frame)
     # spread over the list without the rhythm of its grid
     few = poses[np.unique((np.arange(20) * 0.618034 % 1.0 * len(poses)).astype(np.int64))]
     wanted = joined([_face_touches(f"{i}", site, frame.base, few) for i, site in enumerate(sites)])

@@ -14,6 +14,7 @@ from twin.errors import NotBuildable
 from twin.frames import Array, apply, pose, rotation
 
 _ROOTED = 5.0  # mm a column runs on below mid-base, where it is cut off: no two faces coincide
+_PASSES = 15.0  # mm from the axis within which a column ends in the core
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +179,9 @@ def _depth(T_artefact_patch: Array, site: Site, base: Base) -> float:
     to_axis = np.inf
     if sideways > 1e-6:
         to_axis = float(origin[:2] @ up[:2]) / sideways**2
-        if to_axis <= _ROOTED or origin[2] - to_axis * up[2] < 0.5 * base.thickness:
+        passes_by = np.hypot(*(origin - to_axis * up)[:2])  # the core must not grow to meet it
+        too_low = origin[2] - to_axis * up[2] < 0.5 * base.thickness
+        if to_axis <= _ROOTED or too_low or passes_by > _PASSES:
             to_axis = np.inf
     depth = min(to_base, to_axis)
     if not np.isfinite(depth):

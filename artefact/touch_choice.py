@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.criterion import Criterion
+from artefact.criterion import Criterion, Wishes
 from artefact.patch import Surface
 from artefact.standard import Standard
 from artefact.touchable import Mask, Probing, Requests, joined
@@ -43,18 +43,29 @@ class PlacementOptions:
             would take two thirds if they could, but a standard of spheres is no news, and faces
             are what a freeform standard calibrates.
         least_on_patch: Fewest touches on a patch, as a part of its even share.
+        potential: Share of the criterion that goes to showing effects of the library.
+        draws: Drawn machines over whose sizes of errors the criterion is averaged; 0 for none.
+        tail: Share of the drawn machines, the worst, that are averaged.
     """
 
     name: str = "FFS"
     serial: str = ""
     patches: int = 10
     touches: int = 480
-    poses: int = 18
+    poses: int = 30
     sites: int = 400
     noise: float = 1.0 * UM
     criterion: str = "I"
     sphere_share: tuple[float, float] = (0.15, 0.45)
     least_on_patch: float = 0.4
+    potential: float = 0.3
+    draws: int = 0
+    tail: float = 1.0
+
+    @property
+    def wishes(self) -> Wishes:
+        """What the criterion shall be beside its name."""
+        return Wishes(self.potential, self.touches, self.draws, self.tail)
 
 
 def table_poses(aim: Criterion, wanted: int) -> Array:
@@ -94,7 +105,7 @@ def face_grid(half_size: tuple[float, float], count: int) -> Array:
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
 
 
-def _sphere_grid(count: int) -> Array:
+def sphere_grid(count: int) -> Array:
     """Azimuth and elevation of directions spread evenly over the upper part of a sphere."""
     i = np.arange(count) + 0.5
     sine = np.sin(_SPHERE_LOWEST) + (1.0 - np.sin(_SPHERE_LOWEST)) * i / count
@@ -115,7 +126,7 @@ def each_at(surface: Surface, uv: Array, poses: Array) -> Requests:
 def touches_at(standard: Standard, poses: Array, pitch: int) -> Requests:
     """Candidate touches on every face and sphere, `pitch` each way, at every pose."""
     parts = [each_at(p, face_grid(p.half_size, pitch), poses) for p in standard.patches]
-    parts += [each_at(s, _sphere_grid(pitch * pitch), poses) for s in standard.spheres]
+    parts += [each_at(s, sphere_grid(pitch * pitch), poses) for s in standard.spheres]
     return joined(parts)
 
 

@@ -23,6 +23,7 @@ def main() -> None:
     run("jacobians")
     run("montecarlo")
     run("placement_certificate")
+    run("standard_against_rivals")
     run("diagnosis_scale")
     with tempfile.TemporaryDirectory() as folder:
         run("make_cases", "-n", "60", "--seed", "1", "-j", "2", "-o", f"{folder}/plain")

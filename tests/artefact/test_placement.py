@@ -154,9 +154,10 @@ def test_figures_are_those_of_the_information(placement):
     rms = np.sqrt(np.mean(posterior.predicted_sd(aim.tip_volume) ** 2))
     assert placement.own.rms == pytest.approx(rms, rel=1e-12)
     both = np.concatenate([aim.tip_volume, aim.tip_user])
-    rows = aim.rows(placement.requests)
+    plain = aim.plain
+    rows = plain.rows(placement.requests)
     mean_square = np.mean(posterior.predicted_sd(both) ** 2)
-    assert aim.purpose.value(rows.T @ rows) == pytest.approx(mean_square, rel=1e-6)
+    assert plain.purpose.value(rows.T @ rows) == pytest.approx(mean_square, rel=1e-6)
 
 
 def test_every_patch_says_what_it_is_for(placement, chain):
@@ -214,13 +215,13 @@ def test_a_standard_beyond_the_travel_is_refused(chain, workspace):
 
 
 def test_an_unknown_criterion_is_refused(probing, workspace):
-    with pytest.raises(DesignError, match="criterion 'G', expected one of I, D, A"):
+    with pytest.raises(DesignError, match="criterion 'T', expected one of I, G, D, A, E"):
         place(
             probing,
             Frame(),
             workspace,
             np.random.default_rng(1),
-            options=PlacementOptions(criterion="G"),
+            options=PlacementOptions(criterion="T"),
         )
 
 

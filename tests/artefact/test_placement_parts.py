@@ -61,7 +61,7 @@ def test_sites_that_overlap_do_not_fit():
         Site(10.0 * DEG, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
         Site(180.0 * DEG, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
     ]
-    fits = neighbours_fit(sites, Limits())
+    fits = neighbours_fit(sites, Frame())
     assert not fits[0, 1]
     assert not fits[1, 0]
     assert fits[0, 2]
@@ -76,8 +76,11 @@ def test_sites_cover_the_blank():
     azimuth = np.array([s.azimuth for s in sites])
     assert tilt.min() < 15.0
     assert tilt.max() > 55.0
-    flank = azimuth[tilt > 42.0]
-    assert np.diff(np.sort(flank)).max() < 25.0 * DEG
+    flank = azimuth[[s.radius > 90.0 for s in sites]]
+    assert np.diff(np.sort(flank)).max() < 35.0 * DEG
+    lean = np.array([s.lean for s in sites]) / DEG
+    assert np.abs(lean).max() > 90.0
+    assert 0.3 < np.mean(lean > 0.0) < 0.7  # to both sides
     small = random_sites(Frame(blank_height=110.0), 100, np.random.default_rng(4))
     assert max(s.height for s in small) < 0.6 * max(s.height for s in sites)
 
