@@ -15,7 +15,7 @@ import numpy as np
 
 from sensitivity.distributions import Distributions
 from sensitivity.indices import rms
-from sensitivity.lengths import BINS, count_lengths
+from sensitivity.lengths import BINS, count_lengths, one_blas_thread
 from sensitivity.montecarlo import volumetric
 from sensitivity.sampling import Population, coefficients, drawn_in_chunks
 from sensitivity.workspace import Workspace, latin_hypercube
@@ -38,19 +38,45 @@ def matrix_rate() -> float:
     return 2 * 1500**3 / min(times) / 1e9
 
 
+def one_thread(columns):
+    """Rate of one thread over that of a plain product on one thread, by processor time."""
+    rng = np.random.default_rng(0)
+    G, theta = rng.normal(size=(2048, 3, columns)), rng.normal(size=(columns, 10_240))
+    width, a = np.full(2048, 5.0 * np.sqrt(3 * columns) / BINS), rng.normal(size=(1500, 1500))
+    count_lengths(G[:2], theta, width[:2], threads=1)
+
+    def processor_time(work):
+        times = []
+        for _ in range(4):
+            start = time.process_time()
+            work()
+            times.append(time.process_time() - start)
+        return min(times)
+
+    with one_blas_thread():
+        plain = 2.0 * 1500**3 / processor_time(lambda: a @ a)
+    counted = processor_time(lambda: count_lengths(G, theta, width, threads=1))
+    return 2.0 * 3 * G.shape[0] * theta.size / counted / plain
+
+
 def engine(population, q, draws):
     """Seconds that the product with its counting takes, compiled and in numpy."""
     G = population.model.tip_columns(at_poses(population.chain, q, LENGTH))
     lots = drawn_in_chunks(population, draws, np.random.default_rng(2))
     theta = np.concatenate([coefficients(population, lot) for lot in lots]).T.copy()
     width = rms(population, q, LENGTH) * (5.0 / BINS)
-    count_lengths(G[:2], theta, width[:2])  # compiles
+    count_lengths(G[:20], theta, width[:20], worst=(20, 1))  # compiles
     taken = {}
-    for what, compiled in (("compiled", True), ("numpy", False)):
+    all_poses = (len(q), round(0.05 * len(q)))
+    for what, compiled, worst in (
+        ("compiled", True, (0, 0)),
+        ("compiled, with the worst poses of every machine", True, all_poses),
+        ("numpy", False, (0, 0)),
+    ):
         times = []
         for _ in range(3):
             start = time.perf_counter()
-            count_lengths(G, theta, width, compiled=compiled)
+            count_lengths(G, theta, width, use_compiled=compiled, worst=worst)
             times.append(time.perf_counter() - start)
         taken[f"product and counting, {what}"] = min(times)
     return taken
@@ -75,6 +101,7 @@ def main(draws: int, poses: int) -> None:
         for what, taken in rows.items():
             speed = 2.0 * 3 * poses * draws * columns / taken / 1e9
             print(f"  {what}: {taken:.2f} s, {speed:.0f} GFLOP/s = {speed / now:.0%} of {now:.0f}")
+        print(f"  one thread, by processor time: {one_thread(columns):.0%} of the product's rate")
         print(f"  stated sampling error of the P95: {np.mean(found.p95_u) / UM:.2f} µm")
     some = slice(0, 50)
     theta = np.concatenate(
