@@ -7,6 +7,7 @@ from diagnosis.describe import Reported
 from diagnosis.fit import Fit
 from diagnosis.residuals import Comparison
 from diagnosis.verdict import Diagnosis, Step, Verdict
+from twin.effect import Tunable
 from twin.run import Run
 from twin.units import UM
 from twin.words import digits, listed, span, with_uncertainty
@@ -57,10 +58,18 @@ def values(step: Step) -> list[tuple[str, str]]:
 
     Of an effect with many coefficients only what sums them up is told.
     """
-    told = sorted(step.reported, key=lambda r: not r.name.startswith("amplitude"))
+    told = sorted(step.reported, key=lambda r: _rank(step, r))
     if len(told) > ALL_TOLD:
         told = [r for r in told if r.name.startswith("amplitude")] or told[:ALL_TOLD]
     return [named_value(r) for r in told]
+
+
+def _rank(step: Step, reported: Reported) -> int:
+    """Place of a number of an effect: its size, its linear parameters, its inner ones."""
+    inner = step.effect.tuning if isinstance(step.effect, Tunable) else {}
+    if reported.name.startswith("amplitude"):
+        return 0
+    return 2 if any(reported.name.partition("_")[0] == name for name in inner) else 1
 
 
 def sizes(step: Step, most: int) -> str:

@@ -1,5 +1,6 @@
 """What is said on the console: results on standard output, progress beside them."""
 
+import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDE = 120
-"""Letters of a line where no terminal says how wide it is."""
+"""Letters of a line where neither a terminal nor COLUMNS says how wide it is."""
 
 
 def console() -> "Console":
@@ -19,7 +20,8 @@ def console() -> "Console":
     from rich.console import Console
 
     out = Console(highlight=False)
-    return out if out.is_terminal else Console(highlight=False, width=WIDE)
+    is_said = out.is_terminal or "COLUMNS" in os.environ
+    return out if is_said else Console(highlight=False, width=WIDE)
 
 
 def say(text: str, style: str | None = None) -> None:

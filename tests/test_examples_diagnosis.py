@@ -75,7 +75,7 @@ def test_the_warm_up_is_named_and_the_error_falls_to_the_noise(tmp_path):
     assert abs(size - hidden["amplitude"]) < COVERED * u
     tau, u = last["parameters"]["tau_min"], last["uncertainty"]["tau_min"]
     assert abs(tau - hidden["inner"]["tau_min"]) < COVERED * u
-    assert first["test_rms_um"] > 2.0 * NOISE
+    assert first["test_rms_um"] > 1.5 * NOISE  # what is freed of its own uncertainty
     assert last["test_rms_um"] < NEAR_NOISE * NOISE
     row = f"{last['effect']} .* {last['rms_um']:.3f} .* {last['test_rms_um']:.3f} "
     assert re.search(re.escape(row).replace(r"\ \.\*\ ", ".*"), words)

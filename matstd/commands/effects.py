@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rich.console import Console
     from rich.table import Table
 
     from twin.library import Kind
@@ -25,43 +26,43 @@ def run(args: argparse.Namespace) -> int:
     """Print the table, or the whole story of one kind."""
     from pathlib import Path
 
-    from rich.console import Console
-
+    from matstd import console as words
     from twin.errors import UnknownEffect
     from twin.library import kinds, load_installed_effects, load_user_effects
 
     load_installed_effects()
     for path in args.effects:
         load_user_effects(Path(path))
-    console = Console(highlight=False)
+    console = words.console()
     if args.kind is None:
         for kind in kinds():
-            console.print(_card(kind))
+            _show(console, kind)
         return 0
     word = args.kind.partition("(")[0]
     chosen = next((kind for kind in kinds() if kind.word == word), None)
     if chosen is None:
         known = ", ".join(kind.word for kind in kinds())
         raise UnknownEffect(f"unknown kind '{word}'; available: {known}")
-    console.print(_card(chosen))
+    _show(console, chosen)
     for cls in chosen.classes:
         console.print(_story(cls), markup=False)
     return 0
 
 
-def _card(kind: Kind) -> Table:
+def _show(console: Console, kind: Kind) -> None:
     """How an effect is written, its formula, units, typical size and source, one below another."""
+    from rich.markup import escape
+
+    console.print(f"[bold]{escape(kind.usage)}[/bold]  {escape(kind.summary)}")
+    console.print(_card(kind))
+
+
+def _card(kind: Kind) -> Table:
+    """Formula, units, typical size and source of a kind."""
     from rich.markup import escape
     from rich.table import Table
 
-    table = Table(
-        box=None,
-        title=f"[bold]{escape(kind.usage)}[/bold]  {escape(kind.summary)}",
-        title_justify="left",
-        title_style="",
-        show_header=False,
-        padding=(0, 1),
-    )
+    table = Table(box=None, show_header=False, padding=(0, 1))
     table.add_column(style="dim", no_wrap=True)
     table.add_column()
     for label in ("formula", "units", "typical", "source"):
