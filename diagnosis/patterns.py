@@ -112,6 +112,10 @@ def groups(touches: Touches) -> dict[str, IntArray]:
         "pose": pose[1].reshape(-1),
         "setup": touches.setup,
     }
+    for i, axis in enumerate(touches.chain.axes):
+        if axis in touches.chain.programmed_axes:
+            sides = np.unique(np.sign(touches.approach[:, i]), return_inverse=True)[1]
+            labels[f"dir{axis}"] = sides.reshape(-1)
     return {k: v for k, v in labels.items() if 1 < len(np.unique(v)) <= MOST_GROUPS}
 
 

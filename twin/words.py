@@ -80,6 +80,8 @@ def noun(column: str) -> str:
         return _NOUNS[column]
     if column.startswith("T_") and column.endswith("_degC"):
         return f"temperature of {column.removeprefix('T_').removesuffix('_degC')}"
+    if column.startswith("dir"):
+        return f"direction of approach of {column.removeprefix('dir')}"
     for ending, _ in _UNITS:
         if column.endswith(ending):
             return column.removesuffix(ending)
