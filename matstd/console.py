@@ -45,6 +45,8 @@ def stages() -> Iterator[Callable[[str, int, int], None]]:
         known: dict[str, TaskID] = {}
 
         def show(stage: str, done: int, total: int) -> None:
+            if _Asked.to_stop:
+                raise KeyboardInterrupt
             for name, task in known.items():
                 if name != stage and not bars.tasks[task].finished:
                     bars.update(task, completed=bars.tasks[task].total)
@@ -57,19 +59,39 @@ def stages() -> Iterator[Callable[[str, int, int], None]]:
             bars.update(task, completed=bars.tasks[task].total)
 
 
+class _Asked:
+    """Whether somebody asked the command to stop."""
+
+    to_stop = False
+
+
 @contextmanager
 def clean_stop() -> Iterator[None]:
-    """Whoever is asked to end by the system (SIGTERM) tidies up as after Ctrl-C."""
+    """Whoever is asked to end, by Ctrl-C or by the system (SIGTERM), tidies up and says so.
+
+    An interrupt can fall into a place that swallows or renames it (a destructor, the import of a
+    module); it is remembered, so that the next stage of the work, or whatever fails first, ends it.
+
+    Raises:
+        KeyboardInterrupt: However the interrupt came out of the block.
+    """
 
     def stop(number: int, frame: FrameType | None) -> None:
+        _Asked.to_stop = True
         raise KeyboardInterrupt
 
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGTERM, stop)
+    _Asked.to_stop = False
+    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield
+    except Exception as error:
+        if not _Asked.to_stop:
+            raise
+        raise KeyboardInterrupt from error
     finally:
-        if before is not None:  # else something that is not Python had set it
-            signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            if handler is not None:  # else something that is not Python had set it
+                signal.signal(number, handler)

@@ -1,7 +1,7 @@
 """A folder of results that appears whole or not at all."""
 
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -33,12 +33,9 @@ def results_folder(
         raise DesignError(f"{out}: is a file, expected a folder or a name that is free")
     if not force and out.exists() and any(out.iterdir()):
         raise DesignError(f"{out}: is there already; choose another folder or give --force")
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        work = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent))
-    except OSError as error:
-        raise DesignError(f"{out}: cannot be written ({error.strerror})") from error
-    try:
+    work = out.parent / f".{out.name}-{secrets.token_hex(4)}"
+    try:  # from before the folder is made: an interrupt can come at any moment
+        work.mkdir(parents=True)
         yield work
         for old in (file for pattern in ours for file in out.glob(pattern)):
             old.unlink()

@@ -14,11 +14,14 @@ from probe_paths.feet import foot_points
 from twin.frames import Array
 from twin.touches import IntArray, Labels
 
-SPREAD = 0.5
+SPREAD = 0.3
 """Expected size of the rigid motion of a pose, mm at the distance of the balls; it keeps directions
 that few touches see from running away."""
 
-_NOISE = 2e-3  # mm; how closely a pose is asked to fit, above the noise and the rest of the errors
+_NOISE = 0.02
+"""How closely a pose is asked to fit, mm: errors along X, Y and Z vary by this much between the
+touches of one pose, and a motion that follows them would slide along what the touches see badly."""
+
 _ARM = 100.0  # mm; scales rotations to lengths
 _ROUNDS = 8
 _STILL = 1e-6  # mm

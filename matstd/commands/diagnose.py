@@ -117,6 +117,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
         Column(word, justify="right") for word in ("p", "fitted µm", "held out µm", "chi²/dof")
     ]
     words = [Column(word, overflow="fold") for word in ("effect", "size", "not told from")]
+    words[0].no_wrap = words[1].no_wrap = True  # a name, and a number with its uncertainty
     table = Table(words[0], words[1], *right, words[2], box=None)
     for step in result.steps:
         table.add_row(*_row(step))

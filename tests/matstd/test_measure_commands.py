@@ -39,7 +39,8 @@ def folder(tmp_path_factory):
     return place
 
 
-def test_sizes_and_what_is_left_are_said_in_words(folder, tmp_path, capsys) -> None:
+def test_sizes_and_what_is_left_are_said_in_words(folder, tmp_path, capsys, monkeypatch) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
     run = str(folder / "run.csv")
     assert main(["diagnose", run, "-o", str(tmp_path / "out"), "--no-report"]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -180,7 +181,9 @@ def test_whoever_is_stopped_leaves_nothing_half_written(folder, tmp_path, number
         time.sleep(0.02)  # until the working folder is there, so that there is something to tidy
     os.kill(process.pid, number)
     told = process.communicate(timeout=60.0)[1]
-    assert process.returncode == 130
+    # Python ends itself by the signal when the interrupt fell into a module's import; a shell
+    # reads both as 130
+    assert process.returncode in (130, -signal.SIGINT)
     assert told.strip().endswith("stopped, and nothing half-written is left")
     assert list(tmp_path.iterdir()) == []
 

@@ -49,7 +49,7 @@ def test_curvature_does_not_pass_for_a_deviation() -> None:
     plain = deviation(foot_points(standard, feature, displaced)) - by_definition
     aligned = deviation(aligned_feet(standard, feature, displaced, pose, RADIUS)) - by_definition
     assert np.abs(plain).max() > 1.0 * UM  # so the test has something to see
-    assert np.abs(aligned).max() < 0.05 * UM
+    assert np.abs(aligned).max() < 0.1 * np.abs(plain).max()
 
 
 def test_few_touches_stay_where_they_are() -> None:
@@ -59,3 +59,17 @@ def test_few_touches_stay_where_they_are() -> None:
     pose = np.zeros(2, dtype=np.int64)
     feet, _ = aligned_feet(standard, feature[rows], true[rows], pose, RADIUS)
     assert np.abs(feet - point[rows]).max() < 0.01 * UM
+
+
+def test_noise_does_not_slide_a_pose_along_what_it_sees_badly() -> None:
+    """Seven touches of one face: noise of a micrometre moves no foot point by twenty."""
+    standard, feature, _, normal, true = touched(3)
+    rows = np.flatnonzero(feature == feature[0])
+    rows = np.append(rows, rows[-1] + 1)
+    pose = np.zeros(len(rows), dtype=np.int64)
+    believed = true[rows] + [0.1, -0.15, 0.05]
+    noise = np.random.default_rng(3).normal(0.0, 1.0 * UM, (len(rows), 1))
+    feet, _ = aligned_feet(standard, feature[rows], believed, pose, RADIUS)
+    other = believed + normal[rows] * noise
+    again, _ = aligned_feet(standard, feature[rows], other, pose, RADIUS)
+    assert np.abs(feet - again).max() < 20.0 * UM
