@@ -109,11 +109,11 @@ def _own(aim: Criterion, way: Probing) -> IntArray:
     link = "w" if way.length == aim.probing.length else "t"
     if way is aim.probing:
         return np.zeros(0, dtype=np.int64)
-    return _of_setup(aim, link)
+    return set_up(aim, link)
 
 
-def _of_setup(aim: Criterion, links: str) -> IntArray:
-    """Parameters of the set-up of the workpiece (w) or the tool (t)."""
+def set_up(aim: Criterion, links: str = "wt") -> IntArray:
+    """Parameters of the set-up of the workpiece (w), the tool (t) or both."""
     symbols = [getattr(effect, "symbol", None) for effect, _ in aim.model.parameters]
     mine = [s is not None and s.family is Family.SETUP and s.link in links for s in symbols]
     return np.flatnonzero(mine)
@@ -122,7 +122,7 @@ def _of_setup(aim: Criterion, links: str) -> IntArray:
 def machine_rank(aim: Criterion, W: Array) -> int:
     """Combinations of machine errors that rows see, set-ups and tools being unknown."""
     P = len(aim.prior_sd)
-    nuisance = np.concatenate([_of_setup(aim, "wt"), np.arange(P, W.shape[1])])
+    nuisance = np.concatenate([set_up(aim), np.arange(P, W.shape[1])])
     return seen(W).rank - seen(W[:, nuisance]).rank
 
 

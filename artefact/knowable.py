@@ -1,25 +1,48 @@
 """What touches on a standard can and cannot know of a machine: one record for report and file."""
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from artefact.alternatives import Alternative, alternatives, both, tried_in, ways
+from artefact.alternatives import Alternative, alternatives, both, set_up, tried_in, ways
 from artefact.criterion import Criterion
 from artefact.touchable import Requests
 from sensitivity.combinations import EstimableCombination, combinations
 from sensitivity.degrees import Degree, supported_degrees
-from sensitivity.identifiability import Identifiability, identifiability
+from sensitivity.freedom_words import FreedomWords, in_families
+from sensitivity.identifiability import NEVER, Identifiability, identifiability
 from sensitivity.information import Posterior
+from sensitivity.parameter_words import in_words, short
+from twin.chain import Chain, Link
 from twin.files.whole import write_whole
-from twin.symbols import Family
-from twin.units import shown
+from twin.frames import Array
+from twin.units import DEG, shown
 
 FORMAT = "identifiability/1"
 """Of the file."""
+
+
+@dataclass(frozen=True)
+class Alone:
+    """A parameter whose variance the touches cut at least tenfold; base units.
+
+    Attributes:
+        name: Of the parameter.
+        words: What it is.
+        expected: Standard deviation before the touches.
+        u: Standard uncertainty after them.
+        unit: Base unit.
+    """
+
+    name: str
+    words: str
+    expected: float
+    u: float
+    unit: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,17 +51,23 @@ class Knowable:
 
     Attributes:
         touches: Their number.
+        chain: The machine.
+        readings: Smallest and largest reading of every programmed axis in them, mm or rad.
         gauge: Rank, condition numbers, freedoms and groups, each freedom with what resolves it.
+        freedoms: The freedoms in words; shapes of the same error share a line.
         combinations: Combinations of machine errors that are determined, the surest first.
-        alone: Parameters whose variance falls at least tenfold.
+        alone: Machine errors that are known for themselves, the surest first.
         degrees: Of every component error, to which degree the touches support it.
         alternatives: What a second stylus length or a second set-up would buy.
     """
 
     touches: int
+    chain: Chain
+    readings: Mapping[str, tuple[float, float]]
     gauge: Identifiability
+    freedoms: tuple[FreedomWords, ...]
     combinations: tuple[EstimableCombination, ...]
-    alone: tuple[str, ...]
+    alone: tuple[Alone, ...]
     degrees: tuple[Degree, ...]
     alternatives: tuple[Alternative, ...]
 
@@ -46,11 +75,11 @@ class Knowable:
     def words(self) -> str:
         """The gist in one sentence."""
         g = self.gauge
-        never = sum(f.resolved_by.startswith("nothing") for f in g.freedoms)
+        never = sum(f.resolved_by == NEVER for f in g.freedoms)
         return (
-            f"{self.touches} touches see {g.rank} combinations of {g.parameters} parameters; "
-            f"of the {len(g.freedoms)} freedoms that stay, {never} are of the machine and no touch "
-            f"on a workpiece shows them"
+            f"{self.touches} touches see {g.rank} independent combinations of {g.parameters} "
+            f"parameters. Of the {len(g.freedoms)} that stay free, {never} are free on every "
+            f"workpiece and fixed by convention"
         )
 
 
@@ -70,17 +99,39 @@ def knowable(aim: Criterion, requests: Requests, rng: np.random.Generator) -> Kn
         second = tried_in(way, requests, rng)
         if len(second):
             richer[name] = both(aim, requests, second, way).W
+    gauge = identifiability(W, aim.prior_sd, model.names, model.parameters, model.chain, richer)
     units = [p.unit for _, p in model.parameters]
-    symbols = [getattr(effect, "symbol", None) for effect, _ in model.parameters]
-    setup = [p for p, s in enumerate(symbols) if s is not None and s.family is Family.SETUP]
+    setup = set_up(aim)
+    names = [short(name) for name in model.names]
+    chain = model.chain
     return Knowable(
         touches=len(requests),
-        gauge=identifiability(W, aim.prior_sd, model.names, model.parameters, model.chain, richer),
-        combinations=combinations(W, aim.prior_sd, model.names, units, setup),
-        alone=Posterior(W, aim.prior_sd, model.names).alone,
+        chain=chain,
+        readings={
+            name: (float(touches.reading(name).min()), float(touches.reading(name).max()))
+            for name in chain.programmed_axes
+        },
+        gauge=gauge,
+        freedoms=in_families(gauge.freedoms, chain),
+        combinations=combinations(W, aim.prior_sd, names, units, setup.tolist()),
+        alone=_alone(aim, W, setup.tolist()),
         degrees=supported_degrees(model, touches, W, aim.noise),
         alternatives=alternatives(aim, requests, rng),
     )
+
+
+def _alone(aim: Criterion, W: Array, setup: Sequence[int]) -> tuple[Alone, ...]:
+    """Machine errors that are known for themselves; the set-up is of no interest."""
+    known = Posterior(W, aim.prior_sd, aim.model.names)
+    alone = set(known.alone)
+    out = [
+        Alone(name, in_words(name, aim.model.chain), float(before), float(after), parameter.unit)
+        for p, (name, before, after, (_, parameter)) in enumerate(
+            zip(known.names, known.prior_sd, known.sd, aim.model.parameters, strict=True)
+        )
+        if name in alone and p not in setup
+    ]
+    return tuple(sorted(out, key=lambda a: a.u / a.expected))
 
 
 def as_json(known: Knowable) -> dict[str, Any]:
@@ -90,6 +141,7 @@ def as_json(known: Knowable) -> dict[str, Any]:
         "format": FORMAT,
         "words": known.words,
         "touches": known.touches,
+        "readings": dict(_reading(known.chain.link(a), known.readings[a]) for a in known.readings),
         "parameters": g.parameters,
         "rank": g.rank,
         "condition": {
@@ -117,9 +169,35 @@ def as_json(known: Knowable) -> dict[str, Any]:
             }
             for c in known.combinations
         ],
-        "alone": list(known.alone),
-        "degrees": [asdict(d) for d in known.degrees],
+        "alone": [
+            {
+                "parameter": a.name,
+                "words": a.words,
+                "expected": _rounded(a.expected / shown(a.unit)[1]),
+                "u": _rounded(a.u / shown(a.unit)[1]),
+                "unit": shown(a.unit)[0],
+            }
+            for a in known.alone
+        ],
+        "degrees": [_degree(d) for d in known.degrees],
         "alternatives": [asdict(a) for a in known.alternatives],
+    }
+
+
+def _reading(link: Link, limits: tuple[float, float]) -> tuple[str, list[float]]:
+    suffix, unit = ("_mm", 1.0) if link.kind == "linear" else ("_deg", DEG)
+    return link.name + suffix, [_rounded(v / unit) for v in limits]
+
+
+def _degree(degree: Degree) -> dict[str, Any]:
+    label, factor = shown(degree.unit)
+    return {
+        "parameter": degree.symbol,
+        "supported": list(degree.supported),
+        "largest": degree.largest,
+        "u": _rounded(degree.u / factor),
+        "unit": label,
+        "words": degree.words,
     }
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from artefact.knowable import Knowable, knowable, write_identifiability
 from artefact.placement import Placement, PlacementOptions, place
 from artefact.sites import Fittings, Frame
 from artefact.standard import Material
@@ -17,7 +18,6 @@ from artefact.standard_file import write_standard
 from artefact.touchable import Probing
 from cad_out.conformity import Conformity
 from cad_out.export import export_standard
-from diagnosis.estimable import Estimable
 from diagnosis.fit import Fit, fit_run
 from diagnosis.identification_file import write_identification
 from diagnosis.proof import Proof, probed_volume, prove
@@ -73,7 +73,20 @@ class Proven:
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """Everything that a design run made; the files of the same names hold it."""
+    """Everything that a design run made; the files of the same names hold it.
+
+    Attributes:
+        project: What was asked for.
+        study: Sensitivities and random machines.
+        maps: File and caption of the study's pictures.
+        placement: Standard and touches.
+        conformity: CAD files, measured after they were written.
+        plan: Touches in their order.
+        programs: Text that makes them.
+        machines: Random machines, probed and identified.
+        known: What the touches can and cannot tell apart.
+        effective: Number of parameters that the first machine's data decide rather than the prior.
+    """
 
     project: Project
     study: Study
@@ -83,7 +96,8 @@ class Design:
     plan: TouchPlan
     programs: ProgramSet
     machines: tuple[Proven, ...]
-    known: Estimable
+    known: Knowable
+    effective: float
 
 
 def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -> Design:
@@ -98,7 +112,7 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     Raises:
         DesignError: A stage that cannot do its work; its message says which constraint binds.
     """
-    rng_study, rng_place, rng_proof, rng_maps = np.random.default_rng(project.seed).spawn(4)
+    rng_study, rng_place, rng_proof, rng_maps, rng_known = _generators(project)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
@@ -118,6 +132,9 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     maps += draw_path(study, folder / "sensitivity")
     placement = _placement(project, workspace, rng_place, progress)
     write_standard(folder / "standard.toml", placement.standard)
+    progress("what can be told apart", 0, 1)
+    known = knowable(placement.criterion, placement.requests, rng_known)
+    write_identifiability(folder / "identifiability.json", known)
     progress("STEP and STL", 0, 1)
     conformity = export_standard(placement.standard, folder)
     progress("probing programs", 0, 1)
@@ -132,10 +149,24 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     write_whole(folder / "errors.toml", errors_toml(first.errors))
     write_run(folder / "run.csv", first.campaign.run, "machine.toml")
     proofs = [m.proof for m in machines]
-    known = write_identification(folder / "identification.json", first.fit, proofs)
+    found = write_identification(folder / "identification.json", first.fit, proofs)
     return Design(
-        project, study, maps, placement, conformity, plan, programs, tuple(machines), known
+        project=project,
+        study=study,
+        maps=maps,
+        placement=placement,
+        conformity=conformity,
+        plan=plan,
+        programs=programs,
+        machines=tuple(machines),
+        known=known,
+        effective=found.effective,
     )
+
+
+def _generators(project: Project) -> list[np.random.Generator]:
+    """Random numbers of study, placement, proof, maps, other ways to measure."""
+    return np.random.default_rng(project.seed).spawn(5)
 
 
 def _probe(project: Project) -> Probe:

@@ -11,23 +11,19 @@ from artefact.freeform import FreeformPatch
 from artefact.touch_curve import touch_curve
 from artefact.touch_curve_picture import draw_touch_curves
 from cad_out.picture import draw_standard
-from diagnosis.estimable import shown_value
 from diagnosis.proof_picture import write_proof_picture
 from matstd.design import Design, Proven
 from matstd.page import digits, write_page
+from matstd.report_known import known_content
 from matstd.report_study import draw_study_volumes, study_content
 from probe_paths.picture import write_order_picture, write_touches_picture
 from sensitivity.canvas import save
-from sensitivity.correlation import STRONG, ties
-from sensitivity.correlation_picture import draw_ties, short
 from twin.errors import DesignError
 from twin.units import DEG, UM
 
-MAPS, CURVES, CORRELATION = "sensitivity", "touch_curves.png", "correlation.png"
-"""Folder of the maps, files of two pictures."""
+MAPS, CURVES = "sensitivity", "touch_curves.png"
+"""Folder of the maps, file of a picture."""
 
-_SHOWN_COMBINATIONS = 25
-_SHOWN_TIES = 12  # pairs; the others are folded
 _EXCERPT = 46  # lines of the first program
 
 
@@ -58,13 +54,11 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         pictures=pictures,
         remarks=remarks,
         placeholders=(folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER"),
-        known=design.known,
         curves_caption=_draw_curves(design, folder),
         **study_content(design.study, maps),
-        **_ties(design, folder),
         **_standard(design),
         **_proof(design),
-        **_known(design),
+        **known_content(design, folder),
         excerpt="\n".join([*design.programs.programs[0].text.splitlines()[:_EXCERPT], "..."]),
     )
     return remarks
@@ -100,14 +94,6 @@ def _draw_curves(design: Design, folder: Path) -> str:
         f"Marked: the {len(placement.requests)} touches of the table above. No machine is drawn "
         "for it: it is the spread that the touches leave to machines of the stated error ranges."
     )
-
-
-def _ties(design: Design, folder: Path) -> dict[str, Any]:
-    """Which parameters the touches tie together."""
-    fit = design.machines[0].fit
-    found = ties(fit.covariance, [short(name) for name in fit.names])
-    save(draw_ties(found), folder / CORRELATION)
-    return {"ties": found, "ties_limit": STRONG, "ties_first": _SHOWN_TIES}
 
 
 def _standard(design: Design) -> dict[str, Any]:
@@ -209,19 +195,4 @@ def _machine(machine: Proven) -> dict[str, Any]:
         "rms_u_um": proof.rms_u / UM,
         "factor": proof.factor,
         "covered": proof.covered,
-    }
-
-
-def _known(design: Design) -> dict[str, Any]:
-    """What the touches determine."""
-    known = design.known
-    return {
-        "determined": [
-            {"name": d.name, "value": shown_value(d.value, d.u, d.unit)} for d in known.determined
-        ],
-        "combinations": [
-            {"words": c.words, "value": shown_value(c.value, c.u, c.unit), "gain": c.gain}
-            for c in known.combinations[:_SHOWN_COMBINATIONS]
-        ],
-        "gauges": [g.words for g in known.gauges],
     }

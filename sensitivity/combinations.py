@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.frames import Array
+from twin.units import shown
 
 NAMED = 4
 """Most parameters that are written out in the words of a combination."""
@@ -67,26 +68,32 @@ def combinations(
         lead = int(np.argmax(np.abs(importance)))
         scale = weights[lead]
         u = float(1.0 / (np.sqrt(1.0 + x * x) * abs(scale)))
-        words = combination_words(names, weights / scale, importance / scale)
+        words = combination_words(names, weights / scale, importance / scale, units)
         gain = float(np.sqrt(1.0 + x * x))
         out.append(EstimableCombination(words, u, gain, units[lead], weights / scale))
     return tuple(out)
 
 
-def combination_words(names: Sequence[str], weights: Array, importance: Array) -> str:
-    """`EXX + 0.52 EC0Y - 0.3 ...`: the most important parameters with their weights.
+def combination_words(
+    names: Sequence[str], weights: Array, importance: Array, units: Sequence[str]
+) -> str:
+    """`EXX + 0.52 EXZ - 0.03 µm/µrad EBX ...`: the most important parameters with their weights.
 
     Args:
         names: Of the parameters.
-        weights: Shape (P,).
+        weights: Shape (P,), the leading one's is one.
         importance: Weights in units of what is expected of each parameter, (P,).
+        units: Base units of the parameters.
     """
     order = np.argsort(-np.abs(importance), kind="stable")
     kept = [k for k in order if abs(importance[k]) >= SHARE * abs(importance[order[0]])]
+    label, factor = shown(units[order[0]])
     parts = []
     for k in kept[:NAMED]:
         sign = "-" if weights[k] < 0 else "+"
-        size = f"{abs(weights[k]):.3g} "
-        parts.append(f"{sign} {'' if size == '1 ' else size}{names[k]}")
+        own, size = shown(units[k]), abs(weights[k])
+        words = f"{size * own[1] / factor:.3g}"
+        per = "" if own[0] == label else f"{label}/{own[0]} "
+        parts.append(f"{sign} {'' if words == '1' and not per else words + ' '}{per}{names[k]}")
     rest = len(kept) - NAMED
     return " ".join(parts).removeprefix("+ ") + (f" and {rest} more" if rest > 0 else "")

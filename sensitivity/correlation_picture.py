@@ -8,6 +8,7 @@ import numpy as np
 
 from sensitivity.canvas import INK, figure, nothing
 from sensitivity.correlation import Ties
+from sensitivity.parameter_words import short
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,23 +52,3 @@ def draw_ties(ties: Ties, most: int = _SHOWN) -> Figure:
     bar.set_label("correlation r", fontsize=9)
     bar.ax.tick_params(labelsize=8.5)
     return drawn
-
-
-def short(name: str) -> str:
-    """Name of a parameter as it fits beside a map: `EXX cosine` for `geometric(EXX,sinusoidal@90)`.
-
-    Example:
-        >>> short("geometric(EXX,sinusoidal@90)"), short("location(EX0C)"), short("setup(a): dx")
-        ('EXX cosine', 'EX0C', 'set-up a dx')
-    """
-    kind, _, rest = name.partition("(")
-    inner, _, tail = rest.partition(")")
-    if kind == "geometric":
-        symbol, _, shape = inner.partition(",")
-        waves = {"sinusoidal": "sine", "sinusoidal@90": "cosine", "constant": ""}
-        return f"{symbol} {waves.get(shape, shape)}".strip()
-    if kind == "location" and not tail:
-        return inner
-    if kind == "setup":
-        return f"set-up {inner} {tail.removeprefix(':').strip()}".strip()
-    return name

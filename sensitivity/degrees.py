@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sensitivity.parameter_words import in_words
 from twin.chain import Link
@@ -27,9 +28,11 @@ class Degree:
     Attributes:
         symbol: Name, `EXX`.
         supported: Degrees (harmonics on a rotary axis) whose coefficients the touches determine,
-            each with all lower ones free, without a gap; the first may be 2.
+            all of them free together; the first may be 2, where degree 1 is tied to a location
+            error or the set-up.
         largest: Largest of them; 0 where there is none.
         u: Standard uncertainty of the coefficient of that degree, mm or rad; 0 where there is none.
+        unit: Base unit of u.
         words: The same in words.
     """
 
@@ -37,6 +40,7 @@ class Degree:
     supported: tuple[int, ...]
     largest: int
     u: float
+    unit: str
     words: str
 
 
@@ -44,8 +48,10 @@ def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) ->
     """Largest degree of every component error of an axis that a program positions.
 
     The error's own distributions are replaced by Chebyshev polynomials, or harmonics, of expected
-    size ``sd/k^1.5``; all other errors and the set-up stay free. Of the coefficient of degree n,
-    with those below it free, ``(1 + C^T C - C^T W M^-1 W^T C)^-1`` is left.
+    size ``sd/k^1.5``; all other errors and the set-up stay free. Of the variance of the
+    coefficients up to degree n ``(1 + C^T C - C^T W M^-1 W^T C)^-1`` is left. A degree is supported
+    when with it none of the degrees below falls out: one more coefficient than touches over a part
+    of the travel can carry spoils those that they had.
 
     Args:
         model: Machine and its expected errors.
@@ -75,38 +81,45 @@ def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) ->
 def _degree(symbol: Symbol, link: Link, A: Array, size: Array, model: Model) -> Degree:
     """Degrees that an information A supports, in units of the expected sizes."""
     each = 2 if link.kind == "rotary" else 1
-    left = np.zeros(HIGHEST)
-    for k in range(HIGHEST):
-        upto = each * (k + 1)
-        covariance = np.linalg.solve(np.eye(upto) + A[:upto, :upto], np.eye(upto))
-        left[k] = np.sqrt(np.diag(covariance)[upto - each :].max())
-    supported = _first_run((left < SUPPORTED).tolist())
+    left = np.ones((HIGHEST, HIGHEST))  # of degree k + 1 in column k, with n + 1 degrees free
+    for n in range(HIGHEST):
+        free = each * (n + 1)
+        covariance = np.linalg.solve(np.eye(free) + A[:free, :free], np.eye(free))
+        left[n, : n + 1] = np.sqrt(np.diag(covariance)).reshape(n + 1, each).max(axis=1)
+    supported = _run(left < SUPPORTED)
+    u = 0.0
+    if supported:
+        last = supported[-1] - 1
+        u = float(left[last, last] * size[each * last])
     largest = max(supported, default=0)
-    u = float(left[largest - 1] * size[each * largest - 1]) if largest else 0.0
-    return Degree(symbol.name, supported, largest, u, _words(symbol, link, supported, u, model))
+    words = _words(symbol, link, supported, u, model)
+    unit = "rad" if symbol.is_angular else "mm"
+    return Degree(symbol.name, supported, largest, u, unit, words)
 
 
-def _first_run(is_supported: list[bool]) -> tuple[int, ...]:
-    """Degrees from the first that is supported to the last before one that is not.
+def _run(is_supported: NDArray[np.bool_]) -> tuple[int, ...]:
+    """Degrees that are supported together, the first being 1 or else 2.
 
-    The first may be 2, where degree 1 is tied to a location error or the set-up.
+    Args:
+        is_supported: Degree k + 1 (columns) with n + 1 degrees free (rows), (n, k).
     """
-    start = next((k for k in (0, 1) if is_supported[k]), None)
-    if start is None:
-        return ()
-    end = start
-    while end < len(is_supported) and is_supported[end]:
-        end += 1
-    return tuple(range(start + 1, end + 1))
+    for first in (0, 1):
+        n = first
+        while n < len(is_supported) and is_supported[n, first : n + 1].all():
+            n += 1
+        if n > first:
+            return tuple(range(first + 1, n + 1))
+    return ()
 
 
 def _words(symbol: Symbol, link: Link, supported: tuple[int, ...], u: float, model: Model) -> str:
-    """`straightness of X in Y (EYX): degrees 2 to 5, degree 5 to 0.4 µm`."""
+    """`straightness of X in Y (EYX): degrees 2 to 5, the last to 0.4 µm`."""
     what = in_words(f"geometric({symbol.name},)", model.chain).strip()
     kind = "harmonic" if link.kind == "rotary" else "degree"
     if not supported:
         return f"{what}: no {kind}"
     label, factor = shown("rad" if symbol.is_angular else "mm")
     first, last = supported[0], supported[-1]
-    which = f"{kind} {last}" if first == last else f"{kind}s {first} to {last}"
-    return f"{what}: {which}, {kind} {last} to {u / factor:.2g} {label}"
+    if first == last:
+        return f"{what}: {kind} {last} to {u / factor:.2g} {label}"
+    return f"{what}: {kind}s {first} to {last}, the last to {u / factor:.2g} {label}"

@@ -11,43 +11,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sensitivity.freedom_words import TURNS, Freedom, Parameters, equation, reason, terms
 from sensitivity.nullspace import INVISIBLE, condition, groups, seen, sparse
-from sensitivity.parameter_words import in_words, weighted
 from twin.chain import Chain
-from twin.effect import Effect, Parameter
 from twin.frames import Array
 from twin.symbols import Family, Symbol
 from twin.units import UM, URAD
 
+__all__ = ["NEVER", "SIDEWAYS", "Freedom", "Group", "Identifiability", "identifiability"]
+
 NEVER = "nothing that touches a workpiece; it is fixed by convention"
 """What resolves a freedom that is one of the machine and not of the touches."""
 
+SIDEWAYS = "a second stylus that reaches sideways, off the line of the spindle"
+"""What resolves an error that turns about that line; tools on the line never feel it."""
+
 _KEPT = 1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
-
-
-@dataclass(frozen=True)
-class Freedom:
-    """A parameter that the touches cannot tell from others: only their sum has a value.
-
-    Attributes:
-        parameter: That can be left out.
-        alike: What imitates it exactly, as (name, value per unit of the parameter), base units.
-        words: The same as an equation in words.
-        why: What makes them alike.
-        resolved_by: Touches that would tell them apart.
-    """
-
-    parameter: str
-    alike: tuple[tuple[str, float], ...]
-    words: str = ""
-    why: str = ""
-    resolved_by: str = ""
-
-    def __str__(self) -> str:
-        if not self.alike:
-            return f"{self.parameter} moves no touch"
-        terms = " ".join(f"{value:+.4g} {name}" for name, value in self.alike)
-        return f"{self.parameter} cannot be told from {terms}"
 
 
 @dataclass(frozen=True)
@@ -89,9 +68,6 @@ class Identifiability:
     groups: tuple[Group, ...]
 
 
-Parameters = Sequence[tuple[Effect, Parameter]]
-
-
 def identifiability(
     W: Array,
     prior_sd: Array,
@@ -128,9 +104,10 @@ def identifiability(
         alike = tuple((names[k], float(base[k])) for k in others)
         words = why = ""
         if chain is not None:
-            words = _equation(lead, others, base, names, units, chain)
-            why = _why([lead, *others], parameters, chain)
-        freedoms.append(Freedom(names[lead], alike, words, why, _resolved_by(z / size, more)))
+            words = equation(names[lead], units[lead], terms(others, base, names, units), chain)
+            why = reason([lead, *others], parameters, chain)
+        by = _resolved_by(z / size, more, why)
+        freedoms.append(Freedom(names[lead], alike, words, why, by))
     per_unit = np.array([URAD if u == "rad" else UM for u in units])
     raw = W / np.where(prior_sd > 0.0, prior_sd, 1.0) * per_unit
     return Identifiability(
@@ -158,49 +135,6 @@ def _convention(parameters: Parameters, p: int) -> tuple[int, int]:
     return (0 if still else 3 if symbol.is_angular else 4, -p)
 
 
-def _equation(
-    lead: int,
-    others: list[int],
-    base: Array,
-    names: Sequence[str],
-    units: Sequence[str],
-    chain: Chain,
-) -> str:
-    """`set-up rotation about Z (EC0w) = - zero position of C (EC0C)`."""
-    left = in_words(names[lead], chain)
-    if not others:
-        return f"{left} moves no touch"
-    right = " ".join(weighted(base[k], names[k], units[k], units[lead], chain) for k in others)
-    return f"{left} = {right.removeprefix('+ ')}"
-
-
-def _why(members: list[int], parameters: Parameters, chain: Chain) -> str:
-    """What makes the members of a freedom alike, from what they are."""
-    symbols = [getattr(parameters[p][0], "symbol", None) for p in members]
-    known = [s for s in symbols if isinstance(s, Symbol)]
-    if len(known) < len(members):
-        is_setup = any(parameters[p][0].kind == "setup" for p in members)
-        return "the standard moves as a whole" if is_setup else ""
-    still = [s for s in known if s.link not in "wt" and not chain.link(s.link).programmed]
-    if len(known) == 1:
-        if still:
-            return "the spindle stands still, and the ball hangs on its line"
-        return "it turns about the line from spindle to ball" if known[0].is_angular else ""
-    families, links = {s.family for s in known}, {s.link for s in known}
-    mixed = len({s.is_angular for s in known}) == 2
-    if "w" in links:
-        return "the standard on the table moves as a whole"
-    if len(known) == 2 and mixed and Family.LOCATION in families and len(links) == 1:
-        return "a squareness is the slope of a straightness"
-    if len(known) == 2 and mixed:
-        return "the ball hangs at one length, so a tilt is a displacement"
-    if "t" in links:
-        return "the tool moves as a whole"
-    if still:
-        return "the spindle stands still, so its errors are constant"
-    return "the body between two axes moves as a whole"
-
-
 def _without_own(W: Array, P: int) -> Array:
     """Columns of the first P parameters, less what set-ups and tools of their own can imitate."""
     own = W[:, P:]
@@ -215,11 +149,13 @@ def _without_own(W: Array, P: int) -> Array:
     return left
 
 
-def _resolved_by(z: Array, richer: Mapping[str, Array]) -> str:
+def _resolved_by(z: Array, richer: Mapping[str, Array], why: str) -> str:
     """The first of the richer touches, freed of what is their own, in which a direction shows."""
     for name, W in richer.items():
         if np.linalg.norm(W @ z) > _KEPT * np.linalg.norm(W, axis=0).max():
             return name
+    if richer and why == TURNS:
+        return SIDEWAYS
     return NEVER if richer else ""
 
 

@@ -4,7 +4,6 @@ import re
 
 from twin.chain import Chain
 from twin.symbols import Family, Symbol, parse_symbol
-from twin.units import UM, URAD
 
 _NAME = re.compile(r"(geometric|location|setup|coupling)\(([^,)]+)(?:,([^)]*))?\)(?:: (\w+))?\Z")
 _SETUP = {"dx": "X", "dy": "Y", "dz": "Z", "rx": "X", "ry": "Y", "rz": "Z"}
@@ -92,22 +91,21 @@ def _shape(shape: str, part: str | None) -> str:
     return f"{phase}{waves} of the"
 
 
-def weighted(weight: float, name: str, unit: str, of: str, chain: Chain) -> str:
-    """A term with its sign: `- zero position of C (EC0C)`, `+ 0.16 µm/µrad x ...`.
+def short(name: str) -> str:
+    """Name of a parameter as it fits beside a map: `EXX cosine` for `geometric(EXX,sinusoidal@90)`.
 
-    Args:
-        weight: Base units of the term per base unit of what it is compared with.
-        name: Of the parameter.
-        unit: Its base unit, "mm" or "rad".
-        of: Base unit of what it is compared with.
-        chain: The machine.
+    Example:
+        >>> short("geometric(EXX,sinusoidal@90)"), short("location(EX0C)"), short("setup(a): dx")
+        ('EXX cosine', 'EX0C', 'set-up a dx')
     """
-    sign, size = ("-" if weight < 0.0 else "+"), abs(weight)
-    words = in_words(name, chain)
-    if unit == of and abs(size - 1.0) < 1e-6:
-        return f"{sign} {words}"
-    if unit == of:
-        return f"{sign} {size:.3g} x {words}"
-    per = {("mm", "rad"): ("µm/µrad", URAD / UM), ("rad", "mm"): ("µrad/µm", UM / URAD)}
-    label, factor = per.get((unit, of), (f"{unit}/{of}", 1.0))
-    return f"{sign} {size * factor:.3g} {label} x {words}"
+    kind, _, rest = name.partition("(")
+    inner, _, tail = rest.partition(")")
+    if kind == "geometric":
+        symbol, _, shape = inner.partition(",")
+        waves = {"sinusoidal": "sine", "sinusoidal@90": "cosine", "constant": ""}
+        return f"{symbol} {waves.get(shape, shape)}".strip()
+    if kind == "location" and not tail:
+        return inner
+    if kind == "setup":
+        return f"set-up {inner} {tail.removeprefix(':').strip()}".strip()
+    return name

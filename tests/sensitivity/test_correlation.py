@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from sensitivity.correlation import correlation, ties
-from sensitivity.correlation_picture import draw_ties, short
+from sensitivity.correlation_picture import draw_ties
+from sensitivity.parameter_words import short
 from twin.errors import ShapeMismatch
 
 NAMES = (

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from sensitivity.combinations import combinations
-from sensitivity.degrees import supported_degrees
-from sensitivity.identifiability import NEVER, identifiability
+from sensitivity.freedom_words import in_families
+from sensitivity.identifiability import NEVER, SIDEWAYS, identifiability
 from sensitivity.nullspace import seen, sparse
 from sensitivity.sampling import Population
 from sensitivity.workspace import Workspace, latin_hypercube
@@ -13,8 +13,9 @@ from twin.chain import Axis, make_chain
 from twin.kinematics import exact_tip, tip
 from twin.model import Model
 from twin.touches import at_poses
-from twin.units import DEG
 
+SHAPES = ("linear", "parabolic", "sine", "cosine")
+EACH_SHAPE = f"(in each shape: {', '.join(SHAPES)})"
 LENGTHS = (100.0, 160.0, 240.0)
 SMALL = 1e-4
 """Size of parameters in central differences, in expected sizes: far above rounding."""
@@ -108,17 +109,23 @@ def test_words_are_those_worked_by_hand(case):
     words = {f.words: f for f in found.freedoms}
     # -EC0Y y in X: over a range of 200 mm each way a linear straightness of -0.2 um a urad
     squareness = (
-        "squareness of Y about Z (EC0Y) = - 0.2 µm/µrad x linear straightness of Y in X (EXY)"
+        "1 µrad of squareness of Y about Z (EC0Y) = - 0.2 µm of linear straightness of Y in X (EXY)"
     )
     assert words[squareness].resolved_by == NEVER
     assert words[squareness].why == "a squareness is the slope of a straightness"
     if name in ("three axes", "table/table"):  # the ball hangs 160 mm below Z, which ends the chain
         tilt = words[
-            "linear tilt of Z about Y (EBZ) = - 0.16 µm/µrad x linear straightness of Z in X (EXZ)"
+            "1 µrad of linear tilt of Z about Y (EBZ) = "
+            "- 0.16 µm of linear straightness of Z in X (EXZ)"
         ]
         assert tilt.resolved_by == "a second stylus length"
         assert words["tool length (EZ0t) = zero position of Z (EZ0Z)"].resolved_by == NEVER
-        assert "linear roll of Z (ECZ) moves no touch" in words
+        assert words["linear roll of Z (ECZ) moves no touch"].resolved_by == SIDEWAYS
+        lines = {line.words: line.shapes for line in in_families(found.freedoms, machine(name))}
+        assert lines[f"roll of Z (ECZ) moves no touch {EACH_SHAPE}"] == len(SHAPES)
+        family = "1 µrad of tilt of Z about Y (EBZ) = - 0.16 µm of straightness of Z in X (EXZ)"
+        assert lines[f"{family} {EACH_SHAPE}"] == len(SHAPES)
+        assert sum(lines.values()) == len(found.freedoms)
     if name in ("table/table", "table/head"):  # C ends the chain on the side of the standard
         assert "set-up rotation about Z (EC0w) = - zero position of C (EC0C)" in words
 
@@ -158,7 +165,7 @@ def test_three_axes_by_counting_monomials():
 def test_a_second_stylus_adds_what_hangs_on_the_ram():
     """On the table/table machine the tilts of Z: about X and Y, in four distributions each."""
     model, q, found = found_on("table/table")
-    resolved = [f for f in found.freedoms if f.resolved_by != NEVER]
+    resolved = [f for f in found.freedoms if f.resolved_by == "a second stylus length"]
     tilts = [f for f in resolved if "tilt of Z" in f.words]
     assert len(tilts) == 8
     more = rows(model, q, np.resize(LENGTHS, len(q))) * model.prior_sd
@@ -189,19 +196,3 @@ def test_combinations_have_the_textbooks_uncertainty():
         assert c.u == pytest.approx(np.sqrt(c.weights @ covariance @ c.weights), rel=1e-9)
         prior = np.sqrt(np.sum((c.weights * sd) ** 2))
         assert c.gain == pytest.approx(prior / c.u, rel=1e-9)
-
-
-def test_degrees_end_where_touches_are_too_few_or_too_near_one_another():
-    chain = machine("three axes")
-    model = Population(chain).model
-    q = np.zeros((9, 3))
-    q[:, chain.axis_index("X")] = np.linspace(-200.0, 200.0, 9)
-    q = np.tile(q, (3, 1))
-    touches = at_poses(chain, q, 160.0)
-    normal = np.repeat(np.eye(3), 9, axis=0)
-    object.__setattr__(touches, "normal", normal)
-    W = model.columns(touches) * model.prior_sd / 1e-3
-    by_name = {d.symbol: d for d in supported_degrees(model, touches, W, 1e-3)}
-    assert by_name["EXX"].largest > by_name["EXY"].largest == 0
-    assert by_name["ECZ"].words == "roll of Z (ECZ): no degree"
-    assert 90.0 * DEG > by_name["EXX"].u > 0.0
