@@ -1,12 +1,11 @@
 """From logs to measurements: calibrated foot points, deviations, and where the standard stands."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from artefact.standard import Standard
-from probe_paths.alignment import aligned_feet
+from probe_paths.anchors import anchored
 from probe_paths.dialect import Dialect
 from probe_paths.feet import foot_points
 from probe_paths.frame import LINEAR, ProgramFrame
@@ -48,7 +47,7 @@ def evaluate(
 
     The ball centre that a nominal machine would have is taken into the frame of the standard. The
     set-up is fitted first (six parameters each, Gauss-Newton on the deviations, foot points anew
-    every round), then every table pose is aligned by itself (`probe_paths.alignment`), because a
+    every round), then the machine's errors as far as the touches tell (`probe_paths.anchors`), as a
     ball that met the surface beside its foot point would have the curvature in between pass for a
     deviation. Then ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 
@@ -79,10 +78,9 @@ def evaluate(
     point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius)
     _check_near(parts, gap, ABSURD)
     touches = _touches(parts, chain, q, (radius, length), setups, setup, feature, point, normal)
+    run = Run(touches, computed_deviation(touches), np.full(len(q), u))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
-    point, normal = aligned_feet(standard, feature, touches.ball_artefact, touches.pose, radius)
-    touches = replace(touches, point=point, normal=normal)
-    return Run(touches, computed_deviation(touches), np.full(len(q), u))
+    return anchored(run, standard)
 
 
 def _gaps(

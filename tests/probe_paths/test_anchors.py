@@ -1,0 +1,73 @@
+"""Deviations refer to where the ball met the surface, however far the machine carried it along."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from probe_paths.anchors import anchored
+from probe_paths.campaign import simulate
+from probe_paths.contacts import VirtualMachine
+from probe_paths.feet import foot_points
+from sensitivity.sampling import Population, drawn_errors
+from twin.effect import contribution
+from twin.frames import Array, apply, inverse
+from twin.kinematics import exact_tip
+from twin.run import Run
+from twin.touches import computed_deviation
+from twin.units import NM, UM
+
+NOISE = 1.0 * UM
+
+
+@pytest.fixture(scope="module")
+def probed(programs, small, chain, tmp_path_factory) -> Callable[[float], tuple[Run, Array]]:
+    """Run of a machine with a quarter of a millimetre of errors, and its true balls, by noise."""
+    folder = tmp_path_factory.mktemp("programs")
+    paths = [p for p in programs.write(folder) if p.suffix == ".H"]
+    errors = drawn_errors(Population(chain), np.random.default_rng(7))
+
+    def probe(noise: float) -> tuple[Run, Array]:
+        machine = VirtualMachine(chain, lambda touches: contribution(errors, touches), noise=noise)
+        campaign = simulate(paths, small, machine, np.random.default_rng(0))
+        t = campaign.run.touches
+        actual = exact_tip(chain, t.q, t.length, contribution(errors, t))
+        stood = campaign.runs[0].program.heading.setup.T_table_artefact
+        return campaign.run, apply(inverse(stood), actual)
+
+    return probe
+
+
+def believed(run: Run, standard) -> Run:
+    """The same touches with the foot points of the believed balls."""
+    t = run.touches
+    point, normal = foot_points(standard, t.feature, t.ball_artefact)
+    t = replace(t, point=point, normal=normal)
+    return replace(run, touches=t, deviation=computed_deviation(t))
+
+
+def curvature(run: Run, true_ball: Array) -> Array:
+    """What deviations hold beside the displacement of the ball along their own normals, mm."""
+    t = run.touches
+    return run.deviation - np.einsum("ni,ni->n", t.normal, t.ball_artefact - true_ball)
+
+
+def test_curvature_does_not_pass_for_a_deviation(probed, small) -> None:
+    """Five touches a pose: micrometres of curvature without anchors, hardly a nanometre with."""
+    run, true_ball = probed(0.0)
+    assert np.abs(curvature(believed(run, small), true_ball)).max() > 1.0 * UM
+    assert np.abs(curvature(run, true_ball)).max() < 2.0 * NM
+
+
+def test_noise_does_not_slide_a_ball_along_its_surface(probed) -> None:
+    """Noise of a micrometre moves no foot point by thirty, with five touches a pose."""
+    feet, noisy = (probed(noise)[0].touches.point for noise in (0.0, NOISE))
+    assert 0.1 * UM < np.abs(noisy - feet).max() < 30.0 * UM
+
+
+def test_a_handful_of_touches_stays_as_it_came(probed, small) -> None:
+    """Seven touches place not even the standard."""
+    run = believed(probed(0.0)[0], small)
+    few = run[np.arange(len(run)) < 7]
+    assert anchored(few, small) is few
