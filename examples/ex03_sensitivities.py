@@ -9,35 +9,33 @@ from pathlib import Path
 import numpy as np
 
 from sensitivity.jacobian import sensitivity
+from sensitivity.trajectory import along_path, paper_trajectory
+from sensitivity.workspace import Workspace
 from twin.effects.geometric import component
 from twin.files.machine_file import read_machine
-from twin.model import Model
-from twin.touches import at_poses
 from twin.units import DEG, UM
 
 HERE = Path(__file__).parent
+LIMITS = {"X": (-400.0, 400.0), "B": (-90 * DEG, 20 * DEG), "C": (-180 * DEG, 180 * DEG)}
 SHOWN = ("EXX", "EYC", "EBB", "ECC", "EAX")
 
 
 def main():
     chain = read_machine(HERE / "hsm600u-machine.toml")
-    c = np.linspace(-np.pi, np.pi, 201)
-    swing = (-35 + 55 * np.sin(2 * c)) * DEG
-    axes = {"X": 400 * c / np.pi, "B": swing, "C": c, "Y": 50 + 0 * c, "Z": -200 + 0 * c}
-    q = np.stack([axes.get(name, 0 * c) for name in chain.axes], axis=1)  # (201, A)
-    poses = at_poses(chain, q, 160.0)
-    S = sensitivity(chain, q, 160.0, [chain.symbol(name) for name in SHOWN])
+    path = paper_trajectory(
+        Workspace(chain, LIMITS, 160.0), count=201, held={"Y": 50.0, "Z": -200.0}
+    )
+    S = sensitivity(chain, path.q, path.length, [chain.symbol(name) for name in SHOWN])
 
-    def volumetric(errors, shape):
-        model = Model(chain, tuple(component(chain, name, shape) for name in errors))
-        deviation = model.tip_deviation(poses, np.array([*errors.values()]))
-        return np.linalg.norm(deviation, axis=1) / UM
+    def volumetric(sizes, shape):
+        errors = [(component(chain, n, shape), np.array([a * UM])) for n, a in sizes.items()]
+        return along_path(path, errors).size / UM
 
     return {
-        "C, deg": c / DEG,
+        "C, deg": path.q[:, chain.axis_index("C")] / DEG,
         "S": dict(zip(SHOWN, S.T, strict=True)),
-        "from X, µm": volumetric({"EXX": 50 * UM, "EYX": 75 * UM, "EZX": 100 * UM}, "linear"),
-        "from C, µm": volumetric({"EXC": 10 * UM, "EYC": 10 * UM}, "sinusoidal"),
+        "from X, µm": volumetric({"EXX": 50.0, "EYX": 75.0, "EZX": 100.0}, "linear"),
+        "from C, µm": volumetric({"EXC": 10.0, "EYC": 10.0}, "sinusoidal"),
     }
 
 
