@@ -11,6 +11,7 @@ COMMANDS = {
     "volumetric": "exact deviation of the tool point in the table frame, a row a pose",
     "sensitivity": "sensitivity of the tool point to every error parameter at every pose",
     "simulate": "run an emitted probing program on the machine's twin and write a run file",
+    "evaluate": "logs of our probing programs from the control, made a run file",
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
     "effects": "the effects that can be added, each with its formula and units",
@@ -44,6 +45,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print(f"matstd {args.command}: stopped, and nothing half-written is left", file=sys.stderr)
         return 130
+    except Exception as error:
+        theirs = _users_fault(error, args)
+        if theirs is None:
+            raise
+        print(f"matstd {args.command}: {theirs}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+
+
+def _users_fault(error: Exception, args: argparse.Namespace) -> Exception | None:
+    """A failure inside effects that the user wrote, as one line; None if it is our own."""
+    from twin.trial import fault, users_lines
+
+    for path in getattr(args, "effects", ()):
+        if users_lines(error, path):
+            return fault(error, path, "file", "a formula that holds for every touch")
+    return None
 
 
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:

@@ -120,3 +120,49 @@ def test_another_standard_is_refused(folder, small, capsys):
     write_standard(folder / "standard.toml", replace(small, patches=small.patches[::-1]))
     assert command(folder) == 2
     assert "feature 1 is FF1 in the program" in capsys.readouterr().err
+
+
+def evaluated(folder, *more, logs="logs"):
+    files = sorted(str(p) for p in (folder / logs).iterdir())
+    places = [
+        "--standard",
+        str(folder / "standard.toml"),
+        "--machine",
+        str(folder / "machine.toml"),
+    ]
+    return main(["evaluate", *files, *places, "-o", str(folder / "read" / "run.csv"), *more])
+
+
+def test_logs_of_a_control_become_the_run_that_was_simulated(folder, capsys):
+    """`evaluate` sees logs, standard and nominal machine; `simulate` said the same of them."""
+    assert command(folder, "--random-errors", "--logs", str(folder / "logs")) == 0
+    assert evaluated(folder) == 0
+    assert "touches at 5 table poses" in capsys.readouterr().out
+    made, read = (read_run(folder / name / "run.csv") for name in ("out", "read"))
+    assert np.abs(made.deviation - read.deviation).max() < NM
+    assert np.array_equal(made.touches.pose, read.touches.pose)
+    assert evaluated(folder) == 2
+    assert "is there already" in capsys.readouterr().err
+
+
+def test_a_log_that_stopped_is_used_and_told(folder, capsys):
+    assert command(folder, "--logs", str(folder / "logs")) == 0
+    log = sorted((folder / "logs").iterdir())[-1]
+    lines = log.read_text(encoding="ascii").splitlines()
+    log.write_text("\n".join(lines[:-6]) + "\n", encoding="ascii")
+    assert evaluated(folder) == 0
+    assert "stopped after" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("more", "expected"),
+    [(("--u-um", "0"), "expected an uncertainty"), (("--z", "tip"), "meaning of Z")],
+)
+def test_evaluate_refuses_in_one_line(folder, capsys, more, expected):
+    assert command(folder, "--logs", str(folder / "logs")) == 0
+    capsys.readouterr()
+    assert evaluated(folder, *more) == 2
+    message = capsys.readouterr().err
+    assert expected in message
+    assert message.count("\n") == 1
+    assert not (folder / "read" / "run.csv").exists()

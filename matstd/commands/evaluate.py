@@ -1,0 +1,62 @@
+"""`matstd evaluate`: logs that our probing programs left on a control, made a run file."""
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "logs", metavar="LOG.TXT", nargs="+", help="what FN 16 wrote, of one probe; in any order"
+    )
+    parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="as calibrated")
+    parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
+    parser.add_argument(
+        "--u-um", type=float, default=1.0, help="standard uncertainty of one touch, µm (1.0)"
+    )
+    parser.add_argument(
+        "--z",
+        choices=("gauge", "tip"),
+        default="gauge",
+        help="what Z the control returns from cycle 4: of the spindle gauge point or of the ball's "
+        "pole, which a calibrated sphere shows (gauge)",
+    )
+    parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
+    parser.add_argument("--force", action="store_true", help="overwrite the output")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the run file and say what the logs hold."""
+    import os
+    from pathlib import Path
+
+    import numpy as np
+
+    from artefact.standard_file import read_standard
+    from matstd.console import say
+    from probe_paths.dialect import Dialect
+    from probe_paths.evaluate import evaluate
+    from probe_paths.log import read_log
+    from twin.errors import DesignError
+    from twin.files.machine_file import read_machine
+    from twin.files.run_writer import write_run
+    from twin.files.whole import refuse_to_overwrite
+    from twin.units import UM
+
+    if not 1e-3 <= args.u_um <= 1000.0:
+        raise DesignError(f"--u-um {args.u_um:g}: expected an uncertainty from 0.001 to 1000 µm")
+    refuse_to_overwrite(args.output, args.force)
+    chain = read_machine(args.machine)
+    standard = read_standard(args.standard)
+    parts = [part for path in args.logs for part in read_log(path, chain.rotary_axes)]
+    measured = evaluate(parts, standard, chain, args.u_um * UM, Dialect(result_height=args.z))
+    folder = Path(args.output).resolve().parent
+    write_run(args.output, measured, Path(os.path.relpath(args.machine, folder)).as_posix())
+    rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
+    say(
+        f"{args.output}: {len(measured)} touches at {len(np.unique(measured.touches.pose))} table "
+        f"poses, deviations {rms:.3f} µm rms after the set-up was fitted"
+    )
+    for part in parts:
+        if not part.is_complete:
+            say(f"- {part.path}: {part.program} stopped after {len(part.number)} touches")
+    return 0
