@@ -172,10 +172,16 @@ class _Reader:
         )  # fmt: skip
 
     def _touches(self, begin: datetime) -> tuple[list[tuple[int, list[float]]], bool]:
-        """Rows of touches until END or NOCONTACT."""
+        """Rows of touches until END or NOCONTACT, or for want of them the end of what was logged.
+
+        A program that the operator stopped leaves neither: its whole touches count, and the next
+        line, if any, begins the next run.
+        """
         rows: list[tuple[int, list[float]]] = []
         now = begin
         while True:
+            if rows and (self.is_at_end or self.lines[self.place][1] == LOG_HEAD):
+                return rows, False
             text = self.peek("P <number> S <number> F <number>, END or NOCONTACT")
             if text.startswith("END "):
                 self.clock(now, now)

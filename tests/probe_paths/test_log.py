@@ -181,7 +181,7 @@ def faults(text):
     return {
         "nothing": ("", "found nothing"),
         "cut off in a line": (text[:-5], "a line cut off"),
-        "cut off between lines": ("".join(lines[:-1]), "the end of the file"),
+        "cut off between lines": ("".join(lines[:-3]), "the end of the file"),
         "a line missing": ("".join(lines[:x] + lines[x + 1 :]), "X <number> Y <number>"),
         "a decimal comma": (
             text.replace(".", ",", 1).replace("R     3.0", "R     3,0"),
