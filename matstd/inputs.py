@@ -9,8 +9,15 @@ from diagnosis.model_file import SavedModel, check_machine, read_model
 from twin.effect import Effect
 from twin.errors import DesignError, NotEnoughData
 from twin.files.run_file import read_run
-from twin.library import is_seen, load_installed_effects, load_user_effects, parse_effect
+from twin.library import (
+    is_seen,
+    load_installed_effects,
+    load_user_effects,
+    parse_effect,
+    users_file,
+)
 from twin.run import Run
+from twin.trial import try_effect, try_kind
 
 
 def read_inputs(
@@ -29,14 +36,16 @@ def read_inputs(
         NotEnoughData: Too few touches to place the standard.
     """
     load_installed_effects()
-    for path in effect_files:
-        load_user_effects(Path(path))
+    own = [(Path(path), kind) for path in effect_files for kind in load_user_effects(Path(path))]
     run = read_run(run_file)
     if len(run) < MIN_TOUCHES:
         raise NotEnoughData(
             f"{run_file}: {len(run)} touch{'es' if len(run) > 1 else ''}, expected at least "
             f"{MIN_TOUCHES}: fewer cannot even place the standard; add touches"
+            + "".join(f"; {remark}" for remark in run.remarks)
         )
+    for path, kind in own:
+        try_kind(kind, run.touches, path)
     if model_file is None:
         return run, None
     saved = read_model(model_file)
@@ -68,6 +77,9 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
     out: list[Effect] = []
     for name in names:
         effect = parse_effect(name, run.touches.chain)
+        place = users_file(effect.kind)
+        if place is not None:
+            try_effect(effect, run.touches, place)
         if effect.name in there:
             raise DesignError(f"--add {name}: is in the model already, expected another effect")
         if effect.name in {e.name for e in out}:

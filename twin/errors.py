@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from twin.words import did_you_mean
+
 
 class DesignError(Exception):
     """Root of everything a user can put right; `matstd` shows it as one line and exits with 2.
@@ -48,7 +50,8 @@ class UnknownSymbol(DesignError, KeyError):
         available = list(available)
         shown = ", ".join(available[:12]) + (" ..." if len(available) > 12 else "")
         super().__init__(
-            f"unknown error parameter '{symbol}'; available: {shown}",
+            f"unknown error parameter '{symbol}'{did_you_mean(symbol, available)}; "
+            f"available: {shown}",
             symbol=symbol,
             available=available,
         )

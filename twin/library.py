@@ -33,7 +33,9 @@ from twin.effects.kind import Kind
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.model import columns
 from twin.touches import Touches
+from twin.trial import fault
 from twin.units import NM
+from twin.words import listed, nearest
 
 __all__ = [
     "ENTRY_POINT_GROUP",
@@ -44,6 +46,7 @@ __all__ = [
     "parse_effect",
     "proposals",
     "register",
+    "users_file",
 ]
 
 ENTRY_POINT_GROUP = "material_standard.effects"
@@ -54,6 +57,9 @@ ROUNDING = 1e-3 * NM
 _NAME = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\((.*)\))?\s*\Z")
 
 _REGISTER: dict[str, Kind] = {}
+
+_FILES: dict[str, Path] = {}
+"""The users' files that kinds come from, so that a file can be read again when it has changed."""
 
 
 def register(kind: Kind) -> Kind:
@@ -68,6 +74,26 @@ def register(kind: Kind) -> Kind:
     if known is not None and known != kind:
         raise DesignError(f"kind '{kind.word}' is already in the library, expected another word")
     _REGISTER[kind.word] = kind
+    return kind
+
+
+def _register_from(kind: Kind, path: Path) -> Kind:
+    """Register a kind of a user's file, in the place of what this file said before.
+
+    Raises:
+        BadFile: The word is taken, or is no word.
+    """
+    place = path.resolve()
+    if _FILES.get(kind.word) == place:
+        del _REGISTER[kind.word]
+    try:
+        register(kind)
+    except DesignError as error:
+        taken = str(_FILES.get(kind.word, "the library")) if kind.word in _REGISTER else ""
+        found = f"a word that {taken} has already" if taken else "a word that is no name"
+        expected = "another word" if taken else "letters, digits and hyphens"
+        raise BadFile(path, f"Kind '{kind.word}'", found, expected) from error
+    _FILES[kind.word] = place
     return kind
 
 
@@ -86,11 +112,39 @@ def parse_effect(text: str, chain: Chain) -> Effect:
     match = _NAME.match(text)
     kind = _REGISTER.get(match.group(1)) if match else None
     if match is None or kind is None:
-        available = ", ".join(k.usage for k in kinds())
-        raise UnknownEffect(f"unknown effect '{text}'; available: {available}")
+        raise _unknown(text, chain)
     inside = match.group(2)
     arguments = [a.strip() for a in inside.split(",")] if inside and inside.strip() else []
     return kind.make(chain, arguments)
+
+
+def _unknown(text: str, chain: Chain) -> UnknownEffect:
+    """What an unknown name may have meant, and what is available."""
+    word, bracket, inside = (part.strip() for part in text.partition("("))
+    near = nearest(word.replace("_", "-"), _REGISTER)
+    written = [f"{k.word}({word})" for k in kinds() if _is_taken(k, chain, word)]
+    meant = ""
+    if word in _REGISTER:
+        meant = ", whose bracket does not end"
+    elif written:
+        meant = f", an error parameter; did you mean {listed(written, 'or')}?"
+    elif near:
+        meant = f"; did you mean {near}{bracket}{inside}?"
+    available = ", ".join(k.word for k in kinds())
+    return UnknownEffect(
+        f"unknown effect '{text}'{meant}; available: {available} (matstd effects tells all)"
+    )
+
+
+def _is_taken(kind: Kind, chain: Chain, symbol: str) -> bool:
+    """Whether a kind acts on an error parameter of the machine."""
+    if symbol not in {s.name for s in chain.symbols} or not kind.arguments.startswith("symbol"):
+        return False
+    try:
+        kind.make(chain, [symbol])
+    except DesignError:
+        return False
+    return True
 
 
 def proposals(touches: Touches, only: Sequence[str] | None = None) -> list[Effect]:
@@ -129,17 +183,25 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
     """
     spec = importlib.util.spec_from_file_location(f"matstd_user_{path.stem}", path)
     if spec is None or spec.loader is None or not path.is_file():
-        raise BadFile(path, "file", "nothing that Python can load", "a .py file with a Kind in it")
+        found = "nothing that Python can load" if path.is_file() else "no such file"
+        raise BadFile(path, "file", found, "a .py file with a Kind in it")
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
+    except SyntaxError as cause:
+        found = f"{(cause.text or '').strip()!r} ({cause.msg})"
+        raise BadFile(path, f"line {cause.lineno}", found, "Python") from cause
     except Exception as cause:  # whatever a user's file does wrong is one line about that file
-        found = f"{type(cause).__name__}: {cause}"
-        raise BadFile(path, "file", found, "a Python file that runs") from cause
+        raise fault(cause, path, "file", "a Python file that runs") from cause
     own = {id(k): k for k in vars(module).values() if isinstance(k, Kind)}
     if not own:
         raise BadFile(path, "file", "no Kind", "at least one twin.library.Kind at its top level")
-    return tuple(register(kind) for kind in own.values())
+    return tuple(_register_from(kind, path) for kind in own.values())
+
+
+def users_file(word: str) -> Path | None:
+    """The file of a user that a kind comes from; None for the library's own and installed ones."""
+    return _FILES.get(word)
 
 
 def load_installed_effects() -> tuple[Kind, ...]:

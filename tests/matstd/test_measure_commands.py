@@ -117,7 +117,7 @@ def test_a_model_says_what_it_rests_upon(folder, tmp_path) -> None:
         (["artefact-form(nowhere)"], "moves nothing at these touches"),
         (["location(EX0w)", "geometric(EXX,linear)"], "is in the model already"),
         (["backlash(Q)"], "an axis of X, Z, Y"),
-        (["backlsh(Y)"], "unknown effect"),
+        (["backlsh(Y)"], "did you mean backlash(Y)?"),
     ],
 )
 def test_effects_that_cannot_be_added(folder, tmp_path, capsys, effects, expected) -> None:
@@ -208,3 +208,97 @@ def test_json_and_words_name_a_region_alike(folder, tmp_path, capsys) -> None:
     told = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
     assert any("time_s" in region["region"] for region in told["where"])
     assert "time < " in capsys.readouterr().out
+
+
+LATE = '''"""Fails at one value of its inner parameter, which is not among those tried first."""
+from dataclasses import dataclass, replace
+import numpy as np
+from twin.effect import Inner, Parameter, Term, Where
+from twin.library import Kind
+
+@dataclass(frozen=True)
+class Late:
+    """Fails late."""
+    place: float = 0.0
+    name = kind = "late"
+    parameters = (Parameter("size", "mm", 0.01),)
+    def terms(self, touches):
+        if 2.0 < self.place < 4.0:
+            raise RuntimeError("no such place")
+        bump = np.exp(-(((touches.reading("X") - self.place) / 50.0) ** 2))
+        return (Term(0, Where("twist", touches.chain.link_index("Z"), 2), bump),)
+    def inner(self, touches):
+        return (Inner("place", "mm", np.array([0.0, 3.0, 5.0, 9.0, 20.0])),)
+    def tuned(self, place):
+        return replace(self, place=float(place))
+    @property
+    def tuning(self):
+        return {"place": self.place}
+
+LATE = Kind("late", "", "f", "u", "t", "s", lambda c, a: Late(), lambda t: (Late(),), (Late,))
+'''
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("", "", "late.py: line 15: found RuntimeError: no such place, expected a formula"),
+        ("bump),)", "bump[1:]),)", "late.py: late: found an amount of shape"),
+    ],
+)
+def test_a_users_formula_that_fails_is_a_line_of_his_file(
+    folder, tmp_path, capsys, monkeypatch, old, new, expected
+) -> None:
+    from twin import library
+
+    monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
+    (tmp_path / "late.py").write_text(LATE.replace(old, new) if old else LATE, encoding="utf-8")
+    words = ["diagnose", str(folder / "run.csv"), "--effects", str(tmp_path / "late.py")]
+    assert main([*words, "-o", str(tmp_path / "o"), "--no-report"]) == BAD
+    told = capsys.readouterr().err
+    assert expected in told
+    assert told.count("\n") == 1
+    assert not (tmp_path / "o").exists()
+
+
+def test_copies_are_told_where_few_touches_are_left(folder, tmp_path, capsys) -> None:
+    lines = (folder / "run.csv").read_text(encoding="utf-8").splitlines()
+    n = next(i for i, line in enumerate(lines) if not line.startswith("#"))
+    text = "\n".join([*lines[: n + 1], *[lines[n + 1]] * 50]) + "\n"
+    (tmp_path / "run.csv").write_text(text, encoding="utf-8")
+    (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text(encoding="utf-8"))
+    assert main(["compare", str(tmp_path / "run.csv"), "-o", str(tmp_path / "o")]) == BAD
+    told = capsys.readouterr().err
+    assert "1 touch, expected at least 8" in told
+    assert "49 rows stand twice" in told
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (lambda t: t.replace("model/1", "model/0"), "files of other versions are not read"),
+        (lambda t: t[: len(t) // 2], "expected a whole, valid TOML file"),
+        (lambda t: t.replace("amplitude_um", "amplitude_mm", 1), "estimate: found amplitude_mm"),
+        (lambda t: t.replace('name = "backlash(Y)"', 'name = "backlsh(Y)"'), "did you mean backl"),
+        (lambda t: t.replace("revision", "revison"), "unknown key; did you mean revision"),
+    ],
+)
+def test_a_model_file_that_was_edited_badly_is_refused(
+    folder, tmp_path, capsys, change, expected
+) -> None:
+    text = (folder / "added" / "model.toml").read_text(encoding="utf-8")
+    assert change(text) != text
+    (tmp_path / "model.toml").write_text(change(text), encoding="utf-8")
+    words = ["compare", str(folder / "run.csv"), "--model", str(tmp_path / "model.toml")]
+    assert main([*words, "-o", str(tmp_path / "o")]) == BAD
+    told = capsys.readouterr().err
+    assert expected in told
+    assert told.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["compare", "diagnose"])
+def test_results_of_another_day_are_not_overwritten(folder, tmp_path, capsys, command) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    assert main([command, str(folder / "run.csv"), "-o", str(tmp_path), "--no-report"]) == BAD
+    assert "is there already; choose another folder or give --force" in capsys.readouterr().err
+    assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]

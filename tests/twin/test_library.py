@@ -187,7 +187,7 @@ def test_a_users_file_adds_an_effect(own_register, tmp_path: Path) -> None:
     [
         ("x = 1\n", "my_effects.py: file: found no Kind, expected"),
         ("import nowhere_at_all\n", "found ModuleNotFoundError: No module named"),
-        ("def broken(:\n", "found SyntaxError"),
+        ("x = 1\ndef broken(:\n", r"my_effects.py: line 2: found .def broken\(:. \(invalid"),
     ],
 )
 def test_a_users_file_with_a_fault_is_one_line(

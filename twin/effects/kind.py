@@ -12,6 +12,7 @@ from twin.errors import UnknownEffect
 from twin.frames import Array
 from twin.symbols import Family, Symbol
 from twin.touches import Touches
+from twin.words import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,10 @@ def sensor_record(touches: Touches, sensor: str) -> Array:
     """Temperatures of one sensor, (N,), degC; raises UnknownEffect where there is none."""
     if sensor not in touches.temperature:
         known = ", ".join(touches.temperature) or "none"
-        raise UnknownEffect(f"no temperature sensor '{sensor}' in these touches; there is {known}")
+        meant = did_you_mean(sensor, touches.temperature)
+        raise UnknownEffect(
+            f"no temperature sensor '{sensor}' in these touches{meant}; there is {known}"
+        )
     return touches.temperature[sensor]
 
 

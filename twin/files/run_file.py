@@ -10,16 +10,14 @@ from twin.chain import Chain
 from twin.errors import BadFile
 from twin.files import run_columns as columns
 from twin.files.machine_file import Vector, read_machine
-from twin.files.pose_file import FARTHEST, outside_travel, reading_columns, readings
+from twin.files.pose_file import FARTHEST, reading_columns, readings
+from twin.files.run_checks import checked_run
 from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
 from twin.run import Run
 from twin.touches import IntArray, Setup, Touches, computed_deviation
 from twin.units import DEG, UM
-
-ABSURD = 10.0
-"""Deviations beyond this (mm) are no measurement: units mixed up, or a wrong set-up or probe."""
 
 _OPTIONAL = (
     "feature",
@@ -84,8 +82,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks: list[str] = []
     run = _assemble(table, chain, head, remarks)
-    run = _with_clock(_without_copies(run, remarks), remarks)
-    _check_deviations(run, table, remarks)
+    run = checked_run(run, table, remarks)
     return replace(run, remarks=tuple(remarks))
 
 
@@ -114,21 +111,18 @@ def _machine(path: str | Path, named: str) -> Chain:
 def _check_columns(table: CsvTable, chain: Chain) -> None:
     """Needed columns are there, and none that nobody understands."""
     names = [column for column, _ in reading_columns(chain).values()]
-    table.require([*(reading_columns(chain)[a][0] for a in chain.programmed_axes)])
-    table.require([*columns.POINT, *columns.NORMAL])
     directions = [f"dir{axis}" for axis in chain.axes]
     sensors = [c for c in table.columns if columns.SENSOR.match(c)]
     known = [*names, *columns.POINT, *columns.NORMAL, *_OPTIONAL, *columns.FORCE]
     table.allow_only([*known, *directions, *sensors], " or T_<sensor>_degC")
+    table.require([*(reading_columns(chain)[a][0] for a in chain.programmed_axes)])
+    table.require([*columns.POINT, *columns.NORMAL])
 
 
 def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]) -> Run:
     """Run of all rows."""
     n = len(table)
     q = readings(table, chain)
-    beyond = outside_travel(table, chain, q, slack=1e-3)  # a trigger may lie past the limit
-    if beyond is not None:
-        remarks.append(f"{beyond}; it is used as it stands")
     setups, setup = _setups(table, head)
     touches = Touches(
         chain=chain,
@@ -182,47 +176,3 @@ def _setups(table: CsvTable, head: HeadTable) -> tuple[tuple[Setup, ...], IntArr
             raise table.bad(i, "setup", repr(name), f"one of {', '.join(names)} as in the head")
         index[i] = names.index(name)
     return setups, index
-
-
-def _without_copies(run: Run, remarks: list[str]) -> Run:
-    """The run without rows that stand twice; replicates differ in their readings or their time."""
-    t = run.touches
-    key = np.column_stack([t.q, t.point, t.normal, t.setup, t.time, run.deviation])
-    first = np.unique(key, axis=0, return_index=True)[1]
-    if len(first) == len(run):
-        return run
-    keep = np.zeros(len(run), dtype=bool)
-    keep[first] = True
-    count = int((~keep).sum())
-    what = "row stands twice; the copy is" if count == 1 else "rows stand twice; the copies are"
-    remarks.append(f"line {run.line[np.argmin(keep)]}: {count} {what} left out")
-    return run[keep]
-
-
-def _with_clock(run: Run, remarks: list[str]) -> Run:
-    """The run without its times, if its clock goes back."""
-    time = run.touches.time
-    back = np.flatnonzero(np.diff(time) < 0.0)
-    if not len(back):
-        return run
-    i = int(back[0])
-    remarks.append(
-        f"line {run.line[i + 1]}: time_s goes back from {time[i]:g} to {time[i + 1]:g}; "
-        "time is left out, so that no effect of time can be found; everything else is used"
-    )
-    return replace(run, touches=replace(run.touches, time=np.zeros(len(run))))
-
-
-def _check_deviations(run: Run, table: CsvTable, remarks: list[str]) -> None:
-    """Refuse what cannot be a deviation of a machine tool."""
-    typical = float(np.median(np.abs(run.deviation)))
-    if typical > ABSURD:
-        where = "column dev_um" if "dev_um" in table else "deviations computed from the readings"
-        raise BadFile(
-            table.path,
-            where,
-            f"a typical deviation of {typical:.4g} mm",
-            "some µm: units are mixed up, or the set-up, the probe or the machine is another one",
-        )
-    if not run.deviation.any():
-        remarks.append("every deviation is zero: nothing was measured")

@@ -10,12 +10,13 @@ import numpy as np
 
 from twin.errors import BadFile
 from twin.frames import Array
+from twin.words import did_you_mean
 
 LARGEST = 1e12
 """Whatever a column holds, a number beyond this is a slip."""
 
 _OTHERS = {"semicolons": ";", "tabs": "\t"}
-_EXPECTED = "commas between the columns, and a point in decimal numbers"
+_EXPECTED = "a cell a column, commas between them, and a point in decimal numbers"
 
 
 def _rows(text: str, path: str | Path, first_line: int) -> list[tuple[int, list[str]]]:
@@ -56,9 +57,7 @@ class CsvTable:
         self.cells = [row for _, row in rows[1:]]
         for line, row in zip(self.lines, self.cells, strict=True):
             if len(row) != len(self.columns):
-                raise BadFile(
-                    path, f"line {line}", f"{len(row)} cells", f"{len(self.columns)} as in the head"
-                )
+                raise BadFile(path, f"line {line}", _cells(row, self.columns), _EXPECTED)
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -73,18 +72,19 @@ class CsvTable:
                 raise BadFile(
                     self.path,
                     f"line {self.header_line}",
-                    f"columns {', '.join(self.columns)}",
-                    f"a column {name} among them",
+                    f"no column {name} among {', '.join(self.columns)}",
+                    f"a column {name}",
                 )
 
     def allow_only(self, known: Sequence[str], pattern: str = "") -> None:
         """Raise BadFile for the first column that is not known."""
         for name in self.columns:
             if name not in known:
+                meant = did_you_mean(name, known)
                 raise BadFile(
                     self.path,
                     f"line {self.header_line}",
-                    f"column {name!r}",
+                    f"column {name!r}{meant}",
                     f"one of {', '.join(known)}{pattern}",
                 )
 
@@ -132,6 +132,14 @@ class CsvTable:
     def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:
         """The exception for a cell."""
         return BadFile(self.path, f"line {self.lines[row]}, column {name}", found, expected)
+
+
+def _cells(row: Sequence[str], columns: Sequence[str]) -> str:
+    """What is wrong with a row that has more or fewer cells than the header."""
+    found = f"{len(row)} cells under {len(columns)} column names"
+    if len(row) < len(columns):
+        return f"{found} (is the row cut off?)"
+    return f"{found} (a decimal comma makes two cells of one number)"
 
 
 def _has_comma(cell: str) -> bool:

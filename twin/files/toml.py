@@ -1,12 +1,25 @@
 """TOML at the border: read with one clear line for whatever is wrong in it."""
 
+import re
 import tomllib
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from twin.errors import BadFile
+from twin.words import did_you_mean
+
+_NO_TEXT = {
+    b"PK\x03\x04": "a zip archive, such as a workbook of Excel (save it as CSV)",
+    b"\x89PNG": "a picture",
+    b"%PDF": "a PDF",
+    b"\xff\xfe": "text in UTF-16",
+    b"\xfe\xff": "text in UTF-16",
+}
+"""How files begin that users take for text, and what they are."""
+
+_DECIMAL_COMMA = re.compile(r"=\s*-?\d+,\d+\s*$")
 
 
 class Table(BaseModel):
@@ -23,11 +36,25 @@ T = TypeVar("T", bound=BaseModel)
 def read_text(path: str | Path) -> str:
     """Text of a user's file; raises BadFile if it is missing or not UTF-8."""
     try:
-        return Path(path).read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise BadFile(path, f"byte {error.start}", "bytes that are no UTF-8", "text") from error
+        data = Path(path).read_bytes()
     except OSError as error:
         raise BadFile(path, "file", error.strerror, "a file that can be read") from error
+    for begin, what in _NO_TEXT.items():
+        if data.startswith(begin):
+            raise BadFile(path, "file", what, "a text file (UTF-8)")
+    try:
+        return _one_line_end(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        if b"\0" in data:
+            raise BadFile(path, "file", "no text", "a text file (UTF-8)") from error
+        found = f"byte {data[error.start]:#04x}, which is no UTF-8"
+        raise BadFile(path, f"line {line}", found, "text saved as UTF-8") from error
+
+
+def _one_line_end(text: str) -> str:
+    """Text with line feeds, whichever system wrote it."""
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def parse_toml(text: str, path: str | Path, first_line: int = 1) -> dict[str, Any]:
@@ -35,7 +62,22 @@ def parse_toml(text: str, path: str | Path, first_line: int = 1) -> dict[str, An
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise BadFile(path, "TOML", str(error), "a whole, valid TOML file") from error
+        raise _no_toml(error, text, path, first_line) from error
+
+
+def _no_toml(
+    error: tomllib.TOMLDecodeError, text: str, path: str | Path, first_line: int
+) -> BadFile:
+    """The line that is no TOML, and why."""
+    why, _, place = str(error).partition(" (at ")
+    match = re.match(r"line (\d+)", place)
+    lines = text.splitlines()
+    number = int(match.group(1)) if match else len(lines)
+    line = lines[number - 1].strip() if 0 < number <= len(lines) else ""
+    comma = " and a point in decimal numbers" if _DECIMAL_COMMA.search(line) else ""
+    expected = f"a whole, valid TOML file{comma} ({why[:1].lower()}{why[1:]})"
+    found = repr(line[:60]) if line else "an end"
+    return BadFile(path, f"line {first_line + number - 1}", found, expected)
 
 
 def checked(model: type[T], data: object, path: str | Path, within: str = "") -> T:
@@ -60,25 +102,42 @@ def _as_bad_file(
     error: ValidationError, model: type[BaseModel], path: str | Path, within: str
 ) -> BadFile:
     """First fault of a table in one line."""
-    first = error.errors(include_url=False)[0]
+    found = error.errors(include_url=False)
+    # a key that is written wrongly is unknown, and the right one is missing: say the former
+    first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])
     steps = [str(step) for step in first["loc"] if not str(step).startswith("function-")]
     key = ".".join(([within] if within else []) + steps) or "file"
     if first["type"] == "extra_forbidden":
-        known = ", ".join(field.alias or name for name, field in model.model_fields.items())
-        return BadFile(
-            path,
-            key,
-            "an unknown key",
-            f"one of {known}" if len(steps) == 1 else "a key of the format",
-        )
+        known = list(_keys(model, steps[:-1]))
+        expected = f"one of {', '.join(known)}" if known else "a key of the format"
+        return BadFile(path, key, f"an unknown key{did_you_mean(steps[-1], known)}", expected)
     if first["type"] == "missing":
         return BadFile(path, key, "nothing", "this key")
     message = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     return BadFile(path, key, repr(first["input"]), message)
 
 
+def _keys(model: type[BaseModel], steps: list[str]) -> dict[str, Any]:
+    """Keys, with their types, of the table within a table to which some steps lead."""
+    kind: Any = model
+    for step in steps:
+        is_table = isinstance(kind, type) and issubclass(kind, BaseModel)
+        kind = _fields(kind).get(step) if is_table else next(reversed(get_args(kind)), None)
+    return _fields(kind) if isinstance(kind, type) and issubclass(kind, BaseModel) else {}
+
+
+def _fields(model: type[BaseModel]) -> dict[str, Any]:
+    return {field.alias or name: field.annotation for name, field in model.model_fields.items()}
+
+
 def check_format(data: dict[str, Any], wanted: str, path: str | Path) -> None:
     """Raise BadFile unless `format` says what the reader understands."""
     if data.get("format") != wanted:
         found = repr(data["format"]) if "format" in data else "nothing"
-        raise BadFile(path, "format", found, f'"{wanted}"')
+        older = "; files of other versions are not read" if _is_version(data, wanted) else ""
+        raise BadFile(path, "format", found, f'"{wanted}"{older}')
+
+
+def _is_version(data: dict[str, Any], wanted: str) -> bool:
+    """Whether a file is of the wanted kind in another version."""
+    return str(data.get("format", "")).partition("/")[0] == wanted.partition("/")[0]

@@ -1,0 +1,204 @@
+"""Runs whose rows as a whole, or single ones, cannot be measurements: refused or left out, told.
+
+A ball of 3 mm touches a sphere of 50 mm from all sides on a machine without errors, so that every
+deviation is known without any fit: zero, and what a test does to it.
+"""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from twin.errors import BadFile
+from twin.files.run_file import read_run
+from twin.units import UM
+
+MACHINE = """format = "machine/1"
+name = "test"
+chain = "[w f X Y Z t]"
+[axis.X]
+range = [-400.0, 400.0]
+[axis.Y]
+range = [-300.0, 300.0]
+[axis.Z]
+range = [-500.0, 200.0]
+"""
+HEAD = """# format = "run/1"
+# machine = "machine.toml"
+# probe = { radius_mm = %g, length_mm = 100.0 }
+# u_um = 0.6
+"""
+COLUMNS = ["time_s", "X_mm", "Y_mm", "Z_mm", "px_mm", "py_mm", "pz_mm", "nx", "ny", "nz"]
+COUNT = 60
+SIZE = 20.0 * UM
+"""Deviations of the run, drawn: sum of a machine's errors, root mean square."""
+
+
+def rows() -> np.ndarray:
+    """Rows of the columns above; the ball stands outside the sphere by the deviation."""
+    rng = np.random.default_rng(3)
+    normal = rng.normal(size=(COUNT, 3))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    ball = normal * (50.0 + 3.0 + SIZE * rng.normal(size=COUNT))[:, None]
+    reading = ball + np.array([0.0, 0.0, 100.0])
+    reading[:, 2] = ball[:, 2] + 100.0
+    return np.column_stack([10.0 * np.arange(COUNT), reading, 50.0 * normal, normal])
+
+
+def write(
+    folder: Path, table: np.ndarray, extra: dict[str, list] | None = None, radius=3.0
+) -> Path:
+    (folder / "machine.toml").write_text(MACHINE)
+    columns = [*COLUMNS, *(extra or {})]
+    cells = [[*(f"{v:.9f}" for v in row), *more] for row, more in _joined(table, extra or {})]
+    lines = [",".join(columns), *(",".join(str(c) for c in row) for row in cells)]
+    path = folder / "run.csv"
+    path.write_text(HEAD % radius + "\n".join(lines) + "\n")
+    return path
+
+
+def _joined(table: np.ndarray, extra: dict[str, list]):
+    more = zip(*extra.values(), strict=True) if extra else ([] for _ in table)
+    return zip(table, more, strict=True)
+
+
+def true_deviation() -> np.ndarray:
+    table = rows()
+    return np.linalg.norm(table[:, 1:4] - [0.0, 0.0, 100.0], axis=1) - 53.0
+
+
+def test_a_right_run_is_taken_as_it_is(tmp_path: Path) -> None:
+    stated = {"dev_um": [f"{d / UM:.6f}" for d in true_deviation()]}
+    run = read_run(write(tmp_path, rows(), stated))
+    assert len(run) == COUNT
+    assert run.remarks == ()
+    np.testing.assert_allclose(run.deviation, true_deviation(), atol=1e-3 * UM)
+
+
+@pytest.mark.parametrize(
+    ("factor", "expected"),
+    [
+        (1.0, "column dev_um: found typically .*as the readings say: are these mm in a column of"),
+        (1e6, "column dev_um: found .* mm and the like in .* of 60 rows, expected some µm"),
+        (-1e3, "column dev_um: found typically .* are these of the other sign"),
+    ],
+)
+def test_stated_deviations_in_another_unit(tmp_path: Path, factor: float, expected: str) -> None:
+    stated = {"dev_um": [f"{d * factor:.9f}" for d in true_deviation()]}
+    with pytest.raises(BadFile, match=expected):
+        read_run(write(tmp_path, rows(), stated))
+
+
+def test_deviations_of_another_instrument_are_its_own(tmp_path: Path) -> None:
+    """Readings are nominal there, so that they say nothing of what the instrument read."""
+    table = rows()
+    told = np.random.default_rng(8).normal(size=COUNT)
+    run = read_run(write(tmp_path, table, {"dev_um": [f"{d:.6f}" for d in told]}))
+    np.testing.assert_allclose(run.deviation, told * UM, atol=1e-3 * UM)
+
+
+@pytest.mark.parametrize(
+    ("radius", "sign", "expected"),
+    [
+        (3.0, -1.0, "nx, ny, nz: found normals by which every side .* 6.* mm inside its place"),
+        (6.0, 1.0, "probe.radius_mm: found 6 by which every side .* 3 mm inside its place"),
+        (0.0, 1.0, "probe.radius_mm: found 0 by which every side .* 3 mm outside its place"),
+    ],
+)
+def test_sides_that_all_stand_off_alike(
+    tmp_path: Path, radius: float, sign: float, expected: str
+) -> None:
+    table = rows()
+    table[:, 7:] *= sign
+    with pytest.raises(BadFile, match=expected):
+        read_run(write(tmp_path, table, radius=radius))
+
+
+def test_a_standard_somewhere_else_is_no_wrong_radius(tmp_path: Path) -> None:
+    """The set-up is fitted later: a millimetre of it is no reason to refuse."""
+    table = rows()
+    table[:, 1] += 1.0
+    assert len(read_run(write(tmp_path, table))) == COUNT
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "told"),
+    [
+        (1, -9999.0, "line 12, column X_mm: -9999 cannot be, expected a reading within the travel"),
+        (4, 250.0, "line 12, deviation computed from the readings: .* mm cannot be, expected some"),
+    ],
+)
+def test_a_slip_of_one_row_is_left_out_and_told(
+    tmp_path: Path, column: int, value: float, told: str
+) -> None:
+    table = rows()
+    table[6, column] = value
+    run = read_run(write(tmp_path, table))
+    assert len(run) == COUNT - 1
+    assert 12 not in run.line
+    (remark,) = run.remarks
+    assert remark.endswith("the row is left out")
+    assert re.match(told, remark)
+
+
+def test_slips_in_many_rows_are_no_slips(tmp_path: Path) -> None:
+    table = rows()
+    table[10:20, 1] *= 1000.0
+    with pytest.raises(BadFile, match="and the like in 10 of 60 rows, expected a reading within"):
+        read_run(write(tmp_path, table))
+
+
+def test_a_touch_at_the_limit_is_used(tmp_path: Path) -> None:
+    machine = MACHINE.replace("[-400.0, 400.0]", "[-400.0, 52.0]")
+    path = write(tmp_path, rows())
+    (tmp_path / "machine.toml").write_text(machine)
+    furthest = rows()[:, 1].max()
+    limit = furthest - 1.0
+    (tmp_path / "machine.toml").write_text(machine.replace("52.0", f"{limit:.3f}"))
+    run = read_run(path)
+    assert len(run) == COUNT
+    assert any("column X_mm" in remark and remark.endswith("used so") for remark in run.remarks)
+
+
+def test_a_clock_that_stands_still_is_told(tmp_path: Path) -> None:
+    table = rows()
+    table[:, 0] = 0.0
+    run = read_run(write(tmp_path, table))
+    assert run.remarks == ("time_s is 0 in every row: no effect of time can be found",)
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (b"PK\x03\x04" + bytes(range(256)), "found a zip archive, such as a workbook of Excel"),
+        (b"\x00\x01\x93\xff\x00", "found no text, expected a text file"),
+        ('# format = "run/1"\n'.encode("utf-16"), "found text in UTF-16"),
+        (b'# format = "run/1"\n# # Pr\xfcfstand\n', "line 2: found byte 0xfc, which is no UTF-8"),
+        (b'# format = "run/1"\n# u_um = 0,6\n', "line 2: found 'u_um = 0,6', .* a point in decim"),
+        (b'# format = "run/1"\n# # \x00\n', "line 2: .*, expected a whole, valid TOML file"),
+    ],
+)
+def test_what_is_no_text_is_named(tmp_path: Path, data: bytes, expected: str) -> None:
+    path = tmp_path / "run.csv"
+    path.write_bytes(data)
+    with pytest.raises(BadFile, match=expected):
+        read_run(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (lambda t: t.replace("time_s", "Time_s"), "column 'Time_s'; did you mean time_s"),
+        (lambda t: t.replace("u_um = 0.6", "u_mm = 0.6"), "unknown key; did you mean u_um"),
+        (lambda t: t.replace("radius_mm", "radius"), "unknown key; did you mean radius_mm"),
+        (lambda t: t.replace("run/1", "run/2"), "files of other versions are not read"),
+        (lambda t: t[: len(t) // 2], "cells under 10 column names .is the row cut off"),
+        (lambda t: t.replace("0.000000000,", "0,000000000,", 1), "11 cells .*decimal comma"),
+    ],
+)
+def test_what_was_meant_is_said(tmp_path: Path, change, expected: str) -> None:
+    path = write(tmp_path, rows())
+    path.write_text(change(path.read_text()))
+    with pytest.raises(BadFile, match=expected):
+        read_run(path)

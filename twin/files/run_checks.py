@@ -1,0 +1,214 @@
+"""What is looked at in the rows of a run file as a whole: copies, clocks, units, slips."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from twin.errors import BadFile
+from twin.files.pose_file import reading_columns
+from twin.files.table import CsvTable
+from twin.frames import Array
+from twin.run import Run
+from twin.touches import IntArray, computed_deviation
+from twin.units import UM
+
+ABSURD = 10.0
+"""Deviations beyond this (mm) are no measurement: units mixed up, or a wrong set-up or probe."""
+
+ASTRAY = 0.1
+"""Readings beyond the travel by more than this share of it are slips, not a touch at the limit."""
+
+AT_LIMIT = 1e-3
+"""A trigger may lie beyond the travel by so much of it without a word."""
+
+FEW = 0.05
+"""Up to this share of rows may be slips of single rows; of more something is wrong in all."""
+
+LISTED = 10
+"""Lines of a file that are told one by one."""
+
+ALIKE = 0.999
+"""Squared correlation from which stated deviations are those of the readings in another unit."""
+
+OFFSET = 0.5
+"""A deviation (mm) that is alike on every side of the standard: no set-up and no machine does it,
+a ball of another radius or normals that point inwards do."""
+
+_OTHER_UNITS = {
+    1e-3: "mm in a column of µm",
+    1e3: "nm in a column of µm",
+    -1.0: "of the other sign",
+}
+
+
+def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
+    """The run without what cannot be a measurement; whatever is left out is told.
+
+    Args:
+        run: As it stands in the file.
+        table: The file, for its name and columns.
+        remarks: What was noticed; more is added.
+
+    Raises:
+        BadFile: What concerns too many rows to be a slip of single ones.
+    """
+    run = _without_copies(run, remarks)
+    run = _without_slips(run, table, remarks)
+    run = _with_clock(run, table, remarks)
+    _check_units(run, table)
+    _check_offset(run, table)
+    if not run.deviation.any():
+        remarks.append("every deviation is zero: nothing was measured")
+    return run
+
+
+def _without_copies(run: Run, remarks: list[str]) -> Run:
+    """The run without rows that stand twice; replicates differ in their readings or their time."""
+    t = run.touches
+    key = np.column_stack([t.q, t.point, t.normal, t.setup, t.time, run.deviation])
+    first = np.unique(key, axis=0, return_index=True)[1]
+    if len(first) == len(run):
+        return run
+    keep = np.zeros(len(run), dtype=bool)
+    keep[first] = True
+    count = int((~keep).sum())
+    what = "row stands twice; the copy is" if count == 1 else "rows stand twice; the copies are"
+    remarks.append(f"line {run.line[np.argmin(keep)]}: {count} {what} left out")
+    return run[keep]
+
+
+def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
+    """The run without single rows whose reading or deviation is impossible.
+
+    One reading far beyond the travel would be fitted without any residual, for nothing else tells
+    how errors go on out there; a deviation of centimetres says nothing about micrometres.
+    """
+    astray = np.zeros(len(run), dtype=bool)
+    for beyond, column, found, wanted in _beyond_travel(run, ASTRAY):
+        _tell_slip(run, table, beyond, column, found, wanted, remarks)
+        astray[beyond] = True
+    far = np.flatnonzero((np.abs(run.deviation) > ABSURD) & ~astray)
+    if len(far):
+        where = "column dev_um" if "dev_um" in table else "deviation computed from the readings"
+        found = f"{run.deviation[far[0]]:.4g} mm"
+        wanted = "some µm: units are mixed up, or the set-up, the probe or the machine is another"
+        _tell_slip(run, table, far, where, found, wanted, remarks)
+        astray[far] = True
+    run = run[~astray] if astray.any() else run
+    for beyond, column, found, wanted in _beyond_travel(run, AT_LIMIT):
+        line = run.line[beyond[0]]
+        remarks.append(f"line {line}, {column}: found {found}, expected {wanted}; it is used so")
+    return run
+
+
+def _beyond_travel(run: Run, slack: float) -> Iterator[tuple[IntArray, str, str, str]]:
+    """Rows beyond the travel of an axis by more than a share of it.
+
+    Yields:
+        For every axis: the rows, the column, what stood in the first, what was expected.
+    """
+    for i, (axis, (column, factor)) in enumerate(reading_columns(run.touches.chain).items()):
+        low, high = run.touches.chain.link(axis).range
+        margin = slack * (high - low)
+        q = run.touches.q[:, i]
+        rows = np.flatnonzero((q < low - margin) | (q > high + margin))
+        if len(rows):
+            travel = f"{low / factor:g} to {high / factor:g}"
+            wanted = f"a reading within the travel {travel} of axis {axis}"
+            yield rows, f"column {column}", f"{q[rows[0]] / factor:.6g}", wanted
+
+
+def _tell_slip(
+    run: Run,
+    table: CsvTable,
+    rows: IntArray,
+    where: str,
+    found: str,
+    wanted: str,
+    remarks: list[str],
+) -> None:
+    """Say that rows are left out, or raise BadFile where they are too many for slips."""
+    line = f"line {run.line[rows[0]]}"
+    if len(rows) > FEW * len(run):
+        more = f" and the like in {len(rows)} of {len(run)} rows" if len(rows) > 1 else ""
+        raise BadFile(table.path, f"{line}, {where}", f"{found}{more}", wanted)
+    others = [str(n) for n in run.line[rows[1 : LISTED + 1]]]
+    also = f", and so are lines {', '.join(others)}" if others else ""
+    more = f" and {len(rows) - 1 - LISTED} more" if len(rows) - 1 > LISTED else ""
+    remarks.append(
+        f"{line}, {where}: {found} cannot be, expected {wanted}; the row is left out{also}{more}"
+    )
+
+
+def _with_clock(run: Run, table: CsvTable, remarks: list[str]) -> Run:
+    """The run without its times, if its clock goes back; one that stands still is told."""
+    time = run.touches.time
+    if "time_s" in table and len(run) > 1 and np.ptp(time) == 0.0:
+        remarks.append(f"time_s is {time[0]:g} in every row: no effect of time can be found")
+    back = np.flatnonzero(np.diff(time) < 0.0)
+    if not len(back):
+        return run
+    i = int(back[0])
+    remarks.append(
+        f"line {run.line[i + 1]}: time_s goes back from {time[i]:g} to {time[i + 1]:g}; "
+        "time is left out, so that no effect of time can be found; everything else is used"
+    )
+    return replace(run, touches=replace(run.touches, time=np.zeros(len(run))))
+
+
+def _check_units(run: Run, table: CsvTable) -> None:
+    """Refuse stated deviations that are those of the readings, but in another unit or sign.
+
+    ``stated = k * computed`` with nothing left over: k = 1 is a file that says the same twice; a
+    distance of an instrument beside the machine, whose readings are nominal, fits no k.
+    """
+    if "dev_um" not in table:
+        return
+    computed = computed_deviation(run.touches)
+    power, told = float(computed @ computed), float(run.deviation @ run.deviation)
+    if power == 0.0 or told == 0.0:
+        return
+    product = float(computed @ run.deviation)
+    if product**2 < ALIKE * power * told:
+        return
+    for factor, words in _OTHER_UNITS.items():
+        if abs(product / power / factor - 1.0) < 0.05:
+            found = f"typically {np.median(np.abs(run.deviation)) / UM:.3g}"
+            expected = f"{np.median(np.abs(computed)) / UM:.3g} as the readings say: are these"
+            raise BadFile(table.path, "column dev_um", found, f"{expected} {words}?")
+
+
+def _check_offset(run: Run, table: CsvTable) -> None:
+    """Refuse deviations that are large and alike on every side of the standard.
+
+    ``dev = offset + n . shift`` with a shift of each set-up: wrong radii of the ball make the
+    offset, wrong places of the standard the shifts.
+    """
+    touches = run.touches
+    sides = [touches.normal * (touches.setup == i)[:, None] for i in range(len(touches.setups))]
+    A = np.column_stack([np.ones(len(run)), *sides])
+    offset = float(np.linalg.lstsq(A, run.deviation, rcond=None)[0][0])
+    if abs(offset) < OFFSET or not _is_told_apart(A):
+        return
+    rest = run.deviation - offset
+    rest = rest - A[:, 1:] @ np.linalg.lstsq(A[:, 1:], rest, rcond=None)[0]
+    if np.sqrt(np.mean(rest**2)) > 0.2 * abs(offset):
+        return
+    radius = float(np.median(touches.radius))
+    inwards = abs(offset / (2.0 * radius) + 1.0) < 0.1 if radius else False
+    raise BadFile(
+        table.path,
+        "nx, ny, nz" if inwards else "probe.radius_mm",
+        f"{'normals' if inwards else f'{radius:g}'} by which every side of the standard stands "
+        f"{abs(offset):.3g} mm {'inside' if offset < 0.0 else 'outside'} its place",
+        "normals that point out of the standard"
+        if inwards
+        else "the radius of the ball, or deviations of some µm",
+    )
+
+
+def _is_told_apart(A: Array) -> bool:
+    """Whether an offset is something else than shifts: normals point to several sides."""
+    rest = A[:, 0] - A[:, 1:] @ np.linalg.lstsq(A[:, 1:], A[:, 0], rcond=None)[0]
+    return bool(np.sqrt(np.mean(rest**2)) > 0.1)
