@@ -20,6 +20,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="what Z the control returns from cycle 4: of the spindle gauge point or of the ball's "
         "pole, which a calibrated sphere shows (gauge)",
     )
+    parser.add_argument(
+        "--sensors",
+        metavar="SENSORS.csv",
+        help="temperatures by the clock of the control: columns clock (2031-05-06T07:08:09) and "
+        "T_<sensor>_degC",
+    )
     parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
     parser.add_argument("--force", action="store_true", help="overwrite the output")
 
@@ -39,6 +45,7 @@ def run(args: argparse.Namespace) -> int:
     from twin.errors import DesignError
     from twin.files.machine_file import read_machine
     from twin.files.run_writer import write_run
+    from twin.files.sensor_file import read_sensors
     from twin.files.whole import refuse_to_overwrite
     from twin.units import UM
 
@@ -49,6 +56,8 @@ def run(args: argparse.Namespace) -> int:
     standard = read_standard(args.standard)
     parts = [part for path in args.logs for part in read_log(path, chain.rotary_axes)]
     measured = evaluate(parts, standard, chain, args.u_um * UM, Dialect(result_height=args.z))
+    if args.sensors:
+        measured = read_sensors(args.sensors).joined(measured, min(part.begin for part in parts))
     folder = Path(args.output).resolve().parent
     write_run(args.output, measured, Path(os.path.relpath(args.machine, folder)).as_posix())
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
@@ -56,6 +65,8 @@ def run(args: argparse.Namespace) -> int:
         f"{args.output}: {len(measured)} touches at {len(np.unique(measured.touches.pose))} table "
         f"poses, deviations {rms:.3f} µm rms after the set-up was fitted"
     )
+    for remark in measured.remarks:
+        say(f"- {remark}")
     for part in parts:
         if not part.is_complete:
             say(f"- {part.path}: {part.program} stopped after {len(part.number)} touches")

@@ -2,6 +2,7 @@
 
 import shutil
 from dataclasses import replace
+from datetime import timedelta
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 from artefact.standard_file import write_standard
 from matstd.cli import main
+from probe_paths.virtual import FIRST_MORNING
 from twin.files.run_file import read_run
 from twin.units import NM, UM
 
@@ -166,3 +168,14 @@ def test_evaluate_refuses_in_one_line(folder, capsys, more, expected):
     assert expected in message
     assert message.count("\n") == 1
     assert not (folder / "read" / "run.csv").exists()
+
+
+def test_temperatures_by_the_clock_come_with_the_run(folder):
+    assert command(folder, "--logs", str(folder / "logs")) == 0
+    sensors = folder / "sensors.csv"
+    rows = [f"{FIRST_MORNING + timedelta(minutes=k):%Y-%m-%dT%H:%M:%S},{20 + k}" for k in (0, 60)]
+    sensors.write_text("\n".join(["clock,T_ram_degC", *rows]) + "\n", encoding="utf-8")
+    assert evaluated(folder, "--sensors", str(sensors)) == 0
+    touches = read_run(folder / "read" / "run.csv").touches
+    started = np.round(touches.temperature["ram"] - 20.0 - touches.time / 60.0, 3)
+    assert np.ptp(started) < 0.002  # a kelvin a minute from the start of the first program
