@@ -112,12 +112,13 @@ def max_slope(patch: FreeformPatch) -> float:
 def overhang(patch: FreeformPatch, base: Base) -> float:
     """How far the column of a patch reaches beyond the outline of the base, mm; negative inside.
 
-    Its four edges are followed from the mean plane of the face down to the top of the base.
+    Its four edges are followed from the mean plane of the face down to mid-base, where the column
+    is cut off: one that leans outwards could else come out through the side of the base.
     """
     (a, b), T = patch.half_size, patch.T_artefact_patch
     corners = apply(T, np.array([[x, y, 0.0] for x in (-a, a) for y in (-b, b)]))
-    to_base = (corners[:, 2] - base.thickness) / max(T[2, 2], 1e-9)
-    ends = corners - np.clip(to_base, 0.0, patch.depth)[:, None] * T[:3, 2]
+    to_cut = (corners[:, 2] - 0.5 * base.thickness) / max(T[2, 2], 1e-9)
+    ends = corners - np.clip(to_cut, 0.0, patch.depth)[:, None] * T[:3, 2]
     both = np.concatenate([corners, ends])[:, :2]
     return float(outline_distance(both, base.half_size, base.corner_radius).max())
 

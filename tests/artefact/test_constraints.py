@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.constraints import Limits, max_slope, min_concave_radius
+from artefact.constraints import Limits, max_slope, min_concave_radius, overhang
 from artefact.freeform import OVERHANG, graph_patch
-from artefact.sites import Fittings, Frame, Site, standard_from_sites
+from artefact.sites import Fittings, Frame, Site, patch_of_site, standard_from_sites
 from artefact.spline import clamped_knots
 from artefact.standard import Base
 from twin.errors import NotBuildable, ShapeMismatch
@@ -89,6 +89,19 @@ def test_patch_beyond_the_blank(standard):
     wide = changed(standard, 5, T_artefact_patch=T)
     with pytest.raises(NotBuildable, match="FF6: reach beyond the outline of the blank"):
         wide.check(LIMITS)
+
+
+def test_column_that_leans_out_through_the_side_of_the_base():
+    # looks inwards at 45 degrees, so its column runs outwards: its outer corners pass the top of
+    # the base at radius + 18 cos 45 + (height + 18 sin 45 - 30), here 5 mm within the outline,
+    # and leave through its side 5 mm lower, 10 mm above mid-base, where the column is cut off
+    base = Base()
+    radius = base.half_size[0] - 5.0 - 18.0 * np.sqrt(2.0) - (90.0 - base.thickness)
+    site = Site(0.0, radius, 90.0, 45 * DEG, (18.0, 20.0), FLAT, lean=180 * DEG)
+    leaning = patch_of_site("FF1", site, base)
+    assert overhang(leaning, base) == pytest.approx(0.5 * base.thickness - 5.0, abs=1e-9)
+    further_in = replace(site, radius=radius - 10.0)
+    assert overhang(patch_of_site("FF1", further_in, base), base) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_overlapping_patches(standard):
