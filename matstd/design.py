@@ -185,15 +185,25 @@ def _placement(
         workspace,
         rng,
         project.ranges,
-        PlacementOptions(
-            wanted.name,
-            wanted.serial,
-            wanted.patches,
-            wanted.touches,
-            noise=project.noise,
-            criterion=wanted.criterion,
-        ),
+        placement_options(project),
         progress,
+    )
+
+
+def placement_options(project: Project) -> PlacementOptions:
+    """How much is tried and measured, and what for."""
+    wanted = project.standard
+    return PlacementOptions(
+        name=wanted.name,
+        serial=wanted.serial,
+        patches=wanted.patches,
+        touches=wanted.touches,
+        poses=wanted.poses,
+        noise=project.noise,
+        criterion=wanted.criterion,
+        potential=wanted.potential,
+        draws=wanted.drawn_machines,
+        tail=wanted.worst_share,
     )
 
 

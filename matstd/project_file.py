@@ -46,7 +46,11 @@ class StandardTable(Table):
     expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
     patches: int = Field(default=10, ge=8, le=16)
     touches: int = Field(default=480, ge=100, le=2000)
-    criterion: Literal["I", "D", "A"] = "I"
+    poses: int = Field(default=30, ge=8, le=100)
+    criterion: Literal["I", "G", "D", "A", "E"] = "I"
+    potential: float = Field(default=0.3, ge=0.0, le=0.95)
+    drawn_machines: int = Field(default=0, ge=0, le=100)
+    worst_share: float = Field(default=1.0, gt=0.0, le=1.0)
 
 
 class SetupTable(Table):
@@ -95,7 +99,8 @@ class Project:
         digits: Significant digits that have to be stable (JCGM 101); 0 for none.
         tolerance: Volumetric error that users allow, mm; infinite where they said nothing.
         expected: Errors that the machine is expected to have.
-        standard: Name, material, expansion, number of patches and touches, criterion.
+        standard: Name, material, expansion, number of patches, touches and table poses, and what
+            they are chosen for.
         setup: Where the standard stands on the table.
         noise: Standard deviation of one simulated touch, mm.
         machines: Number of random machines of the proof.
@@ -158,6 +163,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
             f"{table.montecarlo.draws} with digits = {table.montecarlo.digits}",
             f"{2 * MACHINES_A_BATCH} or more: stable digits need two batches",
         )
+    _check_choice(table.standard, path)
     name, setup = next(iter(table.setup.items()))
     return Project(
         path=path,
@@ -180,6 +186,24 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         noise=table.simulation.noise_um * UM,
         machines=table.simulation.machines,
     )
+
+
+def _check_choice(wanted: StandardTable, path: Path) -> None:
+    """Keys of `[standard]` that contradict one another."""
+    if wanted.worst_share < 1.0 and not wanted.drawn_machines:
+        raise BadFile(
+            path,
+            "standard.worst_share",
+            f"{wanted.worst_share:g} with drawn_machines = 0",
+            "drawn machines of which that share is the worst, or no such key",
+        )
+    if wanted.poses * 2 > wanted.touches:
+        raise BadFile(
+            path,
+            "standard.poses",
+            f"{wanted.poses} with touches = {wanted.touches}",
+            "two touches or more for every table pose",
+        )
 
 
 def _workspace(

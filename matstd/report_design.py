@@ -103,7 +103,7 @@ def _standard(design: Design) -> dict[str, Any]:
     return {
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
         "certificate": design.placement.certificate,
-        "criterion": CRITERIA[design.placement.criterion.name],
+        "criterion": _criterion(design),
         "comparison": [
             {
                 "name": r.name,
@@ -143,6 +143,20 @@ def _standard(design: Design) -> dict[str, Any]:
             ),
         ],
     }
+
+
+def _criterion(design: Design) -> str:
+    """What the touches were chosen for, in words."""
+    wanted = design.project.standard
+    words = [CRITERIA[wanted.criterion]]
+    if wanted.drawn_machines:
+        which = "" if wanted.worst_share == 1.0 else f"the worst {wanted.worst_share:.0%} of "
+        words.append(f"averaged over {which}{wanted.drawn_machines} drawn machines")
+    if wanted.potential and wanted.criterion == "D":
+        words.append("with the effects of the library beside them")
+    elif wanted.potential:
+        words.append(f"with a share of {wanted.potential:.0%} for showing effects of the library")
+    return ", ".join(words)
 
 
 def _at_most(um: float) -> str:

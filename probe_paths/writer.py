@@ -1,5 +1,6 @@
 """The blocks of a plan's programs, in the order in which a cautious operator would have them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,9 @@ from probe_paths.plan import TouchPlan
 from twin.frames import Array, apply
 from twin.touches import IntArray
 from twin.units import DEG, MINUTE
+
+_LONGEST_TITLE = k.MAX_LINE - len("12345 * - ")
+"""Characters of the title of a visit beside its block number and mark."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +71,7 @@ class Writer:
         here = home_readings(self.plan.chain)
         for count, v in enumerate(part):
             visit = self.plan.visits[v]
-            out.add(k.structure(self._visit_title(count + 1, len(part), visit)))
+            out.add(k.structure(visit_title(self.rotary, count + 1, len(part), visit)))
             self._turn(out, here, visit)
             self._touches(out, visit, np.flatnonzero(self.plan.visit == v))
             here = visit.rotary
@@ -139,13 +143,6 @@ class Writer:
         control = self.dialect.on_control
         return k.print_masked(control(mask), control(f"{name}.TXT"))
 
-    def _visit_title(self, count: int, total: int, visit: Visit) -> str:
-        words = [
-            f"{a}{v / DEG:+.2f} FROM {'BELOW' if s > 0 else 'ABOVE'}"
-            for a, v, s in sorted(zip(self.rotary, visit.rotary, visit.side, strict=True))
-        ]
-        return " ".join([f"VISIT {count} OF {total}, POSE {visit.pose + 1}:", *words])
-
     def _turn(self, out: k.Listing, here: Array, visit: Visit) -> None:
         """Retract, turn past the position, then to it from the stated side."""
         out.add(self.retract)
@@ -209,3 +206,22 @@ class Writer:
             k.OPERATOR_STOP,
             k.stop_with_error(INPUT_VALUE_INCORRECT),
         )
+
+
+def visit_title(rotary: Sequence[str], count: int, total: int, visit: Visit) -> str:
+    """Which visit it is, where, and from which side its rotary readings are reached.
+
+    Args:
+        rotary: Names of the rotary axes.
+        count: Number of the visit in its program, from 1.
+        total: Number of visits of its program.
+        visit: The visit.
+    """
+    words = [
+        f"{a}{v / DEG:+.2f} FROM {'BELOW' if s > 0 else 'ABOVE'}"
+        for a, v, s in sorted(zip(rotary, visit.rotary, visit.side, strict=True))
+    ]
+    title = " ".join([f"VISIT {count} OF {total}, POSE {visit.pose + 1}:", *words])
+    if len(title) <= _LONGEST_TITLE:
+        return title
+    return title.replace(" FROM ", " ").replace(" OF ", "/").replace(", POSE", " POSE")

@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from artefact.criterion import CRITERIA, Wishes
+from artefact.placement import PlacementOptions
 from matstd.cli import main
+from matstd.design import placement_options
 from matstd.project_file import read_project
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
@@ -51,6 +54,7 @@ def test_every_file_is_there(made: Path) -> None:
         "standard.stl",
         "run.csv",
         "identification.json",
+        "identifiability.json",
         "report.html",
         "errors.toml",
         "machine.toml",
@@ -117,6 +121,15 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("# [errors.parameters]", "[errors.parameters]\nEQQ = [1.0, 2.0]", "EQQ"),
         ("# [errors.parameters]", "[errors.parameters]\nEXX = [3.0, 2.0]", "smaller first"),
         ("[simulation]", "[simulation", "TOML"),
+        ('criterion = "I"', 'criterion = "C"', "standard.criterion"),
+        ("potential = 0.3", "potential = 1.0", "standard.potential"),
+        ("potential = 0.3", "potential = -0.1", "standard.potential"),
+        ("drawn_machines = 0", "drawn_machines = 2.5", "standard.drawn_machines"),
+        ("drawn_machines = 0", "drawn_machines = -1", "standard.drawn_machines"),
+        ("worst_share = 1.0", "worst_share = 0.0", "standard.worst_share"),
+        ("worst_share = 1.0", "worst_share = 0.25", "drawn_machines = 0"),
+        ("poses = 30 ", "poses = 4 ", "standard.poses"),
+        ("touches = 240", "touches = 50", "standard.touches"),
     ],
 )
 def test_bad_project(
@@ -131,6 +144,30 @@ def test_bad_project(
     assert expected in told
     assert told.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
+    """The defaults are those of the example; every criterion and wish reaches the placement."""
+    path = small_project(tmp_path)
+    text = path.read_text()
+    assert placement_options(read_project(path)) == PlacementOptions(
+        name="FFS-600U", serial="001", patches=8, touches=240
+    )
+    plain = re.sub(
+        r"(?m)^(criterion|potential|drawn_machines|worst_share|poses = 30).*\n", "", text
+    )
+    assert "potential" not in re.sub("#.*", "", plain)
+    path.write_text(plain)
+    assert placement_options(read_project(path)).wishes == Wishes(0.3, 240)
+    for criterion in CRITERIA:
+        wanted = text.replace('criterion = "I"', f'criterion = "{criterion}"')
+        for key, value in (("drawn_machines", "8"), ("worst_share", "0.5"), ("potential", "0.1")):
+            wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
+        path.write_text(wanted.replace("poses = 30 ", "poses = 12 "))
+        options = placement_options(read_project(path))
+        assert options.criterion == criterion
+        assert options.poses == 12
+        assert options.wishes == Wishes(0.1, 240, 8, 0.5)
 
 
 def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Emitted programs: golden files, limits of the control, what an operator relies on."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,12 +9,12 @@ import pytest
 from probe_paths.blocks import Kind, read_blocks
 from probe_paths.clock import Clock
 from probe_paths.dialect import Dialect
-from probe_paths.klartext import ProbeWords
+from probe_paths.klartext import MAX_LINE, ProbeWords
 from probe_paths.plan import PlanOptions, requests_at
 from probe_paths.planner import plan_touches
 from probe_paths.probe import Probe
 from probe_paths.program import make_programs
-from probe_paths.writer import Feeds
+from probe_paths.writer import Feeds, visit_title
 from twin.chain import Axis, make_chain
 from twin.errors import DesignError
 from twin.touches import Setup
@@ -175,3 +176,13 @@ def test_other_machines_are_programmed_by_the_same_code(golden, notation, letter
     assert made.programs[0].touches == 3
     words = [f"{a}{v:+.4f}" for a, v in sorted(zip(letters, pose, strict=True))]
     assert " ".join(["L", *words, "R0 F1000"]) in made.programs[0].text or not letters
+
+
+def test_titles_of_many_visits_fit_on_their_lines(plan):
+    """Three digits of visits and poses, and two readings of three digits."""
+    visit = replace(plan.visits[0], pose=104, rotary=np.array([-120.25, -110.5]) * DEG)
+    title = visit_title(("C", "B"), 118, 240, visit)
+    assert re.match(
+        r"VISIT 118/240 POSE 105: B-110\.50 (BELOW|ABOVE) C-120\.25 (BELOW|ABOVE)", title
+    )
+    assert len(f"12345 * - {title}") <= MAX_LINE
