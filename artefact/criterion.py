@@ -234,9 +234,9 @@ def _scales(
         DesignError: The model is not that of the ranges.
     """
     population = Population(probing.chain, ranges or Ranges())
-    if population.model.names != model.names:
+    if not set(model.names) <= set(population.model.names):
         raise DesignError("machines can be drawn for the errors of a population alone")
-    scale = drawn_scales(population, draws, rng)
+    scale = drawn_scales(population, draws, rng, model)
     scale[:, _is_setup(model)] = 1.0
     return scale
 

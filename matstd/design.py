@@ -229,6 +229,6 @@ def _prove(
         project.chain, lambda touches: contribution(errors, touches), noise=project.noise
     )
     campaign = simulate(programs, placement.standard, machine, rng_noise)
-    fit = fit_run(campaign.run, population.model)
+    fit = fit_run(campaign.run, population.expected())
     poses = probed_volume(campaign.run, PROOF_POSES, rng_poses)
     return Proven(seed, errors, campaign, fit, prove(fit, errors, project.setup, poses))

@@ -116,6 +116,25 @@ class Population:
                     effects.append(ComponentError(symbol, shape, float(n), _QUARTER, sd))
         return Model(self.chain, tuple(effects))
 
+    def expected(self, free: str = "") -> Model:
+        """The same without errors that are stated to be zero: nothing is to be found out of them.
+
+        Args:
+            free: Letters of the links whose set-up stays all the same: "w", "t" or both.
+        """
+        return Model(
+            self.chain,
+            tuple(
+                effect
+                for effect in self.model.effects
+                if isinstance(effect, ComponentError | LocationError)
+                and (
+                    effect.sd > 0.0
+                    or (effect.symbol.family is Family.SETUP and effect.symbol.link in free)
+                )
+            ),
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Draws:
