@@ -10,6 +10,7 @@ from artefact.datum import DatumSphere, outline_distance
 from artefact.freeform import FreeformPatch
 from artefact.patch import rows
 from artefact.standard import Base, Standard
+from twin.errors import NotBuildable
 from twin.frames import Array, apply
 from twin.units import DEG
 
@@ -84,6 +85,25 @@ def constraints(standard: Standard, limits: Limits) -> tuple[Constraint, ...]:
     found += _of_holes(standard)
     found.append(_at_most("mass", standard.name, standard.mass(step=6.0), limits.max_mass, "kg"))
     return tuple(found)
+
+
+def check(standard: Standard, limits: Limits) -> None:
+    """Refuse a standard that cannot be made or probed.
+
+    Raises:
+        NotBuildable: Names the constraint that binds most, and how many more are violated.
+    """
+    violated = sorted((c for c in constraints(standard, limits) if c.slack < 0.0), key=_severity)
+    if violated:
+        more = f" (and {len(violated) - 1} more)" if len(violated) > 1 else ""
+        raise NotBuildable(
+            f"standard '{standard.name}': {violated[0]}{more}",
+            constraints=violated,
+        )
+
+
+def _severity(constraint: Constraint) -> float:
+    return constraint.slack / max(abs(constraint.limit), 1e-9)
 
 
 def min_concave_radius(patch: FreeformPatch) -> float:

@@ -1,9 +1,6 @@
 """What a moving ball meets first on a whole standard: face, trimmed edge, column, stem or base."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +8,9 @@ from artefact.body import entry
 from artefact.datum import DatumSphere
 from artefact.freeform import FreeformPatch
 from artefact.patch import Mask, Meeting, rows, sphere_entry, unit
+from artefact.standard import Standard
 from twin.frames import Array, apply, turn
 from twin.units import NM
-
-if TYPE_CHECKING:
-    from artefact.standard import Standard
 
 _EDGE_PITCH = 0.5  # mm, of the samples of a trimmed edge
 _BLOCK = 2_000_000  # numbers held at once while edges are searched

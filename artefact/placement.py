@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from artefact.attribution import error_shares, parameter_symbols
 from artefact.candidates import neighbours_fit, random_sites
 from artefact.comparison import Rival, before, compare, judged, random_lots
-from artefact.constraints import Constraint
+from artefact.constraints import Constraint, constraints
 from artefact.criterion import Criterion, criterion, random_touches
 from artefact.shaping import shaped
 from artefact.sites import Frame, Site, patch_of_site, standard_from_sites
@@ -106,7 +106,7 @@ def place(
     options = options or PlacementOptions()
     _check_blank(frame.base, probing)
     ranges = ranges or Ranges()
-    model = Population(probing.chain, ranges).model
+    model = Population(probing.chain, ranges).expected("w")
     aim = criterion(
         probing,
         model,
@@ -187,7 +187,7 @@ def _standard(
             refused = str(error)
             _forbid(fits, [chosen[-1]])
             continue
-        broken = [c for c in standard.constraints(frame.limits) if c.slack < 0.0]
+        broken = [c for c in constraints(standard, frame.limits) if c.slack < 0.0]
         if not broken:
             return standard
         refused = str(broken[0])

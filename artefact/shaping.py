@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from artefact.candidates import CONTROL, STEEPEST, TALLEST, strength
-from artefact.constraints import Limits
+from artefact.constraints import Limits, constraints
 from artefact.criterion import Criterion
 from artefact.freeform import FreeformPatch, graph_patch
 from artefact.patch import unit
@@ -63,14 +63,14 @@ def shaped(
     slopes = wanted_slopes(aim, standard, poses, options, rng)
     patches = tuple(_reshaped(p, slopes[p.name], limits) for p in standard.patches)
     made = replace(standard, patches=patches)
-    broken = [c for c in made.constraints(limits) if c.slack < 0.0]
+    broken = [c for c in constraints(made, limits) if c.slack < 0.0]
     words = {word for c in broken for word in (c.subject, c.name.split()[-1])}
     if not words:
         return made
     both = zip(standard.patches, patches, strict=True)
     kept = tuple(old if old.name in words else new for old, new in both)
     made = replace(standard, patches=kept)
-    return standard if any(c.slack < 0.0 for c in made.constraints(limits)) else made
+    return standard if any(c.slack < 0.0 for c in constraints(made, limits)) else made
 
 
 def wanted_slopes(

@@ -118,7 +118,7 @@ def standard_from_sites(
     Columns run back along their patch's own direction until they are rooted in the base or reach
     the axis of the standard, where a core as large as their ends receives them. Spheres and
     holes take the places along the rim that are free and as far from each other as possible.
-    The result is not checked against the limits: call `Standard.check`.
+    The result is not checked against the limits: call `artefact.constraints.check`.
 
     Args:
         name: Type of the standard.

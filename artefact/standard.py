@@ -1,10 +1,7 @@
 """The whole standard: one body with freeform patches, datum spheres, datum plane and holes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,13 +9,8 @@ from artefact.body import Ball, Body, Column, Cone, Plate, column
 from artefact.datum import DatumPlane, DatumSphere, MountingHole
 from artefact.freeform import FreeformPatch
 from artefact.patch import Surface
-from twin.errors import NotBuildable, ShapeMismatch
+from twin.errors import ShapeMismatch
 from twin.frames import Array
-
-if TYPE_CHECKING:
-    from artefact.clearance import Clearance, ProbeShape
-    from artefact.constraints import Constraint, Limits
-    from artefact.meeting import Contact
 
 DATUM_PLANE = "DATUM_A"
 
@@ -178,42 +170,3 @@ class Standard:
     def mass(self, step: float = 4.0) -> float:
         """Estimate of the mass, kg."""
         return self.material.density * self.volume(step)
-
-    def contact(
-        self, start: Array, direction: Array, radius: float, travel: float = np.inf
-    ) -> Contact:
-        """What each moving ball meets first; see `artefact.meeting.contact`."""
-        from artefact.meeting import contact
-
-        return contact(self, start, direction, radius, travel)
-
-    def clearance(self, centre: Array, tool_axis: Array, probe: ProbeShape) -> Clearance:
-        """Room between probe and standard; see `artefact.clearance.clearance`."""
-        from artefact.clearance import clearance
-
-        return clearance(self, centre, tool_axis, probe)
-
-    def constraints(self, limits: Limits) -> tuple[Constraint, ...]:
-        """Every constraint on a buildable standard with its slack; see `artefact.constraints`."""
-        from artefact.constraints import constraints
-
-        return constraints(self, limits)
-
-    def check(self, limits: Limits) -> None:
-        """Refuse a standard that cannot be made or probed.
-
-        Raises:
-            NotBuildable: Names the constraint that binds most, and how many more are violated.
-        """
-        violated = sorted((c for c in self.constraints(limits) if c.slack < 0.0), key=_severity)
-        if violated:
-            worst = violated[0]
-            more = f" (and {len(violated) - 1} more)" if len(violated) > 1 else ""
-            raise NotBuildable(
-                f"standard '{self.name}': {worst}{more}",
-                constraints=violated,
-            )
-
-
-def _severity(constraint: Constraint) -> float:
-    return constraint.slack / max(abs(constraint.limit), 1e-9)

@@ -1,4 +1,7 @@
-"""Which touches a machine can make on a standard: angle, travel, room for the probe."""
+"""Which touches a machine can make on a standard: angle, travel, room for the probe, free ways.
+
+Whoever chooses touches and whoever plans them asks here; they differ only in the margins they want.
+"""
 
 from dataclasses import dataclass, fields
 
@@ -6,7 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from artefact.body import Plate
-from artefact.clearance import ProbeShape, clearance
+from artefact.clearance import (
+    TABLE_RADIUS,
+    TABLE_THICKNESS,
+    Clearance,
+    ProbeShape,
+    clearance_on_table,
+)
+from artefact.meeting import contact
 from artefact.patch import Meeting
 from artefact.standard import Standard
 from twin.chain import Chain
@@ -17,8 +27,12 @@ from twin.units import DEG
 
 Mask = NDArray[np.bool_]
 
+_WORDS = "U200"  # of a reason
 _LIFT = 400.0  # mm the ball comes down from, far above any standard
 _WIDER = 1.0  # mm added to the ball on its way down
+_ROUNDING = (
+    1e-9  # mm or rad: a reading at the very end of a travel is inside, whatever its last digit
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +95,8 @@ class Probing:
     room: float = 2.0
     standoff: float = 5.0
     search: float = 3.0
-    table_radius: float = 160.0
-    table_thickness: float = 60.0
+    table_radius: float = TABLE_RADIUS
+    table_thickness: float = TABLE_THICKNESS
 
     @property
     def radius(self) -> float:
@@ -150,73 +164,118 @@ class Probing:
 
     def is_reachable(self, wanted: Requests) -> Mask:
         """Touches within the angle to the tool axis and within every travel, (N,)."""
-        stands = self._stands(wanted)
-        axis = stands.T_table_tool[stands.index, :3, 2]
-        n = turn(self.setup.T_table_artefact, wanted.normal)
-        good: Mask = np.einsum("ni,ni->n", axis, n) >= np.cos(self.steepest)
-        for gap in (self.standoff, 0.0, -self.search):
-            q = self.readings(wanted, gap)
-            for i, name in enumerate(self.chain.axes):
-                low, high = self.chain.link(name).range
-                good &= (q[:, i] >= low) & (q[:, i] <= high)
+        good: Mask = self._lean(wanted) >= np.cos(self.steepest)
+        for gap in self._gaps:
+            good &= (self._outside(self.readings(wanted, gap)) == 0.0).all(axis=1)
         return good
 
     def is_clear(self, standard: Standard, wanted: Requests) -> Mask:
         """Touches with room for the probe, a free way down and nothing in front of them, (N,)."""
-        good = self.has_room(standard, wanted)
-        rows = np.flatnonzero(good)
-        good[rows] = self.has_room(standard, wanted[rows], self.standoff)
-        rows = np.flatnonzero(good)
-        good[rows] = self._way_is_free(standard, wanted[rows])
+        good: Mask = self._obstructions(standard, wanted) == ""
         return good
 
-    def has_room(self, standard: Standard, wanted: Requests, gap: float = 0.0) -> Mask:
-        """Touches at which nothing comes near the probe above its ball, (N,).
+    def has_room(self, standard: Standard, wanted: Requests) -> Mask:
+        """Touches at which nothing comes near the probe above its ball, (N,)."""
+        good: Mask = self._room(standard, wanted, 0.0).distance >= self.room
+        return good
 
-        Args:
-            standard: What is touched.
-            wanted: The touches.
-            gap: Between ball and surface, mm.
-        """
-        T_artefact_table = inverse(self.setup.T_table_artefact)
+    def reasons(self, standard: Standard, wanted: Requests) -> Labels:
+        """The first thing that is against each touch, in words; empty where nothing is, (N,)."""
+        reason = np.full(len(wanted), "", dtype=_WORDS)
+        good = self.is_reachable(wanted)
+        bad = np.flatnonzero(~good)
+        reason[bad] = [self._out_of_reach(wanted[bad[i : i + 1]]) for i in range(len(bad))]
+        rows = np.flatnonzero(good)
+        reason[rows] = self._obstructions(standard, wanted[rows])
+        return reason
+
+    @property
+    def _gaps(self) -> tuple[float, float, float]:
+        """Between ball and surface at the start of a touch, at the contact, at the search's end."""
+        return (self.standoff, 0.0, -self.search)
+
+    def _lean(self, wanted: Requests) -> Array:
+        """Cosine of the angle between normal and tool axis, (N,)."""
         stands = self._stands(wanted)
-        T_table_tool = stands.T_table_tool[stands.index]
-        ball = wanted.point + (self.radius + gap) * wanted.normal
-        axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
-        above = clearance(standard, ball, axis, self.shape, enough=self.room)
-        good: Mask = above.distance >= self.room
-        rows = np.flatnonzero(good)
-        centre = apply(self.setup.T_table_artefact, ball[rows])
-        good[rows] = self._is_above_table(T_table_tool[rows], centre)
-        return good
+        axis = stands.T_table_tool[stands.index, :3, 2]
+        cosine: Array = np.einsum(
+            "ni,ni->n", axis, turn(self.setup.T_table_artefact, wanted.normal)
+        )
+        return cosine
 
-    def _is_above_table(self, T_table_tool: Array, centre: Array) -> Mask:
-        """Whether ball and probe keep their distance from the table, (N,)."""
+    def _outside(self, q: Array) -> Array:
+        """How far readings (N, A) are beyond the ends of their travels, (N, A), mm and rad."""
+        low, high = np.array([self.chain.link(name).range for name in self.chain.axes]).T
+        beyond: Array = np.maximum(np.maximum(low - q, q - high) - _ROUNDING, 0.0)
+        return beyond
+
+    def _out_of_reach(self, one: Requests) -> str:
+        """Why one touch is not within angle and travels."""
+        cosine = float(self._lean(one)[0])
+        if cosine < np.cos(self.steepest):
+            angle = np.arccos(np.clip(cosine, -1.0, 1.0)) / DEG
+            return f"the surface leans {angle:.1f} degrees from the tool axis"
+        for gap in self._gaps:
+            q = self.readings(one, gap)
+            for i in np.flatnonzero(self._outside(q)[0]):
+                link = self.chain.link(self.chain.axes[i])
+                unit, word = (1.0, "mm") if link.kind == "linear" else (DEG, "degrees")
+                value, low, high = q[0, i] / unit, link.range[0] / unit, link.range[1] / unit
+                return f"{link.name} would have to go to {value:.1f}, {low:g} to {high:g} {word}"
+        return ""
+
+    def _obstructions(self, standard: Standard, wanted: Requests) -> Labels:
+        """What is in the way of probe and ball, cheapest look first; empty where nothing, (N,)."""
+        reason = np.full(len(wanted), "", dtype=_WORDS)
+        for look in (self._tight, self._tight_at_start, self._way_down, self._way_in):
+            rows = np.flatnonzero(reason == "")
+            reason[rows] = look(standard, wanted[rows])
+        return reason
+
+    def _tight(self, standard: Standard, wanted: Requests, gap: float = 0.0) -> Labels:
+        near = self._room(standard, wanted, gap)
+        words = [
+            f"{g:.2f} mm between probe and {b}" if g < self.room else ""
+            for g, b in zip(near.distance.tolist(), near.body.tolist(), strict=True)
+        ]
+        return np.array(words, dtype=_WORDS)
+
+    def _tight_at_start(self, standard: Standard, wanted: Requests) -> Labels:
+        return self._tight(standard, wanted, self.standoff)
+
+    def _room(self, standard: Standard, wanted: Requests, gap: float) -> Clearance:
+        """How near anything comes to the probe above its ball, and the table to the ball."""
+        stands = self._stands(wanted)
+        place = self.setup.T_table_artefact
+        centre = apply(place, wanted.point + (self.radius + gap) * wanted.normal)
         r = self.table_radius
         table = Plate((r, r), r, -self.table_thickness, 0.0)
-        good = np.zeros(len(centre), dtype=bool)
-        for places, radii in (self.shape.rough_cover(), self.shape.fine_cover()):
-            rows = np.flatnonzero(~good)  # a finer cover for those that a rough one refuses
-            balls = centre[rows, None] + np.einsum(
-                "nij,kj->nki", T_table_tool[rows, :3, :3], places
-            )
-            gap = table.distance(balls.reshape(-1, 3)).reshape(balls.shape[:2]) - radii
-            good[rows] = gap.min(axis=1) >= self.room
-        good &= table.distance(centre) - self.radius >= self.room
-        return good
+        T_table_tool = stands.T_table_tool[stands.index]
+        return clearance_on_table(
+            standard, place, T_table_tool, centre, self.shape, table, enough=self.room
+        )
 
-    def _way_is_free(self, standard: Standard, wanted: Requests) -> Mask:
-        """The ball meets nothing on its way down, and first the wanted feature on its way in."""
-        T_artefact_table = inverse(self.setup.T_table_artefact)
+    def _way_down(self, standard: Standard, wanted: Requests) -> Labels:
+        """What the ball meets on its way down to the start."""
+        up = turn(inverse(self.setup.T_table_artefact), self._retreat(wanted))
         start = wanted.point + (self.radius + self.standoff) * wanted.normal
-        up = turn(T_artefact_table, self._retreat(wanted))
-        down = standard.contact(start + _LIFT * up, -up, self.radius + _WIDER, _LIFT)
-        good: Mask = down.meeting == Meeting.NOTHING
-        rows = np.flatnonzero(good)
-        reach = self.standoff + self.search
-        met = standard.contact(start[rows], -wanted.normal[rows], self.radius, reach)
-        good[rows] = met.is_surface & (met.feature == wanted.feature[rows])
-        return good
+        met = contact(standard, start + _LIFT * up, -up, self.radius + _WIDER, _LIFT)
+        words = [
+            f"on its way down the ball {_met(what, name)}" if what != Meeting.NOTHING else ""
+            for what, name in zip(met.meeting, met.feature, strict=True)
+        ]
+        return np.array(words, dtype=_WORDS)
+
+    def _way_in(self, standard: Standard, wanted: Requests) -> Labels:
+        """What the ball meets on its way in before the wanted feature, or instead of it."""
+        start = wanted.point + (self.radius + self.standoff) * wanted.normal
+        met = contact(standard, start, -wanted.normal, self.radius, self.standoff + self.search)
+        good = met.is_surface & (met.feature == wanted.feature)
+        words = [
+            "" if is_good else f"the ball {_met(what, name)}"
+            for is_good, what, name in zip(good, met.meeting, met.feature, strict=True)
+        ]
+        return np.array(words, dtype=_WORDS)
 
     def _retreat(self, wanted: Requests) -> Array:
         """Direction in which the tool withdraws, table frame, (N, 3).
@@ -231,6 +290,10 @@ class Probing:
         stands = self._stands(wanted)
         up: Array = np.sign(along[best]) * stands.along[stands.index, :, best]
         return up
+
+
+def _met(what: Meeting, name: str) -> str:
+    return f"{what} of {name}" if name else str(what)
 
 
 @dataclass(frozen=True, eq=False)

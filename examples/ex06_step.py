@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.constraints import Limits
+from artefact.constraints import Limits, check
 from artefact.freeform import OVERHANG
 from artefact.sites import Site, standard_from_sites
 from cad_out.export import export_standard
@@ -27,7 +27,7 @@ def site(azimuth, radius, height, tilt):
 def standard():
     places = [(0, 0, 150, 0), (0, 85, 110, 40), (120, 85, 95, 50), (240, 85, 80, 60)]
     made = standard_from_sites("SADDLES", [site(*place) for place in places])
-    made.check(Limits())  # refuses what cannot be made or probed, and says which limit binds
+    check(made, Limits())  # refuses what cannot be made or probed, and says which limit binds
     return made
 
 

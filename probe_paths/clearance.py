@@ -7,21 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from artefact.body import Plate
-from artefact.patch import Meeting
+from artefact.clearance import TABLE_THICKNESS, clearance_on_table
 from artefact.standard import Standard
 from probe_paths.probe import Probe
 from twin.chain import Chain
-from twin.frames import Array, apply, inverse, turn
+from twin.frames import Array, apply, turn
 from twin.kinematics import linear_directions, table_to_tool, tip
 from twin.touches import Labels, Setup
 
-TABLE_RADIUS = 160.0
-"""Of the rotary table's face where nobody says otherwise, mm."""
-
-TABLE_THICKNESS = 60.0
-"""How much of the table below its face is kept clear, mm."""
-
-_ENOUGH = 2.0  # mm: beyond this a finer look at the gap to the table changes nothing
 _SWING = 7
 """Samples of every rotary axis over one move: both axes turn, in no order that is known."""
 
@@ -113,7 +106,7 @@ def swing_height(chain: Chain, path: Array, solid: Obstacles, probe: Probe) -> A
 
 @dataclass(frozen=True, eq=False)
 class Room:
-    """Looks at touches one by one: what is in the way of ball, stylus, body and spindle.
+    """Looks at readings one by one: what is in the way of stylus, body and spindle.
 
     Attributes:
         chain: The machine.
@@ -135,54 +128,12 @@ class Room:
         Returns:
             Smallest gap (N,), mm, and the name of what is nearest (N,).
         """
-        T_table_tool = table_to_tool(self.chain, q)
-        axis = T_table_tool[:, :3, 2]
-        centre = tip(self.chain, q, self.probe.length)
-        T_artefact_table = inverse(self.setup.T_table_artefact)
-        near = self.standard.clearance(
-            apply(T_artefact_table, centre), turn(T_artefact_table, axis), self.probe.shape
+        near = clearance_on_table(
+            self.standard,
+            self.setup.T_table_artefact,
+            table_to_tool(self.chain, q),
+            tip(self.chain, q, self.probe.length),
+            self.probe.shape,
+            Plate((self.table_radius,) * 2, self.table_radius, -TABLE_THICKNESS, 0.0),
         )
-        nearest = np.minimum(
-            self._above_table(T_table_tool, centre),
-            self._table.distance(centre) - self.probe.radius,
-        )
-        on_table = nearest < near.distance
-        names = np.where(on_table, "the table", near.body.astype(str))
-        return np.where(on_table, nearest, near.distance), names
-
-    @property
-    def _table(self) -> Plate:
-        r = self.table_radius
-        return Plate((r, r), r, -TABLE_THICKNESS, 0.0)
-
-    def _above_table(self, T_table_tool: Array, centre: Array) -> Array:
-        """Gap between the probe above its ball and the table, (N,), mm; from below."""
-        gap = np.full(len(centre), -np.inf)
-        for cover in (self.probe.shape.rough_cover(), self.probe.shape.fine_cover()):
-            tight = np.flatnonzero(gap < _ENOUGH)
-            offset = turn(T_table_tool[tight, None], cover[0])
-            balls = (centre[tight, None] + offset).reshape(-1, 3)
-            to_table = self._table.distance(balls).reshape(len(tight), len(cover[1])) - cover[1]
-            gap[tight] = np.maximum(gap[tight], to_table.min(axis=1, initial=np.inf))
-        return gap
-
-    def met(self, q: Array, direction: Array, distance: Array, margin: float) -> Labels:
-        """What a ball meets on its way, in words; empty where nothing.
-
-        Args:
-            q: Readings at the start, (N, A).
-            direction: Of the motion, table frame, (N, 3).
-            distance: Length of the way, (N,), mm.
-            margin: Added to the ball's radius, mm.
-        """
-        T_artefact_table = inverse(self.setup.T_table_artefact)
-        hit = self.standard.contact(
-            apply(T_artefact_table, tip(self.chain, q, self.probe.length)),
-            turn(T_artefact_table, direction),
-            self.probe.radius + margin,
-        )
-        words = np.array(
-            [f"{m} of {f}" if f else "" for m, f in zip(hit.meeting, hit.feature, strict=True)]
-        )
-        is_met = (hit.meeting != Meeting.NOTHING) & ~(hit.travel > distance)
-        return np.where(is_met, words, "")
+        return near.distance, near.body

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from artefact.clearance import TABLE_RADIUS
 from artefact.standard import Standard
-from probe_paths.clearance import TABLE_RADIUS, Room, obstacles, swing_height, top_height
+from probe_paths.clearance import Room, obstacles, swing_height, top_height
 from probe_paths.probe import Probe
 from probe_paths.steps import Move, Probing, ReadProgram
 from twin.chain import Chain

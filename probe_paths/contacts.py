@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from artefact.meeting import contact
 from artefact.patch import Meeting
 from artefact.standard import Standard
 from probe_paths.clock import Clock
@@ -71,7 +72,7 @@ class Contacts:
         motion = np.einsum("nij,nj->ni", D, self.direction[:, columns])
         self.motion = turn(self.T_artefact_table, motion)  # (N, 3) of the ball per mm of travel
         centre = apply(self.T_artefact_table, tip(chain, self.start, self.length))
-        hit = self.standard.contact(centre, self.motion, self.radius)
+        hit = contact(self.standard, centre, self.motion, self.radius)
         self.miss = np.array(
             [
                 "" if m == Meeting.SURFACE else f"the ball {m}" + (f" ({f})" if f else "")

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from artefact.clearance import TABLE_RADIUS
 from artefact.standard import Standard
 from artefact.touchable import Requests
-from probe_paths.clearance import TABLE_RADIUS
 from probe_paths.order import Visit
 from probe_paths.probe import Probe
 from twin.chain import Chain

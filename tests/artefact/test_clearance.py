@@ -52,7 +52,7 @@ def test_clearance_is_from_below_and_close(standard):
         uv = rng.uniform(-0.8, 0.8, (12, 2)) * np.array(patch.half_size)
         centre = patch.point(uv) + BALL * patch.normal(uv)
         axis = unit(patch.normal(uv) + 0.8 * rng.normal(size=(12, 3)))
-        found = standard.clearance(centre, axis, PROBE)
+        found = clearance(standard, centre, axis, PROBE)
         for c, a, room in zip(centre, axis, found.distance, strict=True):
             exact = cylinder_room(cloud, c, a)
             # half a millimetre is what the cloud misses between its points
@@ -69,11 +69,11 @@ def test_clearance_is_from_below_and_close(standard):
 def test_free_from_above_and_blocked_from_aside(standard):
     top = standard.patches[0]
     centre = top.point(np.zeros((1, 2))) + BALL * top.normal(np.zeros((1, 2)))
-    assert standard.clearance(centre, np.array([0.0, 0.0, 1.0]), PROBE).distance[0] > 0.5
+    assert clearance(standard, centre, np.array([0.0, 0.0, 1.0]), PROBE).distance[0] > 0.5
     low = standard.patches[5]
     centre = low.point(np.zeros((1, 2))) + BALL * low.normal(np.zeros((1, 2)))
     inwards = unit(np.array([-1.0, 0.0, 0.6]))
-    found = standard.clearance(centre, inwards, PROBE)
+    found = clearance(standard, centre, inwards, PROBE)
     assert found.distance[0] < 0.0
     assert found.body[0] in standard.bodies
 

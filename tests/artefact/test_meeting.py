@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from artefact.meeting import contact
 from artefact.patch import Meeting
 from artefact.standard import Standard
 from twin.units import NM, UM
@@ -21,7 +22,7 @@ def test_every_patch_is_met_where_it_is_aimed_at(standard):
     rng = np.random.default_rng(0)
     for patch in standard.patches:
         uv, start, d = touches(patch, rng, 200, margin=1.0)
-        found = standard.contact(start, d, BALL, travel=10.0)
+        found = contact(standard, start, d, BALL, travel=10.0)
         assert found.is_surface.all()
         assert set(found.feature) == {patch.name}
         assert np.abs(found.uv - uv).max() < 1e-8
@@ -36,7 +37,7 @@ def test_touch_beyond_the_border_is_an_edge_and_not_the_patch(standard):
     for beyond, expected in ((-0.5, Meeting.SURFACE), (0.5, Meeting.EDGE), (2.5, Meeting.EDGE)):
         uv = np.array([[a + beyond, 2.0]])
         n = patch.normal(uv)
-        found = standard.contact(patch.point(uv) + (BALL + STANDOFF) * n, -n, BALL, travel=10.0)
+        found = contact(standard, patch.point(uv) + (BALL + STANDOFF) * n, -n, BALL, travel=10.0)
         assert found.meeting[0] == expected
         assert found.feature[0] == patch.name
         assert np.isnan(found.uv).all() == (expected != Meeting.SURFACE)
@@ -60,7 +61,7 @@ def test_edge_travel_against_a_fine_sampling_of_the_edge(standard):
         across2 = (to_edge**2).sum(axis=1) - along**2
         reached = across2 < BALL**2
         travel = (along[reached] - np.sqrt(BALL**2 - across2[reached])).min()
-        found = standard.contact(start[None], d, BALL)
+        found = contact(standard, start[None], d, BALL)
         assert found.travel[0] < travel + 0.5 * UM
         if found.meeting[0] == Meeting.EDGE:
             edges += 1
@@ -76,12 +77,12 @@ def test_wall_and_upright_edge_of_a_column(standard):
     level = float(patch.height(patch.grid()).min()) - 8.0
     out = T[:3, 0]
     start = T[:3, 3] + (a + BALL + 7.0) * out + 1.0 * T[:3, 1] + level * T[:3, 2]
-    found = standard.contact(start[None], -out, BALL)
+    found = contact(standard, start[None], -out, BALL)
     assert (found.feature[0], found.meeting[0]) == (patch.name, Meeting.SIDE)
     assert found.travel[0] == pytest.approx(7.0, abs=NM)
     # half a radius beside the corner the ball meets the upright edge: the chord is cos 30 deg
     start = start + (b + 0.5 * BALL - 1.0) * T[:3, 1]
-    found = standard.contact(start[None], -out, BALL)
+    found = contact(standard, start[None], -out, BALL)
     assert (found.feature[0], found.meeting[0]) == (patch.name, Meeting.SIDE)
     assert found.travel[0] == pytest.approx(7.0 + BALL * (1.0 - np.sqrt(0.75)), abs=NM)
 
@@ -90,14 +91,14 @@ def test_spheres_stems_plane_holes_and_rim(standard):
     sphere = standard.spheres[0]
     top = sphere.centre + np.array([0.0, 0.0, sphere.radius + BALL + 4.0])
     down = np.array([0.0, 0.0, -1.0])
-    found = standard.contact(top[None], down, BALL)
+    found = contact(standard, top[None], down, BALL)
     assert (found.feature[0], found.meeting[0]) == (sphere.name, Meeting.SURFACE)
     assert found.travel[0] == pytest.approx(4.0, abs=NM)
     assert np.abs(found.normal[0] + down).max() < 1e-12
 
     sideways = -np.array([*sphere.centre[:2], 0.0]) / np.hypot(*sphere.centre[:2])
     low = np.array([*sphere.centre[:2], sphere.foot + 15.0]) - 40.0 * sideways
-    found = standard.contact(low[None], sideways, BALL)
+    found = contact(standard, low[None], sideways, BALL)
     assert (found.feature[0], found.meeting[0]) == (sphere.name, Meeting.SIDE)
     # a cone is met along its own slope: radius there and ball radius over cos of the half angle
     k = (sphere.foot_radius - sphere.stem_radius) / (sphere.centre[2] - sphere.foot)
@@ -106,15 +107,15 @@ def test_spheres_stems_plane_holes_and_rim(standard):
 
     hole = standard.holes[0]
     above = np.array([[hole.x, hole.y, standard.base.thickness + BALL + 6.0]])
-    found = standard.contact(above, down, BALL)
+    found = contact(standard, above, down, BALL)
     assert (found.feature[0], found.meeting[0]) == (hole.name, Meeting.SIDE)
     beside = above + np.array([-np.sign(hole.x), -np.sign(hole.y), 0.0]) * (hole.bore_radius)
-    found = standard.contact(beside, down, BALL)
+    found = contact(standard, beside, down, BALL)
     assert (found.feature[0], found.meeting[0]) == ("DATUM_A", Meeting.SURFACE)
     assert found.travel[0] == pytest.approx(6.0, abs=NM)
 
     half = standard.base.half_size[0]
-    found = standard.contact(np.array([[half + 20.0, 0.0, 10.0]]), np.array([-1.0, 0, 0]), BALL)
+    found = contact(standard, np.array([[half + 20.0, 0.0, 10.0]]), np.array([-1.0, 0, 0]), BALL)
     assert (found.feature[0], found.meeting[0]) == ("BASE", Meeting.SIDE)
     assert found.travel[0] == pytest.approx(20.0 - BALL, abs=NM)
 
@@ -123,23 +124,23 @@ def test_underside_of_a_sphere_near_its_stem_is_no_sphere_touch(standard):
     sphere = standard.spheres[1]
     elevation = sphere.rim + 0.05
     n = sphere.normal(np.array([[0.3, elevation]]))
-    found = standard.contact(sphere.centre + 20.0 * n, -n, BALL)
+    found = contact(standard, sphere.centre + 20.0 * n, -n, BALL)
     assert (found.feature[0], found.meeting[0]) == (sphere.name, Meeting.SIDE)
 
 
 def test_nothing_met_and_starts_in_the_material(standard):
     patch = standard.patches[0]
     up = patch.point(np.zeros((1, 2))) + np.array([0.0, 0.0, 60.0])
-    found = standard.contact(up, np.array([0.0, 0.0, 1.0]), BALL)
+    found = contact(standard, up, np.array([0.0, 0.0, 1.0]), BALL)
     assert found.meeting[0] == Meeting.NOTHING
     assert found.feature[0] == ""
     assert np.isnan(found.travel[0])
-    short = standard.contact(up, np.array([0.0, 0.0, -1.0]), BALL, travel=20.0)
+    short = contact(standard, up, np.array([0.0, 0.0, -1.0]), BALL, travel=20.0)
     assert short.meeting[0] == Meeting.NOTHING
     deep = patch.point(np.zeros((1, 2))) - 5.0 * patch.direction
-    assert standard.contact(deep, -patch.direction, BALL).meeting[0] == Meeting.INSIDE
+    assert contact(standard, deep, -patch.direction, BALL).meeting[0] == Meeting.INSIDE
     grazing = patch.point(np.zeros((1, 2))) + (BALL - 0.2) * patch.normal(np.zeros((1, 2)))
-    found = standard.contact(grazing, -patch.direction, BALL)
+    found = contact(standard, grazing, -patch.direction, BALL)
     assert found.meeting[0] == Meeting.INSIDE
     assert found.travel[0] == 0.0
 
@@ -177,7 +178,7 @@ def test_random_shots_agree_with_a_cloud_of_the_whole_surface(standard):
     d /= np.linalg.norm(d, axis=1, keepdims=True)
     aim = rng.uniform([-110, -110, 40], [110, 110, 150], (count, 3))
     start = aim - 250.0 * d
-    found = standard.contact(start, d, BALL)
+    found = contact(standard, start, d, BALL)
     assert not np.any(found.meeting == Meeting.UNRESOLVED)
     slack = pitch**2 / (2.0 * BALL)  # how much deeper a ball sinks between the nodes of the cloud
     hits = 0

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from artefact.clearance import ProbeShape
-from artefact.constraints import Limits
+from artefact.clearance import ProbeShape, clearance
+from artefact.constraints import Limits, check
+from artefact.meeting import contact
 from artefact.patch import Meeting
 from artefact.placement import PlacementOptions, place
 from artefact.sites import Frame
@@ -63,7 +64,7 @@ def placement(probing, workspace):
 
 
 def test_the_standard_meets_every_limit(placement):
-    placement.standard.check(Limits())
+    check(placement.standard, Limits())
     assert len(placement.standard.patches) == 8
     assert len(placement.standard.spheres) == 3
     heights = [p.T_artefact_patch[2, 3] for p in placement.standard.patches]
@@ -112,8 +113,8 @@ def test_every_touch_can_be_made(placement, probing, chain):
     axis = table_to_tool(chain, q)[:, :3, 2]
     cosine = np.einsum("ni,ni->n", axis, requests.normal)
     assert cosine.min() >= np.cos(75.0 * DEG) - 1e-9
-    assert standard.clearance(ball, axis, PROBE).distance.min() >= 2.0
-    met = standard.contact(ball + 5.0 * requests.normal, -requests.normal, 3.0, 8.0)
+    assert clearance(standard, ball, axis, PROBE).distance.min() >= 2.0
+    met = contact(standard, ball + 5.0 * requests.normal, -requests.normal, 3.0, 8.0)
     assert np.all(met.meeting == Meeting.SURFACE)
     assert np.all(met.feature == requests.feature)
     np.testing.assert_allclose(met.travel, 5.0, rtol=0, atol=NM)

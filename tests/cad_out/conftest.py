@@ -44,7 +44,7 @@ def built(small, tmp_path_factory):
 @pytest.fixture(scope="session")
 def random_standard():
     """Makes a standard of random sites that keeps its limits, from a seed."""
-    from artefact.constraints import Limits
+    from artefact.constraints import Limits, check
     from twin.errors import NotBuildable
 
     def make(seed):
@@ -69,7 +69,7 @@ def random_standard():
                 )
             try:
                 standard = standard_from_sites(f"random{seed}", sites)
-                standard.check(Limits())
+                check(standard, Limits())
             except NotBuildable:
                 continue
             return standard
