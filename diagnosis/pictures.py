@@ -19,6 +19,7 @@ from diagnosis.ink import (
     robust_limit,
     save,
 )
+from diagnosis.linear import BoolArray
 from twin.frames import Array
 from twin.touches import IntArray, Touches
 from twin.units import DEG, UM
@@ -30,6 +31,9 @@ SEEN = 0.05
 """Smallest singular value of the normals, over the root of their number, of touches from all
 sides."""
 
+
+UNSURE = 3.0
+"""Times the usual uncertainty of a pose's vector from which no arrow is drawn of it."""
 
 MOST_NAMED = 24
 """Features whose names are written on the standard."""
@@ -187,7 +191,7 @@ def draw_pose_arrows(path: str | Path, fit: Fit) -> None:
     rows, vectors, spread = pose_vectors(fit)
     figure = new_figure(4.4)
     left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
-    _arrows(figure, left, fit, rows, vectors / UM)
+    _arrows(figure, left, fit, rows, vectors / UM, _is_sure(spread))
     number = np.arange(1, len(rows) + 1)
     for k, (letter, colour) in enumerate(zip("XYZ", (BLUE, ORANGE, GREEN), strict=True)):
         right.errorbar(
@@ -223,29 +227,41 @@ def _where(touches: Touches, rows: IntArray) -> tuple[Array, Array, str, str]:
     return x, y, x_name, y_name
 
 
-def _arrows(figure: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array) -> None:
+def _is_sure(spread: Array) -> BoolArray:
+    """Poses whose vectors are not much less certain than those of the others, (M,)."""
+    largest = spread.max(axis=1)
+    return np.asarray(largest <= UNSURE * np.median(largest))
+
+
+def _arrows(
+    figure: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure: BoolArray
+) -> None:
     """Arrows in X and Y at the rotary readings, coloured by Z; their longest marks the scale."""
     x, y, x_name, y_name = _where(fit.run.touches, rows)
-    limit = robust_limit(vectors[:, 2], 1.0)
-    length = float(np.linalg.norm(vectors[:, :2], axis=1).max()) or 1.0
+    limit = robust_limit(vectors[sure, 2], 1.0)
+    length = float(np.linalg.norm(vectors[sure, :2], axis=1).max()) or 1.0
     marks = ax.quiver(
-        x,
-        y,
-        *vectors[:, :2].T,
-        vectors[:, 2],
+        x[sure],
+        y[sure],
+        *vectors[sure, :2].T,
+        vectors[sure, 2],
         cmap=DIVERGING,
         clim=(-limit, limit),
         angles="uv",
-        scale=6.0 * length,
+        scale=7.0 * length,
         width=0.007,
         edgecolor=INK,
         linewidth=0.3,
     )
-    ax.plot(x, y, ".", ms=3, color=SOFT)
-    ax.set_title(f"longest arrow: {length:.2g} µm", fontsize=9, loc="left", color=INK)
+    ax.plot(x[sure], y[sure], ".", ms=3, color=SOFT)
+    title = f"longest arrow: {length:.2g} µm"
+    if not sure.all():
+        ax.plot(x[~sure], y[~sure], "o", ms=4.5, mfc="none", color=SOFT)
+        title += "; circle: too few touches for one"
+    ax.set_title(title, fontsize=9, loc="left", color=INK)
     ax.set_xlabel(x_name)
     ax.set_ylabel(y_name)
-    ax.margins(0.14)
+    ax.margins(0.22)
     plain(ax)
     bar = figure.colorbar(marks, ax=ax, shrink=0.85)
     bar.set_label("along Z, µm (arrow: along X and Y)", fontsize=8.5)

@@ -23,6 +23,7 @@ from diagnosis.ink import (
 from diagnosis.linear import BoolArray
 from diagnosis.partial import Partial, partial
 from diagnosis.pictures_residuals import binned, kept
+from diagnosis.sentences import microns
 from diagnosis.verdict import Candidate, Diagnosis, Step
 from twin.effect import Effect
 from twin.frames import Array
@@ -103,10 +104,10 @@ def _value(ax: Any, x: float, y: float, above: bool, colour: str) -> None:
 
 def _noise_lines(ax: Any, fit: Fit, u: float) -> None:
     """Noise as stated, and as the last model finds it where that is another."""
-    ax.axhline(u, color=INK, lw=1.1, label=f"noise as stated, {u:.3g} µm")
+    ax.axhline(u, color=INK, lw=1.1, label=f"noise as stated, {microns(u * UM)}")
     if fit.noise.is_wrongly_stated:
         found = u * fit.noise.factor
-        ax.axhline(found, color=INK, lw=1.1, ls="--", label=f"scatter left, {found:.3g} µm")
+        ax.axhline(found, color=INK, lw=1.1, ls="--", label=f"scatter left, {microns(found * UM)}")
 
 
 def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:

@@ -34,6 +34,10 @@ ALL_TOLD = 7
 """Numbers of an effect that are told one by one; of more only the size is."""
 
 
+_NUMBERS = {1: 3, 2: 2, 3: 1}
+"""Numbers of an effect in the verdict by the number of effects; of more effects only the names."""
+
+
 def named_value(reported: Reported) -> tuple[str, str]:
     """Name and value of a number of an effect as a reader sees them: `time constant`, `42 ± 3 min`.
 
@@ -56,11 +60,11 @@ def named_value(reported: Reported) -> tuple[str, str]:
 def values(step: Step) -> list[tuple[str, str]]:
     """Numbers of an added effect as a reader sees them, its size first.
 
-    Of an effect with many coefficients only what sums them up is told.
+    Of an effect with many coefficients only what sums them up and its inner parameters are told.
     """
     told = sorted(step.reported, key=lambda r: _rank(step, r))
     if len(told) > ALL_TOLD:
-        told = [r for r in told if r.name.startswith("amplitude")] or told[:ALL_TOLD]
+        told = [r for r in told if _rank(step, r) != 1] or told[:ALL_TOLD]
     return [named_value(r) for r in told]
 
 
@@ -122,7 +126,8 @@ def _added(step: Step, most: int) -> str:
     alike = f", or one of {rivals} effects that look the same" if rivals else ""
     if step.confusion is not None and rivals == 1:
         alike = f", or {step.confusion.rivals[0].effect.name}"
-    return f"{name} ({sizes(step, most)}{alike})"
+    told = f"{sizes(step, most)}{alike}".removeprefix(", ")
+    return f"{name} ({told})" if told else name
 
 
 def _them(steps: Sequence[Step]) -> str:
@@ -131,7 +136,7 @@ def _them(steps: Sequence[Step]) -> str:
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
     """The verdict in one plain sentence, with numbers and standard uncertainties."""
-    most = 3 if len(diagnosis.steps) == 2 else 2 if len(diagnosis.steps) == 3 else 1
+    most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
     steps = diagnosis.steps[1:]
     named = [_added(s, most) for s in steps if s.is_named]
     found = [_added(s, most) for s in steps if not s.is_named]

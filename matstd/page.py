@@ -1,6 +1,7 @@
 """Report pages: one self-contained HTML file each, nothing loaded from anywhere."""
 
 import base64
+import re
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
@@ -8,6 +9,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from matstd.versions import versions
 from twin.files.whole import write_whole
 from twin.words import digits as digits
+
+_APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
+"""Spaces between a number and its uncertainty or its unit."""
 
 
 def write_page(path: str | Path, template: str, **content: object) -> None:
@@ -25,9 +29,24 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"digits": digits, "percent": percent, "p_value": p_value}
+    environment.filters |= {
+        "digits": digits,
+        "percent": percent,
+        "p_value": p_value,
+        "unbroken": unbroken,
+    }
     environment.globals |= {"picture": picture, "versions": versions}
     write_whole(path, environment.get_template(template).render(**content))
+
+
+def unbroken(words: str) -> str:
+    """Words whose numbers stay on a line with their uncertainties and units.
+
+    Example:
+        >>> unbroken("lag 11.1 ± 0.5 min") == "lag 11.1\u00a0±\u00a00.5\u00a0min"
+        True
+    """
+    return _APART.sub("\u00a0", words)
 
 
 def picture(path: str | Path) -> str:

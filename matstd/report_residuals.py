@@ -10,6 +10,7 @@ from diagnosis.fit import Fit
 from diagnosis.pictures import draw_pose_arrows, has_poses
 from diagnosis.pictures_pattern import draw_pattern
 from diagnosis.pictures_residuals import draw_normal_plot, draw_over_variables, ranked_variables
+from diagnosis.sentences import microns, stated_noise
 from diagnosis.structure import Structure
 from matstd.page import p_value
 from twin.frames import Array
@@ -66,7 +67,7 @@ def residual_pictures(place: Path, name: str, fit: Fit, z: Array | None = None) 
 
 _OVER = (
     "Residual over everything that was recorded, what it depends on most first. Grey: touches. "
-    "Dots: means with standard errors, red beyond three of them. Right-hand scale: in stated "
+    "Dots: means with standard errors, orange beyond three of them. Right-hand scale: in stated "
     "uncertainties."
 )
 _MORE = "The same for the other variables"
@@ -132,8 +133,10 @@ def setting(run: Run, fit: Fit) -> dict[str, Any]:
         "poses": len(np.unique(np.column_stack([t.setup, t.pose]), axis=0)),
         "setups": len(np.unique(t.setup)),
         "hours": float(np.ptp(t.time)) / 3600.0,
+        "stated": microns(stated_noise(run)),
+        "scatter": microns(stated_noise(run) * fit.noise.factor),
+        "fingerprint": run.fingerprint,
         "u_um": float(np.sqrt(np.mean(run.u**2))) / UM,
-        "found_um": float(np.sqrt(np.mean(run.u**2))) * fit.noise.factor / UM,
         "parameters": len(fit.parameters),
         "held_out": int((run.split == "test").sum()),
     }

@@ -173,6 +173,7 @@ def test_a_clock_that_stands_still_is_told(tmp_path: Path) -> None:
     [
         (b"PK\x03\x04" + bytes(range(256)), "found a zip archive, such as a workbook of Excel"),
         (b"\x00\x01\x93\xff\x00", "found no text, expected a text file"),
+        (b"MATSTD LOG 1\r\n", "line 1: found the log of a probing program, expected a run file"),
         ('# format = "run/1"\n'.encode("utf-16"), "found text in UTF-16"),
         (b'# format = "run/1"\n# # Pr\xfcfstand\n', "line 2: found byte 0xfc, which is no UTF-8"),
         (b'# format = "run/1"\n# u_um = 0,6\n', "line 2: found 'u_um = 0,6', .* a point in decim"),

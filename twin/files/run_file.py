@@ -95,6 +95,9 @@ def _split_head(text: str, path: str | Path) -> tuple[str, str, int]:
     head = "\n".join(line.removeprefix("#").removeprefix(" ") for line in lines[:n])
     if not head.strip():
         found = f"{lines[n][:40]!r}" if n < len(lines) else "an empty file"
+        if found.startswith("'MATSTD LOG"):
+            expected = "a run file (matstd evaluate makes one of it)"
+            raise BadFile(path, f"line {n + 1}", "the log of a probing program", expected)
         raise BadFile(path, f"line {n + 1}", found, 'a head that begins with # format = "run/1"')
     return head, "\n".join(lines[n:]), n + 1
 
