@@ -64,16 +64,21 @@ def values(step: Step) -> list[tuple[str, str]]:
     """
     told = sorted(step.reported, key=lambda r: _rank(step, r))
     if len(told) > ALL_TOLD:
-        told = [r for r in told if _rank(step, r) != 1] or told[:ALL_TOLD]
+        told = [r for r in told if _rank(step, r) in (0, 2)] or told[:ALL_TOLD]
     return [named_value(r) for r in told]
 
 
 def _rank(step: Step, reported: Reported) -> int:
-    """Place of a number of an effect: its size, its linear parameters, its inner ones."""
+    """Place of a number of an effect: its size, its inner parameters, what the size is made of.
+
+    Where nothing sums them up the linear parameters are the size.
+    """
     inner = step.effect.tuning if isinstance(step.effect, Tunable) else {}
     if reported.name.startswith("amplitude"):
         return 0
-    return 2 if any(reported.name.partition("_")[0] == name for name in inner) else 1
+    if any(reported.name.partition("_")[0] == name for name in inner):
+        return 2
+    return 3 if any(r.name.startswith("amplitude") for r in step.reported) else 1
 
 
 def sizes(step: Step, most: int) -> str:
@@ -149,7 +154,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
         words = "; ".join(dict.fromkeys(clause(d.words) for d in diagnosis.depends_on[:2]))
-        what = f" Put in were {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
+        was = "was" if len(steps) == 1 else "were"
+        what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
         return (
             f"Something is left that no effect of the library accounts for: "
             f"{microns(excess(diagnosis.fit))} rms beyond the stated noise of "

@@ -46,18 +46,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"matstd {args.command}: stopped, and nothing half-written is left", file=sys.stderr)
         return 130
     except Exception as error:
-        theirs = _users_fault(error, args)
+        theirs = _users_fault(error)
         if theirs is None:
             raise
         print(f"matstd {args.command}: {theirs}", file=sys.stderr)
         return EXIT_BAD_INPUT
 
 
-def _users_fault(error: Exception, args: argparse.Namespace) -> Exception | None:
+def _users_fault(error: Exception) -> Exception | None:
     """A failure inside effects that the user wrote, as one line; None if it is our own."""
+    from twin.library import users_files
     from twin.trial import fault, users_lines
 
-    for path in getattr(args, "effects", ()):
+    for path in users_files().values():
         if users_lines(error, path):
             return fault(error, path, "file", "a formula that holds for every touch")
     return None

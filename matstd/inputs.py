@@ -11,10 +11,11 @@ from twin.errors import DesignError, NotEnoughData
 from twin.files.run_file import read_run
 from twin.library import (
     is_seen,
+    kinds,
     load_installed_effects,
     load_user_effects,
     parse_effect,
-    users_file,
+    users_files,
 )
 from twin.run import Run
 from twin.trial import try_effect, try_kind
@@ -36,7 +37,8 @@ def read_inputs(
         NotEnoughData: Too few touches to place the standard.
     """
     load_installed_effects()
-    own = [(Path(path), kind) for path in effect_files for kind in load_user_effects(Path(path))]
+    for path in effect_files:
+        load_user_effects(Path(path))
     run = read_run(run_file)
     if len(run) < MIN_TOUCHES:
         raise NotEnoughData(
@@ -44,8 +46,9 @@ def read_inputs(
             f"{MIN_TOUCHES}: fewer cannot even place the standard; add touches"
             + "".join(f"; {remark}" for remark in run.remarks)
         )
-    for path, kind in own:
-        try_kind(kind, run.touches, path)
+    own = users_files()
+    for kind in (k for k in kinds() if k.word in own):
+        try_kind(kind, run.touches, own[kind.word])
     if model_file is None:
         return run, None
     saved = read_model(model_file)
@@ -77,7 +80,7 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
     out: list[Effect] = []
     for name in names:
         effect = parse_effect(name, run.touches.chain)
-        place = users_file(effect.kind)
+        place = users_files().get(effect.kind)
         if place is not None:
             try_effect(effect, run.touches, place)
         if effect.name in there:

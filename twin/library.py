@@ -5,6 +5,7 @@ group `material_standard.effects`; from then on it is named, proposed and diagno
 """
 
 import importlib.util
+import inspect
 import re
 from collections.abc import Sequence
 from importlib.metadata import entry_points
@@ -46,7 +47,7 @@ __all__ = [
     "parse_effect",
     "proposals",
     "register",
-    "users_file",
+    "users_files",
 ]
 
 ENTRY_POINT_GROUP = "material_standard.effects"
@@ -199,9 +200,9 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
     return tuple(_register_from(kind, path) for kind in own.values())
 
 
-def users_file(word: str) -> Path | None:
-    """The file of a user that a kind comes from; None for the library's own and installed ones."""
-    return _FILES.get(word)
+def users_files() -> dict[str, Path]:
+    """The users' files, loaded or installed, by the word of each kind that comes from them."""
+    return dict(_FILES)
 
 
 def load_installed_effects() -> tuple[Kind, ...]:
@@ -218,8 +219,15 @@ def load_installed_effects() -> tuple[Kind, ...]:
             raise DesignError(f"entry point '{point.name}' ({point.value}): {cause}") from cause
         if not isinstance(found, Kind):
             raise DesignError(f"entry point '{point.name}' ({point.value}): expected a Kind")
-        loaded.append(register(found))
+        if found not in _REGISTER.values():
+            _FILES[register(found).word] = _source(found)
+        loaded.append(found)
     return tuple(loaded)
+
+
+def _source(kind: Kind) -> Path:
+    """The file that the effects of an installed kind are made in."""
+    return Path(inspect.getsourcefile(kind.make) or "").resolve()
 
 
 for _kind in (

@@ -210,6 +210,17 @@ def _points(*values: str) -> EntryPoints:
     return EntryPoints(EntryPoint(f"own{i}", v, group) for i, v in enumerate(values))
 
 
+def test_an_installed_effect_is_a_users_file_too(own_register, monkeypatch, tmp_path) -> None:
+    """So that a slip in it is a line of that file, as with one that is loaded by its path."""
+    monkeypatch.setattr(library, "_FILES", {})
+    (tmp_path / "their_effects.py").write_text(USERS, encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(library, "entry_points", lambda group: _points("their_effects:HOSE"))
+    (kind,) = library.load_installed_effects()
+    assert library.users_files() == {"hose": (tmp_path / "their_effects.py").resolve()}
+    assert library.load_installed_effects() == (kind,)  # a second command in one process
+
+
 def test_entry_points_add_effects(own_register, monkeypatch) -> None:
     found = _points("twin.effects.backlash:KIND")
     monkeypatch.setattr(library, "entry_points", lambda group: found.select(group=group))

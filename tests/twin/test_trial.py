@@ -75,7 +75,7 @@ def test_an_effect_without_a_slip_passes(own_register, tmp_path: Path) -> None:
     path.write_text(FILE, encoding="utf-8")
     (kind,) = library.load_user_effects(path)
     try_kind(kind, touches(), path)
-    assert library.users_file("bump") == path
+    assert library.users_files() == {"bump": path}
 
 
 @pytest.mark.parametrize(
