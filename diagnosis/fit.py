@@ -11,8 +11,8 @@ from diagnosis.inner import Tangent, tangents
 from diagnosis.linear import BoolArray, LeftOut, Solution, left_out, solve
 from diagnosis.noise import Noise, noise_factor, replicate_factor
 from diagnosis.prior import Prior
-from diagnosis.setup_error import setup_errors
 from twin.effect import Effect, Parameter
+from twin.effects.setup_error import setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Model, columns

@@ -106,7 +106,7 @@ def foot_points() -> dict[str, str]:
     from ex08_virtual_probing import probed
 
     from diagnosis.linear import solve
-    from diagnosis.setup_error import setup_errors
+    from twin.effects.setup_error import setup_errors
     from probe_paths.evaluate import foot_points as foot
     from sensitivity.sampling import Population
     from twin.frames import pose

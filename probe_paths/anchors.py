@@ -12,14 +12,22 @@ from dataclasses import replace
 import numpy as np
 
 from artefact.standard import Standard
-from diagnosis.fit import MIN_TOUCHES, fit_run
 from probe_paths.feet import foot_points
+from twin.effects.setup_error import setup_errors
+from twin.frames import Array
 from twin.model import Model
 from twin.ordinary import ordinary_model
 from twin.run import Run
 from twin.touches import computed_deviation
+from twin.units import UM
 
-_ROUNDS = 3
+_NOISE = 2.0 * UM
+"""How closely the model is asked to fit at most, mm: what it lacks is not noise, but as large."""
+
+_HUBER = 3.0
+"""Residuals beyond so many times the median count with less than their full weight."""
+
+_ROUNDS = 4
 _STILL = 1e-5
 """Deviations that change less than this in a round are settled, mm."""
 
@@ -36,16 +44,12 @@ def anchored(run: Run, standard: Standard) -> Run:
         standard: As calibrated.
 
     Returns:
-        The run anew; as it came with fewer than `MIN_TOUCHES` touches, which fit nothing, and with
-        the old foot point where the moved ball has none.
+        The run anew, with the old foot point where a moved ball has none.
     """
-    if len(run) < MIN_TOUCHES:
-        return run
-    chain = run.touches.chain
+    weight = np.ones(len(run))
     for _ in range(_ROUNDS):
         t, before = run.touches, run.deviation
-        fit = fit_run(run, ordinary_model(chain))
-        moved = Model(chain, fit.effects).relative_deviation(t, fit.theta)
+        moved, weight = _displacement(run, weight)
         point, normal = foot_points(standard, t.feature, t.ball_artefact + moved)
         found = np.all(np.isfinite(point), axis=1, keepdims=True)
         t = replace(
@@ -55,3 +59,23 @@ def anchored(run: Run, standard: Standard) -> Run:
         if np.abs(run.deviation - before).max() < _STILL:
             break
     return run
+
+
+def _displacement(run: Run, weight: Array) -> tuple[Array, Array]:
+    """Of the balls relative to the standard by the ordinary model, artefact frame, (N, 3), mm.
+
+    Least squares with the prior of the model as further rows: minimises
+    ``weight |A theta - dev|^2 / noise^2 + |theta / sd|^2``. What the touches do not tell stays
+    zero. Also returns the weights (N,) of the next round: Huber's, so that a chip pulls little.
+    """
+    t = run.touches
+    model = Model(t.chain, (*ordinary_model(t.chain).effects, *setup_errors(t)))
+    sd = np.array([p.sd for effect in model.effects for p in effect.parameters])
+    root = np.sqrt(weight) / np.maximum(run.u, _NOISE)
+    columns = model.columns(t)
+    A = np.concatenate([columns * sd * root[:, None], np.eye(len(sd))])
+    y = np.concatenate([run.deviation * root, np.zeros(len(sd))])
+    theta = sd * np.linalg.lstsq(A, y, rcond=None)[0]
+    left = np.abs(run.deviation - columns @ theta)
+    usual = _HUBER * max(float(np.median(left)), _NOISE)
+    return model.relative_deviation(t, theta), usual / np.maximum(left, usual)

@@ -51,7 +51,7 @@ def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:
         ax.set_ylabel(f"{'xyz'[j]} in mm")
     top.set_title("from above", loc="left")
     side.set_title("from the side", loc="left")
-    side.legend(loc="upper right", fontsize=8, frameon=False)
+    side.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False)
     _save(figure, path)
 
 

@@ -11,7 +11,7 @@ import pytest
 from diagnosis.fit import fit_run
 from diagnosis.linear import left_out, solve
 from diagnosis.remarks import remarks
-from diagnosis.setup_error import SHIFT_SD, TURN_SD, setup_errors
+from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 from twin.errors import NotEnoughData
 from twin.model import columns
 from twin.ordinary import ordinary_model
@@ -145,7 +145,7 @@ def test_noise_wrongly_stated_is_recognised(case, factor) -> None:
     fit = fit_run(replace(run, u=run.u / factor), ordinary_model(run.touches.chain))
     assert fit.noise.factor == pytest.approx(factor, rel=SIGMAS / np.sqrt(2.0 * fit.noise.dof))
     assert fit.noise.is_wrongly_stated
-    assert any("not" in line and "as stated" in line for line in remarks(fit))
+    assert any("scatter by" in line and "is stated" in line for line in remarks(fit))
 
 
 @pytest.mark.parametrize("seed", [3, 4, 5])

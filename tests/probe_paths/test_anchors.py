@@ -16,7 +16,7 @@ from twin.frames import Array, apply, inverse
 from twin.kinematics import exact_tip
 from twin.run import Run
 from twin.touches import computed_deviation
-from twin.units import NM, UM
+from twin.units import UM
 
 NOISE = 1.0 * UM
 
@@ -54,10 +54,10 @@ def curvature(run: Run, true_ball: Array) -> Array:
 
 
 def test_curvature_does_not_pass_for_a_deviation(probed, small) -> None:
-    """Five touches a pose: micrometres of curvature without anchors, hardly a nanometre with."""
+    """Five touches a pose: micrometres of curvature without anchors, a hundredth of them with."""
     run, true_ball = probed(0.0)
     assert np.abs(curvature(believed(run, small), true_ball)).max() > 1.0 * UM
-    assert np.abs(curvature(run, true_ball)).max() < 2.0 * NM
+    assert np.abs(curvature(run, true_ball)).max() < 0.01 * UM
 
 
 def test_noise_does_not_slide_a_ball_along_its_surface(probed) -> None:
@@ -66,8 +66,21 @@ def test_noise_does_not_slide_a_ball_along_its_surface(probed) -> None:
     assert 0.1 * UM < np.abs(noisy - feet).max() < 30.0 * UM
 
 
-def test_a_handful_of_touches_stays_as_it_came(probed, small) -> None:
-    """Seven touches place not even the standard."""
+def test_a_handful_of_touches_moves_by_no_more_than_it_measured(probed, small) -> None:
+    """Seven touches place not even the standard: they find their balls near where they believed."""
     run = believed(probed(0.0)[0], small)
     few = run[np.arange(len(run)) < 7]
-    assert anchored(few, small) is few
+    moved = np.linalg.norm(anchored(few, small).touches.point - few.touches.point, axis=1)
+    assert moved.max() < 4.0 * np.abs(few.deviation).max()
+
+
+def test_a_chip_pulls_no_other_touch_along(probed, small, chain) -> None:
+    """One ball 0.3 mm off its face moves the others by less than 0.1 mm, a quarter of a micrometre of curvature."""
+    run = believed(probed(0.0)[0], small)
+    q = run.touches.q.copy()
+    q[11, chain.axis_index("Z")] += 0.3
+    chipped = believed(replace(run, touches=replace(run.touches, q=q)), small)
+    moved = anchored(chipped, small).touches.point - anchored(run, small).touches.point
+    others = np.arange(len(run)) != 11
+    assert abs(chipped.deviation[11] - run.deviation[11]) > 100.0 * UM
+    assert np.linalg.norm(moved[others], axis=1).max() < 100.0 * UM
