@@ -11,6 +11,7 @@ by tilt times their distance, which is not known: that part stays in the residua
 
 import csv
 import gzip
+import os
 import sys
 from pathlib import Path
 
@@ -84,5 +85,6 @@ def spindle_run(every: int = EVERY) -> Run:
 if __name__ == "__main__":
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "run.csv"
     run = spindle_run()
-    write_run(path, run, "spindle.toml")
+    machine = Path(os.path.relpath(HERE / "spindle.toml", path.resolve().parent))
+    write_run(path, run, machine.as_posix())
     print(f"{path}: {len(run)} rows, {int((run.split == 'test').sum())} of them held out")
