@@ -75,7 +75,7 @@ def test_a_handful_of_touches_moves_by_no_more_than_it_measured(probed, small) -
 
 
 def test_a_chip_pulls_no_other_touch_along(probed, small, chain) -> None:
-    """One ball 0.3 mm off its face moves the others by less than 0.1 mm, a quarter of a micrometre of curvature."""
+    """One ball 0.3 mm off its face moves others by 0.1 mm at most, 0.25 um of curvature."""
     run = believed(probed(0.0)[0], small)
     q = run.touches.q.copy()
     q[11, chain.axis_index("Z")] += 0.3
