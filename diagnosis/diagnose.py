@@ -18,13 +18,14 @@ from diagnosis.fit import Fit
 from diagnosis.gross import GrossErrors
 from diagnosis.next_measurement import Plan, plan
 from diagnosis.prior import Prior
-from diagnosis.regions import regions
+from diagnosis.regions import Region, regions
 from diagnosis.remarks import remarks
 from diagnosis.rounds import Round, Task, rounds, strongest, tuned
-from diagnosis.selection import LISTED, Search, Verified
+from diagnosis.selection import LISTED, MOST_SETS, Search, Verified
 from diagnosis.sizes import sizes
 from diagnosis.structure import Structure, find_structure
 from diagnosis.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
+from twin.copies import counted_once
 from twin.effect import Effect
 from twin.library import proposals
 from twin.model import Model
@@ -61,6 +62,7 @@ def diagnose(
     Example:
         ``diagnose(read_run("run.csv")).verdict`` is one of three phrases.
     """
+    run = counted_once(run)
     start = model or ordinary_model(run.touches.chain)
     task = Task(run, start, prior or Prior.of_effects(start.effects), prior is not None)
     library = proposals(run.touches) if candidates is None else list(candidates)
@@ -104,11 +106,31 @@ def _result(
         start,
         left,
         _dependences(left if unexplained else start),
-        regions(steps[-1 if unexplained else 0].fit),
+        _where(steps, verdict),
         detectable(effects, seen, len(final.library.complement.u)),
         _plans(task, added, classes, gross, rng),
-        remarks(steps[-1].fit),
+        _remarks(steps[-1].fit, final),
     )
+
+
+def _remarks(fit: Fit, final: Round) -> tuple[str, ...]:
+    """What else a user should know, the search's own limit included."""
+    out = remarks(fit)
+    if not final.search.budget.is_spent:
+        return out
+    cut = (
+        f"the search was ended after {MOST_SETS:.0f} sets of effects: what is named passed every "
+        "test, but another set may explain more"
+    )
+    return (*out, cut)
+
+
+def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
+    """Where the model to begin with fails; where what is left is unexplained, the last one."""
+    first, last = steps[0].fit, steps[-1].fit
+    if verdict is Verdict.UNEXPLAINED:
+        return regions(last)
+    return regions(first, last if len(steps) > 1 else None)
 
 
 def final_tests(final: Round) -> list[Verified]:

@@ -42,6 +42,7 @@ def diagnosis_table(result: Diagnosis) -> dict[str, Any]:
         "depends_on": [{"variable": d.variable, "p_value": d.p_value} for d in result.depends_on],
         "detectable": [_detectable(d) for d in result.detectable],
         "next_measurement": [_plan(p) for p in result.plans],
+        "remarks": list(result.remarks),
     }
 
 
@@ -148,6 +149,7 @@ def _where(found: Any) -> list[dict[str, Any]]:
         {
             "region": region.conditions,
             "mean_um": _um(region.mean),
+            "mean_u_um": _um(region.u),
             "rms_um": _um(region.rms),
             "touches": int(region.rows.sum()),
         }

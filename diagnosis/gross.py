@@ -24,6 +24,9 @@ bend the fit make good touches look bad, until they are out."""
 
 ROUNDS = 30
 
+FEWEST_DOF = 10.0
+"""With fewer degrees of freedom there is no scale by which a touch could stand out."""
+
 
 @dataclass(frozen=True, eq=False)
 class GrossErrors:
@@ -81,6 +84,9 @@ def find_gross(X: Array, y: Array, allowed: BoolArray) -> tuple[Solution, GrossE
     limit = float(-ndtri(0.5 * CHANCE / max(n, 1)))
     used = allowed.copy()
     fit = solve(X[used], y[used])
+    if fit.dof < FEWEST_DOF:
+        zero, nothing = np.zeros(len(y)), np.zeros(len(y), dtype=bool)
+        return fit, GrossErrors(nothing, zero, zero, limit)
     for _ in range(ROUNDS):
         error, variance = _left_out_each(X, y, fit, used)
         z = error / np.sqrt(variance)

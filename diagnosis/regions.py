@@ -1,10 +1,10 @@
 """Regions where a model fails, in words: boxes of a few conditions, honest about chance."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import fdtrc, ndtr
 
 from diagnosis.fit import Fit
 from diagnosis.linear import BoolArray
@@ -30,7 +30,7 @@ CUTS = 16
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Region:
-    """Touches that a model predicts wrongly on average.
+    """Touches that a model predicts wrongly: on average, or worse than others with both signs.
 
     Attributes:
         limits: Lower and upper end of every column that bounds it, in the column's unit; of a
@@ -38,7 +38,9 @@ class Region:
         rows: Touches in it, (N,).
         mean: Mean residual over those poses that had no say in drawing the region, mm.
         rms: Root mean square residual over the same poses, mm.
-        p_value: Probability of such a mean by chance, over the same poses, all regions together.
+        p_value: Probability of such a mean, or of a scatter so much larger than that of the other
+            touches, by chance, over the same poses, all regions together.
+        u: Standard uncertainty of the mean, from the noise, mm.
     """
 
     limits: tuple[Limit, ...]
@@ -46,6 +48,7 @@ class Region:
     mean: float
     rms: float
     p_value: float
+    u: float
 
     @property
     def conditions(self) -> str:
@@ -58,10 +61,11 @@ class Region:
         return " and ".join(condition(*limit) for limit in self.limits)
 
 
-def regions(fit: Fit, most: int = 6) -> tuple[Region, ...]:
+def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, ...]:
     """Regions of a run where the mean residual is not zero, what stands out most first.
 
-    Each is without the touches of those before it.
+    Each is without the touches of those before it. Where no mean stands out, since what is wrong
+    has both signs everywhere, regions where the residual is larger than elsewhere.
 
     Every condition on one column and every pair of them is tried, since a free set-up may leave
     nothing of a misfit in either column alone; a third is joined where it says more. One half of
@@ -70,6 +74,9 @@ def regions(fit: Fit, most: int = 6) -> tuple[Region, ...]:
 
     Args:
         fit: Any fit; rows in use count.
+        cured: The same with the effects that it lacked. What they explain then draws the regions:
+            so few numbers, that are known not to be chance, need no half of the poses to judge
+            them, and the residuals of all do.
         most: Largest number of regions.
 
     Reference:
@@ -77,38 +84,100 @@ def regions(fit: Fit, most: int = 6) -> tuple[Region, ...]:
         (1999) 123-143.
     """
     known = {k: v for k, v in _explaining(fit).items() if np.ptp(v) > 0.0}
-    draws, judges = _halves(fit)
+    draws, judges = _halves(fit) if cured is None else (fit.used, fit.used)
     offers = _offers(known, draws)
-    inside = np.stack([_within(known, limit) for limit in offers]) if offers else None
-    if inside is None:
+    if not offers:
         return ()
-    z = fit.residual / fit.u
-    left = fit.used
-    found = []
-    for _ in range(most):
-        box = _best_box(inside, z, draws & left, judges & left)
-        if box is None:
-            break
-        rows = np.all(inside[list(box)], axis=0) & left
-        region = _judged(fit, [offers[i] for i in box], rows, judges, most)
-        if region is not None:
-            found.append(region)
-        left = left & ~rows
-    return tuple(found)
+    inside = np.stack([_within(known, limit) for limit in offers])
+    u = fit.u if cured is None else cured.u
+    z = _even(fit) / u
+    drawing = z if cured is None else (fit.residual - cured.residual) / u
+    squares = z**2 if cured is None else 1.0 + drawing**2
+    for kind, values in ((_BY_MEAN, drawing), (_BY_SIZE, squares)):
+        left = fit.used
+        found: list[Region] = []
+        for _ in range(most):
+            box = _best_box(inside, values, draws & left, judges & left, kind)
+            if box is None:
+                break
+            rows = np.all(inside[list(box)], axis=0) & left
+            region = _judged(fit, [offers[i] for i in box], u, (rows, judges & left), kind, most)
+            if region is not None:
+                found.append(region)
+            left = left & ~rows
+        if found:
+            return tuple(found)
+    return ()
+
+
+def _even(fit: Fit) -> Array:
+    """Residuals with the share given back that the fit takes from each row in use, (N,), mm."""
+    out = fit.residual.copy()
+    out[fit.used] /= np.sqrt(np.maximum(1.0 - fit.solution.leverage, 1e-6))
+    return out
+
+
+def _mean_worth(sums: Array, counts: Array, values: Array) -> Array:
+    """Log likelihood that a mean of its own gains a region."""
+    return 0.5 * sums**2 / np.maximum(counts, 1.0)
+
+
+def _size_worth(sums: Array, counts: Array, values: Array) -> Array:
+    """Log likelihood that a larger variance of its own gains a region; sums are of squares."""
+    count, total = len(values), float(values.sum())
+    others = np.maximum(count - counts, 1.0)
+    here = np.maximum(sums / np.maximum(counts, 1.0), 1e-12)
+    there = np.maximum((total - sums) / others, 1e-12)
+    gained = count * np.log(total / count) - counts * np.log(here) - others * np.log(there)
+    return np.where((here > there) & (count - counts >= SMALLEST), 0.5 * gained, 0.0)
+
+
+def _mean_chance(z: Array, others: Array) -> float:
+    """Probability of such a mean in noise, either sign."""
+    return 2.0 * float(ndtr(-abs(float(z.sum())) / np.sqrt(len(z))))
+
+
+def _size_chance(z: Array, others: Array) -> float:
+    """Probability of such a variance beside that of the others, F test."""
+    ratio = float(np.mean(z**2) / np.mean(others**2)) if len(others) else 0.0
+    return float(fdtrc(len(z), max(len(others), 1), ratio))
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """How a region stands out.
+
+    Attributes:
+        worth: Log likelihood gained, from sums and numbers of touches in boxes and all values.
+        chance: Probability of a region's normalised residuals beside those of the others.
+    """
+
+    worth: Callable[[Array, Array, Array], Array]
+    chance: Callable[[Array, Array], float]
+
+
+_BY_MEAN = _Kind(_mean_worth, _mean_chance)
+_BY_SIZE = _Kind(_size_worth, _size_chance)
 
 
 def _judged(
-    fit: Fit, limits: Sequence[Limit], rows: BoolArray, judges: BoolArray, count: int
+    fit: Fit,
+    limits: Sequence[Limit],
+    noise: Array,
+    who: tuple[BoolArray, BoolArray],
+    kind: _Kind,
+    count: int,
 ) -> Region | None:
     """A region as those poses see it that had no say in drawing it; None if it may be chance."""
-    seen = rows & judges
-    z = fit.residual[seen] / fit.u[seen]
-    p = min(1.0, 2.0 * float(ndtr(-abs(float(z.sum())) / np.sqrt(len(z)))) * count)
+    rows, judges = who
+    seen, z = rows & judges, _even(fit) / noise
+    p = min(1.0, kind.chance(z[seen], z[judges & ~rows]) * count)
     if p >= CHANCE:
         return None
     r = fit.residual[seen]
     rms = float(np.sqrt(np.mean(r**2)))
-    return Region(_joined(limits), rows, float(r.mean()), rms, p)
+    u = float(np.sqrt(np.sum(noise[seen] ** 2)) / len(r))
+    return Region(_joined(limits), rows, float(r.mean()), rms, p, u)
 
 
 def _explaining(fit: Fit) -> dict[str, Array]:
@@ -152,42 +221,44 @@ def _within(known: dict[str, Array], limit: Limit) -> BoolArray:
 
 
 def _best_box(
-    inside: BoolArray, z: Array, draws: BoolArray, judges: BoolArray
+    inside: BoolArray, values: Array, draws: BoolArray, judges: BoolArray, kind: _Kind
 ) -> tuple[int, ...] | None:
     """Conditions of the region that stands out most, or None if chance could do as well.
 
-    Its worth is the log likelihood of a mean of its own less the log of the number of regions of
-    as many conditions that were tried.
+    Its worth is the log likelihood gained by what is its own, less the log of the number of regions
+    of as many conditions that were tried.
 
     Args:
         inside: Touches that meet each condition, (C, N).
-        z: Residuals over their noise, (N,).
+        values: Of which a region's sum is taken, (N,).
         draws: Touches that draw, (N,).
         judges: Touches that judge, (N,).
+        kind: How a region stands out.
     """
     drawn, judged = inside[:, draws].astype(float), inside[:, judges].astype(float)
-    here = z[draws]
-    scores = _scores((drawn * here) @ drawn.T, drawn @ drawn.T, judged @ judged.T)
-    worth = 0.5 * scores**2 - np.log(len(inside)) * (2.0 - np.eye(len(inside)))
-    i, j = np.unravel_index(int(np.argmax(worth)), worth.shape)
-    box, best = tuple(dict.fromkeys((int(i), int(j)))), float(worth[i, j])
+    here = values[draws]
+    if not len(here):
+        return None
+
+    def worth(sums: Array, counts: Array, others: Array) -> Array:
+        enough = (counts >= SMALLEST) & (others >= SMALLEST)
+        return np.where(enough, kind.worth(sums, counts, here), 0.0)
+
+    both = worth((drawn * here) @ drawn.T, drawn @ drawn.T, judged @ judged.T)
+    both = both - np.log(len(inside)) * (2.0 - np.eye(len(inside)))
+    i, j = np.unravel_index(int(np.argmax(both)), both.shape)
+    box, best = tuple(dict.fromkeys((int(i), int(j)))), float(both[i, j])
     while len(box) < DEPTH:
         part = np.all(drawn[list(box)] > 0.0, axis=0)
         other = np.all(judged[list(box)] > 0.0, axis=0)
         sums, counts = drawn[:, part] @ here[part], drawn[:, part].sum(axis=1)
-        more = _scores(sums, counts, judged[:, other].sum(axis=1))
-        gained = 0.5 * more**2 - np.log(len(inside)) * (len(box) + 1.0)
+        more = worth(sums, counts, judged[:, other].sum(axis=1))
+        gained = more - np.log(len(inside)) * (len(box) + 1.0)
         k = int(np.argmax(gained))
         if gained[k] <= best:
             break
         box, best = (*box, k), float(gained[k])
     return box if best > 0.0 else None
-
-
-def _scores(sums: Array, drawn: Array, judged: Array) -> Array:
-    """Sums of residuals over their standard deviation; zero where too few touches draw or judge."""
-    enough = (drawn >= SMALLEST) & (judged >= SMALLEST)
-    return np.asarray(np.where(enough, np.abs(sums) / np.sqrt(np.maximum(drawn, 1.0)), 0.0))
 
 
 def _cuts(values: Array) -> list[float]:

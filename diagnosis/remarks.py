@@ -3,25 +3,24 @@
 import numpy as np
 
 from diagnosis.fit import MIN_POSES, Fit
+from diagnosis.mixed_units import mixed_units
 from twin.units import UM
-
-TOO_QUIET = 0.02
-"""Deviations below this share of their stated uncertainty are in another unit."""
-
-TOO_LOUD = 100.0
-"""Noise above so many times the stated uncertainty is in another unit."""
 
 FEW_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""
+
+DOUBTFUL = 2.0
+"""Error of held-out touches over the stated noise from which few touches leave all open."""
 
 LISTED = 20
 """Gross errors whose lines are told."""
 
 
 def remarks(fit: Fit) -> tuple[str, ...]:
-    """Everything noteworthy in a fit, what the reader of the file noticed first."""
-    out = list(fit.run.remarks)
-    out += _units(fit) + _touches(fit) + _noise(fit) + _gross(fit)
+    """Everything noteworthy in a fit: units, what the reader of the file noticed, the rest."""
+    units = mixed_units(fit)
+    out = [*units, *fit.run.remarks, *_touches(fit)]
+    out += ([] if units else _noise(fit)) + _gross(fit)
     if fit.widened > 1.0:
         out.append(
             f"the machine's errors are about {fit.widened:.1f} times their stated distributions; "
@@ -30,42 +29,33 @@ def remarks(fit: Fit) -> tuple[str, ...]:
     return tuple(out)
 
 
-def _units(fit: Fit) -> list[str]:
-    """Units that look mixed up."""
-    share = float(np.median(np.abs(fit.run.deviation) / fit.run.u))
-    if share < TOO_QUIET:
-        return [
-            f"typical deviations are {share:.2g} of their stated uncertainty: are they in mm in a "
-            "column of µm?"
-        ]
-    if fit.noise.factor > TOO_LOUD:
-        return [
-            f"the noise is {fit.noise.factor:.3g} times the stated uncertainty: is u_um in mm, or "
-            "are the deviations in another unit?"
-        ]
-    return []
-
-
 def _touches(fit: Fit) -> list[str]:
     """Too few touches or poses, and what is still possible."""
     out = []
     n, p = int(fit.used.sum()), len(fit.parameters)
     if n < p:
         out.append(
-            f"{n} touches for {p} parameters: the prior decides the rest; the prediction where it "
-            "was probed is still good, single parameters are not"
+            f"{n} touches for {p} parameters: the prior decides the rest; single parameters are "
+            "not known, only what they do together where it was probed"
         )
     if fit.solution.dof < FEW_DOF:
         out.append(
             f"{fit.solution.dof:.0f} degrees of freedom are left for the noise: only large effects "
             "can be seen; the stated uncertainty is leant on"
         )
+        stated = float(np.sqrt(np.mean(fit.run.u**2)))
+        if fit.test_rms > DOUBTFUL * stated:
+            out.append(
+                f"the error of held-out touches is {fit.test_rms / stated:.1f} times the stated "
+                "noise, with too few touches to say whether anything is missing: probe more"
+            )
     t = fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[fit.used], axis=0))
     if poses < MIN_POSES:
         out.append(
-            f"{poses} table pose{'s' if poses > 1 else ''} only: errors of the rotary axes cannot "
-            "be seen, and touches are held out in blocks instead of by pose"
+            f"{poses} table pose{'s' if poses > 1 else ''} only: errors of the rotary axes can "
+            f"{'hardly' if poses > 1 else 'not'} be seen, and touches are held out in blocks "
+            "instead of by pose"
         )
     return out
 
@@ -81,8 +71,10 @@ def _noise(fit: Fit) -> list[str]:
                 f"residuals are {ratio:.2f} times as large as the scatter of {noise.replicates_dof}"
                 " replicates: the model lacks something"
             ]
-    if noise.is_wrongly_stated and noise.factor < TOO_LOUD:
-        return [f"the noise looks like {noise.factor * u:.2f} µm, not {u:.2f} µm as stated"]
+    if noise.is_wrongly_stated:
+        return [
+            f"touches scatter by {noise.factor * u:.2f} µm about the model; {u:.2f} µm is stated"
+        ]
     return []
 
 
@@ -98,12 +90,13 @@ def _gross(fit: Fit) -> list[str]:
     if len(rows) == 0:
         return []
     rows = rows[np.argsort(-np.abs(gross.score[rows]))]
-    size = fit.residual[rows[0]] / UM
+    size = fit.residual[rows[np.argmax(np.abs(fit.residual[rows]))]] / UM
     side = "outside" if size > 0 else "inside"
     lines = ", ".join(str(line) for line in fit.run.line[rows[:LISTED]])
     more = f" and {len(rows) - LISTED} more" if len(rows) > LISTED else ""
     return [
-        f"{len(rows)} gross error{'s were' if len(rows) > 1 else ' was'} left out, the largest "
-        f"{abs(size):.1f} µm {side} what the other touches predict: "
+        f"{len(rows)} gross error{'s were' if len(rows) > 1 else ' was'} left out, "
+        f"{'the largest ' if len(rows) > 1 else ''}{abs(size):.1f} µm {side} what the other "
+        "touches predict: "
         f"line{'s' if len(rows) > 1 else ''} {lines}{more}"
     ]

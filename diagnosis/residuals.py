@@ -14,6 +14,7 @@ from diagnosis.prior import Prior
 from diagnosis.regions import Region, regions
 from diagnosis.remarks import remarks
 from diagnosis.structure import Structure, find_structure
+from twin.copies import counted_once
 from twin.frames import Array
 from twin.model import Model
 from twin.run import Run
@@ -148,6 +149,7 @@ def compare(
     Raises:
         NotEnoughData: So few touches that nothing can be said.
     """
+    run = counted_once(run)
     if estimates is None:
         fit = fit_run(run, model)
         u = run.u

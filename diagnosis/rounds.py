@@ -14,13 +14,14 @@ from diagnosis.candidates import (
     signatures,
     whole_grids,
 )
+from diagnosis.edges import offered, without
 from diagnosis.evidence import EffectSet
 from diagnosis.fit import Fit, fit_run
 from diagnosis.gross import GrossErrors
 from diagnosis.prior import Prior
 from diagnosis.refine import refined_set
 from diagnosis.screening import Library
-from diagnosis.selection import Chosen, Search
+from diagnosis.selection import Budget, Chosen, Search
 from diagnosis.settle import settled
 from diagnosis.structure import Structure, find_structure
 from twin.effect import Effect
@@ -28,7 +29,7 @@ from twin.frames import Array
 from twin.model import Model
 from twin.run import Run
 
-ROUNDS = 3
+ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn."""
 
 NAMELESS = 3
@@ -145,22 +146,33 @@ def rounds(
 ) -> Round:
     """Search in turns, until the gross errors stay what they are.
 
+    Gross errors beside an edge in time are offered to the search once: it may find the slip that
+    explains them, and if not they are gross errors in the next turn.
+
     Args:
         task: What is diagnosed.
         added: Effects that the user added.
         candidates: Effects that may be found.
         progress: Told of every stage.
     """
+    touches = task.run.touches
     base = task.fit(added)
+    tried = offered(touches, base.gross, ())
+    if tried.any():
+        base = task.fit(added, gross=without(base.gross, tried))
     found: Sequence[str] = ()
+    budget = Budget()
     for remaining in reversed(range(ROUNDS)):
         library = Library.of(Complement.of(base), candidates, progress)
-        search, chosen = _searched(library, found, progress)
+        search, chosen = _searched(library, found, budget, progress)
         effects = refined_set(library.complement, _sized(chosen))
         again = task.fit((*added, *effects)).gross
-        if np.array_equal(again.rows, base.gross.rows) or not remaining:
+        further = offered(touches, again, effects) & ~tried & (remaining > 1)
+        if not remaining or (np.array_equal(again.rows, base.gross.rows) and not further.any()):
             break
-        base, found = task.fit(added, gross=again), [s.effect.name for s in effects]
+        tried |= further
+        base = task.fit(added, gross=without(again, further))
+        found = [s.effect.name for s in effects]
     return _judged(base, library, search, chosen, progress)
 
 
@@ -177,7 +189,7 @@ def _judged(
     while any(s.columns is not None for s in left) and len(nameless) < NAMELESS:
         nameless.append(strongest(left))
         fixed = np.hstack([s.columns for s in nameless if s.columns is not None])
-        search = Search(search.pool, fixed, progress)
+        search = Search(search.pool, fixed, progress, search.budget)
         chosen = search.run(chosen.members)
         left = find_structure(chosen.effects, progress)
     return Round(
@@ -196,13 +208,15 @@ def _sized(chosen: Chosen) -> list[Sized]:
     return [Sized(m.effect, m.scale) for m in chosen.members]
 
 
-def _searched(library: Library, found: Sequence[str], progress: Progress) -> tuple[Search, Chosen]:
+def _searched(
+    library: Library, found: Sequence[str], budget: Budget, progress: Progress
+) -> tuple[Search, Chosen]:
     """The best set of effects; of a long run among those that screenings let through."""
     complement = library.complement
     empty = EffectSet(complement, np.zeros((len(complement.residual), 0)))
     names = library.shortlist((), empty)
     for _ in range(SCREENINGS):
-        search = Search(library.pool(names), progress=progress)
+        search = Search(library.pool(names), None, progress, budget)
         nothing = search.chosen(())
         ranked = search.ranking(nothing)
         start = [search.member(nothing, v) for v in ranked if search.name_of(v) in found]

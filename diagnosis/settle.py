@@ -32,6 +32,6 @@ def settled(search: Search, chosen: Chosen) -> tuple[Search, Chosen]:
             break
         pairs = list(zip(chosen.members, members, strict=True))
         pool = moved(search.pool, {m.variant: s.effect for m, s in pairs})
-        search = Search(pool, search.fixed, search.progress)
+        search = Search(pool, search.fixed, search.progress, search.budget)
         chosen = search.run([replace(m, effect=s.effect, scale=s.scale) for m, s in pairs])
     return search, chosen

@@ -86,7 +86,7 @@ class Diagnosis:
         structure: What the residual of the model to begin with varies with.
         left: What the residual of the last step varies with; empty unless unexplained.
         depends_on: Variables of `structure`, or of `left` where the verdict is unexplained.
-        where: Regions where the same residual fails.
+        where: Regions where the same residual fails, drawn by what the found effects explain.
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
         remarks: What else a user should know, one line each.

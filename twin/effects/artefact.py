@@ -16,8 +16,8 @@ from twin.units import T_REF, UM, URAD
 HOUR = 3600.0
 """Drift is told per hour, s."""
 
-ON_EACH_SIDE = 8
-"""Fewest touches of a set-up before and after a slip that can be told from noise."""
+ON_EACH_SIDE = 2
+"""Fewest touches of a set-up before and after a slip: one alone is a touch gone wrong."""
 INSTANTS = 256
 """Most instants that are scanned for a slip; between them it is refined."""
 
