@@ -45,14 +45,10 @@ class Hose:
         return {"x": self.x, "width": self.width, "y": self.y}
 
 
-HOSE = Kind(
-    word="hose",
-    arguments="",
+HOSE = Kind.of(
+    Hose,
     formula="EZZ = a exp(-((X - x)/width)^2) for Y > y",
     units="a: µm; x, width, y: mm",
     typical="some µm",
     source="seen behind the ram",
-    make=lambda chain, arguments: Hose(),
-    propose=lambda touches: (Hose(),),
-    classes=(Hose,),
 )

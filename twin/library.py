@@ -227,7 +227,8 @@ def load_installed_effects() -> tuple[Kind, ...]:
 
 def _source(kind: Kind) -> Path:
     """The file that the effects of an installed kind are made in."""
-    return Path(inspect.getsourcefile(kind.make) or "").resolve()
+    maker = kind.classes[0] if kind.classes else kind.make
+    return Path(inspect.getsourcefile(maker) or "").resolve()
 
 
 for _kind in (

@@ -73,7 +73,7 @@ REFUSED = {
     "not a name": ("backlash(X", UnknownEffect, "unknown effect"),
     "no argument": ("backlash", UnknownEffect, r"'backlash': expected backlash\(axis\), 1 arg"),
     "too many": ("backlash(X,Y)", UnknownEffect, r"'backlash\(X,Y\)': expected .* 1 argument"),
-    "no brackets wanted": ("probe-radius(3)", UnknownEffect, "expected probe-radius, 0 arg"),
+    "no brackets wanted": ("probe-radius(3)", UnknownEffect, "expected probe-radius, no arg"),
     "unknown axis": ("backlash(Q)", UnknownEffect, "an axis of C, B, X, Y, Z"),
     "spindle": ("backlash(C1)", UnknownEffect, "an axis of C, B, X, Y, Z"),
     "rotary scale": ("thermal-expansion(C,s)", UnknownEffect, "a linear axis of X, Y, Z"),

@@ -1,5 +1,6 @@
 """Effects that users wrote with a slip in them: each slip is one line about their file."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -186,3 +187,26 @@ def test_lines_of_a_users_file_are_found_in_a_failure(own_register, tmp_path: Pa
 def test_the_nearest_name_is_suggested(text: str, expected: str) -> None:
     with pytest.raises(UnknownEffect, match=expected):
         library.parse_effect(text, CHAIN)
+
+
+def test_the_effect_of_the_guide_is_one(own_register, tmp_path: Path) -> None:
+    """The class of docs/own_effects.md, with the imports that it names."""
+    guide = Path(__file__).parents[2] / "docs" / "own_effects.md"
+    code = guide.read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
+    path = tmp_path / "own.py"
+    imports = """from dataclasses import dataclass
+from twin.effect import Parameter, Term, Where
+from twin.library import Kind
+from twin.units import UM
+"""
+    path.write_text(imports + code, encoding="utf-8")
+    (kind,) = library.load_user_effects(path)
+    chain = make_chain("table", "[w C' f X t]", {"C": Axis((-7.0, 7.0)), "X": Axis((0.0, 9.0))})
+    q = np.zeros((2, 2))
+    clamped = replace(at_poses(chain, q, 0.0), approach=np.array([[-1.0, 0.0], [1.0, 0.0]]))
+    try_kind(kind, clamped, path)
+    (term,) = library.parse_effect("clamp", chain).terms(clamped)
+    assert term.amount.tolist() == [1.0, 0.0]
+    assert kind.summary == "EZC = h where C was last turned backwards, else nothing."
+    with pytest.raises(UnknownEffect, match=r"'clamp\(X\)': expected clamp, no arguments"):
+        library.parse_effect("clamp(X)", chain)

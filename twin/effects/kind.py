@@ -43,6 +43,35 @@ class Kind:
     classes: tuple[type, ...] = ()
     about: str = ""
 
+    @classmethod
+    def of(
+        cls,
+        effect: Callable[[], Effect],
+        formula: str,
+        units: str = "",
+        typical: str = "",
+        source: str = "",
+    ) -> "Kind":
+        """The kind of an effect that takes no arguments, which is all that most users need.
+
+        Args:
+            effect: Its class, made without arguments; its `kind` is the word.
+            formula: The closed formula, one line.
+            units: Of its parameters and inner parameters, as a user sees them.
+            typical: Size that is met in practice.
+            source: Where the formula and the size are from.
+        """
+        word = effect().kind
+
+        def make(chain: Chain, arguments: Sequence[str]) -> Effect:
+            counted(word, arguments, 0, 0)
+            return effect()
+
+        classes = (effect,) if isinstance(effect, type) else ()
+        return cls(
+            word, "", formula, units, typical, source, make, lambda touches: (effect(),), classes
+        )
+
     @property
     def usage(self) -> str:
         """`backlash(axis)`."""
@@ -71,7 +100,7 @@ def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:
 def counted(usage: str, arguments: Sequence[str], low: int, high: int) -> None:
     """Check the number of arguments; raises UnknownEffect."""
     if not low <= len(arguments) <= high:
-        number = f"{low}" if low == high else f"{low} to {high}"
+        number = f"{low or 'no'}" if low == high else f"{low} to {high}"
         raise refusal(usage, arguments, f"{number} argument{'' if high == 1 else 's'}")
 
 
