@@ -7,6 +7,7 @@ import numpy as np
 from artefact.criterion import Criterion, random_touches
 from artefact.rivals import rivals
 from artefact.sites import Frame
+from artefact.standard import Standard
 from artefact.touch_choice import (
     PlacementOptions,
     chosen_poses,
@@ -39,6 +40,7 @@ class Rival:
         visible: Effects of the library, of those that any touches could show, that these show.
         could_be_visible: Number of effects that any touches could show.
         touches: What it is judged by.
+        body: What is touched; None for scatter that no body has.
     """
 
     name: str
@@ -51,10 +53,16 @@ class Rival:
     visible: int
     could_be_visible: int
     touches: Requests
+    body: Standard | None = None
 
 
 def judged(
-    name: str, aim: Criterion, chosen: Requests, random: list[Requests], library: Visibility
+    name: str,
+    aim: Criterion,
+    chosen: Requests,
+    random: list[Requests],
+    library: Visibility,
+    body: Standard | None = None,
 ) -> Rival:
     """Figures of one artefact after its touches.
 
@@ -64,6 +72,7 @@ def judged(
         chosen: Its touches.
         random: Lots of touches taken at random on it, as many in each.
         library: Effects of the library that touches could show.
+        body: What is touched; None for scatter that no body has.
     """
     after = _posterior(aim, chosen)
     over = after.predicted_sd(aim.tip_volume)
@@ -80,6 +89,7 @@ def judged(
         visible=library.shown(aim, chosen),
         could_be_visible=len(library.effects),
         touches=chosen,
+        body=body,
     )
 
 
@@ -132,7 +142,7 @@ def compare(
         tried = some_touches(aim, body, own, options, rng)
         lots = random_lots(tried, options.touches, rng)
         chosen = chosen_touches(aim, aim.purpose, tried, options)
-        out.append(judged(name, aim, chosen, lots, library))
+        out.append(judged(name, aim, chosen, lots, library, body))
     tried = _scatter(aim, poses, rng)
     lots = random_lots(tried, options.touches, rng)
     for name, what_for in (("I", aim.purposes["I"]), ("D", aim.purposes["D"])):

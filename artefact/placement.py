@@ -31,7 +31,7 @@ from artefact.touch_choice import (
 from artefact.touchable import Probing, Requests, joined
 from artefact.visibility import visibility
 from sensitivity.blocks import Progress, silent
-from sensitivity.certificate import Certificate, certificate
+from sensitivity.certificate import Certificate
 from sensitivity.groups import best_groups
 from sensitivity.identifiability import Identifiability, identifiability
 from sensitivity.information import whitened
@@ -59,7 +59,7 @@ class Placement:
             volume, over the user's workspace.
         rivals: This standard first, then other artefacts at as many touches.
         certificate: How near the touches are to the best choice among all that could be made on the
-            standard at its table poses, with no share for spheres and patches.
+            standard at its table poses and that keep the same shares of poses, spheres, patches.
         identifiability: What the touches cannot separate.
     """
 
@@ -126,15 +126,14 @@ def place(
     standard = shaped(aim.plain, standard, poses, frame.limits, options, rng)
     progress("placement", 4, 6)
     tried = touches_to_choose_from(aim, standard, poses, options)
-    chosen = chosen_touches_on(aim, standard, tried, options)
+    chosen, nearness = chosen_touches_on(aim, standard, tried, options)
     requests = tried[chosen]
-    nearness = certificate(aim.purpose, aim.rows(tried), chosen)
     standard = _with_shares(aim, standard, requests)
     progress("placement", 5, 6)
     free = random_touches(probing, aim.volume, aim.rotary, max(options.touches, _FREE), rng)
     library = visibility(aim, free)
     lots = random_lots(tried, len(requests), rng)
-    own = judged(f"standard {options.name}", aim, requests, lots, library)
+    own = judged(f"standard {options.name}", aim, requests, lots, library, standard)
     rivals = compare(aim, all_poses, poses, frame, options, library, rng)
     W = aim.whitened(requests)
     progress("placement", 6, 6)

@@ -1,6 +1,6 @@
 """Which table poses, and which touches in them, tell most on a standard that is there."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,9 +9,11 @@ from artefact.patch import Surface
 from artefact.standard import Standard
 from artefact.touchable import Mask, Probing, Requests, joined
 from sensitivity.blocks import blocks
-from sensitivity.design import Quota, Selection, exchange, fill
+from sensitivity.certificate import Certificate, relaxed, rounded
+from sensitivity.design import Quota
 from sensitivity.groups import best_groups
-from twin.errors import NotReachable
+from sensitivity.shares import heaviest
+from twin.errors import DesignError, NotReachable
 from twin.frames import Array
 from twin.units import DEG, UM
 
@@ -23,6 +25,7 @@ _DRAWN = 1000  # touches looked at together
 _CROWDED = 1.6  # even shares of the touches that one table pose may have
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face
 _OVERSHOOT = 6.0 * DEG  # left at the ends of a rotary travel, to approach readings from both sides
+_NEAR = 2e-3  # relative gap to which the relaxed optimum is sought
 _SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
 
 
@@ -198,31 +201,56 @@ def pose_quota(tried: Requests, count: int) -> Quota:
     return Quota(pose, np.full(len(there), most))
 
 
-def chosen_touches_on(
-    aim: Criterion, standard: Standard, tried: Requests, options: PlacementOptions
-) -> Mask:
-    """Single touches: spheres in every pose, every patch, then whatever tells most, (N,)."""
-    n = options.touches
+def shares(standard: Standard, tried: Requests, options: PlacementOptions) -> tuple[Quota, ...]:
+    """What every choice of touches keeps: of a table pose, of the spheres, of each patch.
+
+    Where fewer touches can be made than a share asks for, all of them will do; where poses are too
+    uneven for theirs, they may be more crowded.
+
+    Raises:
+        NotReachable: Too few touches can be made, whatever the shares.
+    """
+    n, patches = options.touches, len(standard.patches)
     if len(tried) < n:
         raise NotReachable(f"{len(tried)} touches can be made on the standard, {n} are wanted")
     names = [*(p.name for p in standard.patches), *(s.name for s in standard.spheres)]
     feature = np.array([names.index(f) for f in tried.feature.tolist()])
-    pose, poses = tried.pose, int(tried.pose.max()) + 1
-    is_sphere = feature >= len(standard.patches)
-    aside = np.where(is_sphere, pose * len(names) + feature, poses * len(names))
+    there = np.bincount(feature, minlength=len(names))
+    least = np.minimum(round(options.least_on_patch * n / len(names)), there)
+    least[patches:] = 0
+    on_spheres = int(there[patches:].sum())
+    low, high = (round(share * n) for share in options.sphere_share)
+    high = max(high, n - int(there[:patches].sum()))
+    low = min(low, high, on_spheres, n - int(least.sum()))
+    of_features = (
+        Quota((feature >= patches).astype(np.int64), np.array([n, high]), np.array([0, low])),
+        Quota(feature, np.full(len(names), n), least),
+    )
     per_pose = pose_quota(tried, n)
-    selection = Selection(aim.purpose, aim.rows(tried))
-    # one touch on every sphere in every pose that allows it, up to the share of the spheres
-    first = Quota(aside, np.append(np.ones(poses * len(names), dtype=np.int64), 0))
-    least, most = (round(share * n) for share in options.sphere_share)
-    fill(selection, min(least, len(np.unique(aside[is_sphere]))), (first,))
-    for patch in range(len(standard.patches)):
-        only = Quota((feature != patch).astype(np.int64), np.array([n, 0]))
-        enough = round(options.least_on_patch * n / len(names))
-        here = int(np.sum(feature == patch))
-        fill(selection, int(selection.chosen.sum()) + min(enough, here), (only, per_pose))
-    kept = selection.chosen.copy()
-    quotas = (per_pose, Quota(is_sphere.astype(np.int64), np.array([n, most])))
-    fill(selection, n, quotas)
-    exchange(selection, quotas, kept, most=n // 2)
-    return selection.chosen
+    while True:
+        quotas = (per_pose, *of_features)
+        try:
+            heaviest(np.zeros(len(tried)), n, quotas)
+        except DesignError:
+            if per_pose.most.min() >= n:
+                raise
+            per_pose = replace(per_pose, most=np.minimum(2 * per_pose.most, n))
+        else:
+            return quotas
+
+
+def chosen_touches_on(
+    aim: Criterion, standard: Standard, tried: Requests, options: PlacementOptions
+) -> tuple[Mask, Certificate]:
+    """Single touches, and how near they are to the best that keep the same shares.
+
+    The relaxed optimum comes first; its heaviest touches are exchanged until nothing is gained.
+
+    Returns:
+        The choice, (N,), and its certificate.
+    """
+    quotas, W, n = shares(standard, tried, options), aim.rows(tried), options.touches
+    start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
+    best = relaxed(aim.purpose, W, n, start, _NEAR, quotas)
+    choice = rounded(aim.purpose, W, best.weight, n, most=n // 2, quotas=quotas)
+    return choice.chosen, Certificate(len(W), n, choice.value, best.bound, shares=True)

@@ -16,6 +16,7 @@ from matstd.design import Design, Proven
 from matstd.page import digits, write_page
 from matstd.report_known import known_content
 from matstd.report_study import draw_study_volumes, study_content
+from matstd.report_time import minutes, order_content
 from probe_paths.picture import write_order_picture, write_touches_picture
 from sensitivity.canvas import save
 from twin.errors import DesignError
@@ -58,6 +59,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         **study_content(design.study, maps),
         **_standard(design),
         **_proof(design),
+        **order_content(design),
         **known_content(design, folder),
         excerpt="\n".join([*design.programs.programs[0].text.splitlines()[:_EXCERPT], "..."]),
     )
@@ -98,7 +100,7 @@ def _draw_curves(design: Design, folder: Path) -> str:
 
 def _standard(design: Design) -> dict[str, Any]:
     """Tables of the patches, of other artefacts and of the CAD files."""
-    c = design.conformity
+    c, on_machine = design.conformity, minutes(design)
     faces = max(c.face_deviation.values()) / UM
     return {
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
@@ -115,6 +117,7 @@ def _standard(design: Design) -> dict[str, Any]:
                 "p95_user_um": r.p95_user / UM,
                 "visible": r.visible,
                 "could_be_visible": r.could_be_visible,
+                "minutes": on_machine[r.name],
                 "rms_random_um": r.rms_random / UM,
                 "estimable": r.estimable,
             }
