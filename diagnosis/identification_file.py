@@ -29,16 +29,16 @@ def identification(fit: Fit, known: Estimable, proofs: Sequence[Proof] = ()) -> 
         "rms_um": fit.rms / UM,
         "test_rms_um": fit.test_rms / UM,
         "noise_over_stated": fit.noise.factor,
-        "parameters": known.parameters,
-        "rank": known.rank,
+        "parameters": known.found.parameters,
+        "rank": known.found.rank,
         "effective_parameters": known.effective,
-        "condition_number": known.condition,
+        "condition_number": known.found.condition_prior,
         "determined": [_value(d.name, d.value, d.u, d.unit) for d in known.determined],
         "combinations": [
             _value(c.words, c.value, c.u, c.unit) | {"prior_over_posterior": c.gain}
             for c in known.combinations
         ],
-        "never_seen": [g.words for g in known.gauges],
+        "never_seen": [f.words for f in known.freedoms],
     }
     if proofs:
         out["volumetric_error"] = [

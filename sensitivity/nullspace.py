@@ -134,7 +134,7 @@ def sparse(
         if some is None or not len(some):
             continue
         for group in groups(some):
-            N = np.linalg.svd(some[:, group])[2][: _dimension(some[:, group])]
+            N = np.linalg.svd(some[:, group])[2][: _dimension(some, group)]
             have = [v[group] for v in vectors if set(np.flatnonzero(v).tolist()) <= set(group)]
             order = sorted(range(len(group)), key=lambda i: key[group[i]])
             for vector in _fewest(N, have, order):
@@ -155,9 +155,13 @@ def _named(vectors: list[Array], key: list[tuple[int, int]]) -> list[tuple[int, 
     return out
 
 
-def _dimension(null: Array) -> int:
-    s = np.linalg.svd(null, compute_uv=False)
-    return int(np.sum(s > 1e-9 * s[0]))
+def _dimension(null: Array, group: list[int]) -> int:
+    """Null directions within a group: the trace of its block of the projection on all of them.
+
+    No singular value is compared with rounding: the block of a whole group is a projection itself.
+    """
+    basis = np.linalg.qr(_unit(null)[0].T)[0]
+    return round(float((basis[group] ** 2).sum()))
 
 
 def _fewest(N: Array, have: list[Array], order: list[int]) -> list[Array]:
@@ -172,8 +176,7 @@ def _fewest(N: Array, have: list[Array], order: list[int]) -> list[Array]:
     pairs, gone = _pairs(N, order)
     rest = N
     if gone:
-        _, s, Vt = np.linalg.svd(N[:, gone].T)
-        rest = Vt[int(np.sum(s > 1e-9)) :] @ N
+        rest = np.linalg.svd(N[:, gone].T)[2][len(gone) :] @ N  # nothing of what was eliminated
     chosen = _independent([*have, *pairs], [], g)
     if len(chosen) < g:
         found = [z for lead in range(p) if (z := _smallest(rest, lead)) is not None]
@@ -238,12 +241,14 @@ def _smallest(N: Array, lead: int) -> Array | None:
         return None
     z = N.T @ found.x[:g]
     support = np.abs(z) > _NOTHING * np.abs(z).max()
+    if not support[lead]:  # beside the others it is nothing but rounding
+        return None
     # the same support again, exactly: what is outside it is made zero by least squares
     outside = N[:, ~support]
     c = found.x[:g]
     if outside.size:
         U, s, _ = np.linalg.svd(outside, full_matrices=False)
-        U = U[:, s > 1e-9]
+        U = U[:, s > _NOTHING]  # less than that is rounding of the readings, not a weight
         c = c - U @ (U.T @ c)
     z = np.where(support, N.T @ c, 0.0)
     return np.asarray(z / z[lead], dtype=np.float64)

@@ -24,22 +24,22 @@ def known(fitted):
 def test_what_a_spindle_that_stands_still_hides_is_named(known) -> None:
     """Without turning, the line of C1 runs through the ball: moving or turning it shows nothing."""
     _, e = known
-    alone = {g.members[0] for g in e.gauges if len(g.members) == 1}
+    alone = {f.parameter for f in e.freedoms if not f.alike}
     assert {f"location({s}0C1)" for s in ("EX", "EY", "EA", "EB", "EC")} <= alone
     assert "geometric(ECZ,linear)" in alone  # turns about the line from spindle to ball
-    assert "location(EX0C1) is never seen" in [g.words for g in e.gauges]
+    words = next(f.words for f in e.freedoms if f.parameter == "location(EX0C1)")
+    assert "moves no touch" in words
 
 
 def test_constant_of_c_is_the_rotation_of_the_set_ups(known) -> None:
     """A zero of C that is off cannot be told from standards that were all turned on the table."""
     _, e = known
-    gauge = next(g for g in e.gauges if g.members[0] == "location(EC0C)")
     turns = {f"setup({c}): rz" for c in "abc"}
-    assert turns <= set(gauge.members)
-    assert "looks like" in gauge.words
-    weights = dict(zip(gauge.members, gauge.weights, strict=True))
-    for turn in turns:
-        assert abs(weights[turn]) == pytest.approx(1.0, abs=1e-6)  # as many rad as C itself
+    freedom = next(f for f in e.freedoms if turns <= {f.parameter, *dict(f.alike)})
+    weights = {freedom.parameter: -1.0, **dict(freedom.alike)}
+    assert {"location(EC0C)", *turns} <= set(weights)
+    for turn in turns:  # as many rad as C itself
+        assert abs(weights[turn]) == pytest.approx(abs(weights["location(EC0C)"]), abs=1e-6)
     assert len({np.sign(weights[turn]) for turn in turns}) == 1
     assert "location(EC0C)" not in {d.name for d in e.determined}
 
@@ -49,14 +49,17 @@ def test_no_touch_notices_a_gauge(known) -> None:
     fit, e = known
     A = columns(fit.effects, fit.run.touches)
     place = {name: i for i, name in enumerate(fit.names)}
-    assert e.parameters == len(fit.names)
-    assert e.rank + len(e.gauges) == e.parameters
-    for gauge in e.gauges:
-        scale = 0.01 if fit.parameters[place[gauge.members[0]]][1].unit == "mm" else 1e-5
+    assert e.found.parameters == len(fit.names)
+    assert e.found.rank + len(e.freedoms) == e.found.parameters
+    for freedom in e.freedoms:
+        lead = place[freedom.parameter]
+        scale = 0.01 if fit.parameters[lead][1].unit == "mm" else 1e-5
         theta = np.zeros(len(fit.names))
-        theta[[place[m] for m in gauge.members]] = scale * np.array(gauge.weights)
+        theta[lead] = scale
+        for name, per_unit in freedom.alike:  # what imitates it, taken back
+            theta[place[name]] = -scale * per_unit
         # singular vectors are exact to rounding times the condition of some 1e5
-        assert np.max(np.abs(A @ theta)) < 0.1 * NM, gauge.words
+        assert np.max(np.abs(A @ theta)) < 0.1 * NM, freedom.words
 
 
 def test_rank_is_that_of_the_columns(known) -> None:
@@ -64,7 +67,7 @@ def test_rank_is_that_of_the_columns(known) -> None:
     A = columns(fit.effects, fit.run.touches)
     size = np.linalg.norm(A, axis=0)
     seen = size > 1e-9 * size.max()  # the rest is rounding
-    assert e.rank == np.linalg.matrix_rank(A[:, seen] / size[seen], tol=1e-6)
+    assert e.found.rank == np.linalg.matrix_rank(A[:, seen] / size[seen], tol=1e-6)
 
 
 def test_determined_parameters_are_freed_of_their_prior(known) -> None:
