@@ -9,6 +9,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from matstd.versions import versions
 from twin.files.whole import write_whole
 from twin.words import digits as digits
+from twin.words import signed
 
 _APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
 """Spaces between a number and its uncertainty or its unit."""
@@ -35,7 +36,7 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
         "p_value": p_value,
         "unbroken": unbroken,
     }
-    environment.globals |= {"picture": picture, "versions": versions}
+    environment.globals |= {"signed": signed, "picture": picture, "versions": versions}
     write_whole(path, environment.get_template(template).render(**content))
 
 

@@ -51,6 +51,17 @@ def with_uncertainty(value: float, u: float | None, unit: str = "") -> str:
     return f"{value:.{places}f} ± {u:.{places}f}{tail}"
 
 
+def signed(value: float, u: float | None, unit: str = "") -> str:
+    """A difference, its sign always shown, to two digits of its uncertainty.
+
+    Example:
+        >>> signed(0.7914, 0.0812, "µm"), signed(-3.0, 0.5)
+        ('+0.791 ± 0.081 µm', '-3.00 ± 0.50')
+    """
+    words = with_uncertainty(value, u, unit)
+    return words if words.startswith("-") else f"+{words}"
+
+
 def time_unit(span: float) -> tuple[float, str]:
     """The unit (s) in which a span of time is told, and its name."""
     for unit, name, least in _SPANS:

@@ -66,10 +66,12 @@ def _tell(args: argparse.Namespace, found: Comparison) -> None:
     from diagnosis.sentences import comparison_sentence
     from matstd.console import say
     from twin.units import UM
+    from twin.words import signed
 
     say(comparison_sentence(found), style="bold")
     for region in found.where:
-        say(f"{region.words}: {region.mean / UM:+.2f} µm ({int(region.rows.sum())} touches)")
+        mean = signed(region.mean / UM, region.u / UM, "µm")
+        say(f"{region.words}: {mean} ({int(region.rows.sum())} touches)")
     for remark in found.remarks:
         say(f"- {remark}")
     first = "" if args.no_report else "report.html, "

@@ -17,6 +17,10 @@ OURS = ("next_measurement_*.csv", "pictures/*.png", "report.html")
 """Results that not every diagnosis leaves."""
 
 
+TOLD = 4
+"""Effects that look like a found one, that are named on the console."""
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
@@ -109,19 +113,21 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     """The verdict, the error falling, and what else should be known."""
     from rich.table import Column, Table
 
-    from diagnosis.sentences import verdict_sentence
+    from diagnosis.sentences import rivals_words, verdict_sentence
     from matstd.console import console, say
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = [
         Column(word, justify="right") for word in ("p", "fitted µm", "held out µm", "chi²/dof")
     ]
-    words = [Column(word, overflow="fold") for word in ("effect", "size", "not told from")]
-    words[0].no_wrap = words[1].no_wrap = True  # a name, and a number with its uncertainty
-    table = Table(words[0], words[1], *right, words[2], box=None)
+    words = [Column(word, overflow="fold", no_wrap=True) for word in ("effect", "size")]
+    table = Table(*words, *right, box=None)
     for step in result.steps:
         table.add_row(*_row(step))
     console().print(table)
+    for step in result.steps:
+        if step.effect is not None and step.confusion is not None and step.confusion.rivals:
+            say(f"- {step.effect.name} cannot be told from {rivals_words(step, TOLD)}")
     for remark in result.remarks:
         say(f"- {remark}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:
@@ -134,7 +140,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
 def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
-    from diagnosis.sentences import rivals_words, values
+    from diagnosis.sentences import values
     from twin.units import UM
 
     return (
@@ -144,5 +150,4 @@ def _row(step: Step) -> tuple[str, ...]:
         f"{step.fit.rms / UM:.3f}",
         f"{step.fit.test_rms / UM:.3f}",
         f"{step.fit.noise.chi2_ratio:.2f}",
-        rivals_words(step, most=1),
     )

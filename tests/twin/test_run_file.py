@@ -90,7 +90,7 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("rows", "remark"),
     [
-        ([ROW, ROW], "line 10: 1 row stands twice; the copy is left out"),
+        ([ROW, ROW], "line 10: 1 row stands twice; copies are left out"),
         ([later(ROW, 5.0), later(ROW, 2.0)], "line 10: time_s goes back from 5 to 2"),
         ([ROW.replace("20.5", ""), later(ROW, 2.0)], "line 9: T_s_degC has no number in 1 row;"),
         ([ROW.replace("20.5", "nan"), later(ROW, 2.0)], "the sensor is left out"),
@@ -194,7 +194,7 @@ def test_a_file_that_was_appended_to_itself_keeps_its_clock(tmp_path: Path) -> N
     rows = [ROW, later(ROW, 9.0)]
     run = read_run(write(tmp_path, rows + rows))
     assert run.touches.time.tolist() == [1.5, 9.0]
-    assert any("2 rows stand twice; the copies are left out" in r for r in run.remarks)
+    assert any("2 rows stand twice; copies are left out" in r for r in run.remarks)
 
 
 def test_a_run_without_any_deviation_is_told(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from twin.copies import counted_once
 from twin.errors import BadFile
 from twin.files.pose_file import reading_columns
 from twin.files.table import CsvTable
@@ -53,7 +54,8 @@ def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     Raises:
         BadFile: What concerns too many rows to be a slip of single ones.
     """
-    run = _without_copies(run, remarks)
+    run = counted_once(replace(run, remarks=tuple(remarks)))
+    remarks[:] = run.remarks
     run = _without_slips(run, table, remarks)
     run = _with_clock(run, table, remarks)
     _check_units(run, table)
@@ -61,21 +63,6 @@ def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     if not run.deviation.any():
         remarks.append("every deviation is zero: nothing was measured")
     return run
-
-
-def _without_copies(run: Run, remarks: list[str]) -> Run:
-    """The run without rows that stand twice; replicates differ in their readings or their time."""
-    t = run.touches
-    key = np.column_stack([t.q, t.point, t.normal, t.setup, t.time, run.deviation])
-    first = np.unique(key, axis=0, return_index=True)[1]
-    if len(first) == len(run):
-        return run
-    keep = np.zeros(len(run), dtype=bool)
-    keep[first] = True
-    count = int((~keep).sum())
-    what = "row stands twice; the copy is" if count == 1 else "rows stand twice; the copies are"
-    remarks.append(f"line {run.line[np.argmin(keep)]}: {count} {what} left out")
-    return run[keep]
 
 
 def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
