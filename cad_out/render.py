@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from artefact.datum import DatumSphere
 from artefact.freeform import FreeformPatch
 from artefact.standard import Standard
 from artefact.standard_file import read_standard
@@ -24,6 +25,7 @@ _FACES = (
     "#2f6fb0", "#e08e2b", "#4f9d57", "#8a62a8", "#3aa6a6",
     "#b5627b", "#7a8f2a", "#5b79c9", "#a6763f", "#4b8fa8",
 )  # fmt: skip
+_NAME_ROOM = 14.0  # mm in the picture between two names, one over the other
 _PITCH = 0.8  # mm, of the drawn grid of a face
 _VIEWS = ((38.0, 33.0), (218.0, 33.0))  # azimuth and elevation of the eye, deg
 
@@ -217,7 +219,7 @@ def _add_labels(plotter: Any, standard: Standard, eye: Array) -> None:
             places.append(sides[np.argmax(sides @ up)] + 5.0 * up)
             names.append(patch.name)
     for sphere in standard.spheres:
-        places.append(sphere.centre + (sphere.radius + 6.0) * up)
+        places.append(_beside(sphere, places, right, up))
         names.append(sphere.name)
     places.append(_free_corner(standard, eye))
     names.append(standard.plane.name)
@@ -234,6 +236,20 @@ def _add_labels(plotter: Any, standard: Standard, eye: Array) -> None:
         show_points=False,
         always_visible=True,
     )
+
+
+def _beside(sphere: DatumSphere, taken: list[Array], right: Array, up: Array) -> Array:
+    """A place for the name of a ball: above it, or where no other name is."""
+    r = sphere.radius
+    around = [(r + 6.0) * up, (r + 20.0) * right, -(r + 20.0) * right, -(r + 14.0) * up]
+    tried = sphere.centre + np.array(around)
+    if not taken:
+        return np.asarray(tried[0])
+    # names are three times as wide as they are high
+    across = (tried[:, None] - np.array(taken)) @ np.stack([right / 3.0, up], axis=-1)
+    room = np.linalg.norm(across, axis=-1).min(axis=1)
+    free: Array = tried[np.argmax(np.minimum(room, _NAME_ROOM))]
+    return free
 
 
 def _free_corner(standard: Standard, eye: Array) -> Array:
