@@ -11,6 +11,7 @@ from twin.kinematics import inverse_linear
 from twin.model import columns
 from twin.run import Run
 from twin.touches import Touches, linear_approach
+from twin.units import DEG
 
 WANTED = 24
 """Touches of a plan."""
@@ -23,6 +24,13 @@ PACE = 15.0
 
 LEAST = 1.0
 """A plan that separates by fewer standard deviations than this is none."""
+
+DRAWN = 8
+"""Combinations drawn for every touch offered; most are out of reach."""
+
+CONE = 15.0 * DEG
+"""A feature is approached within this angle of a direction in which the run has touched it: what
+stands in the way from elsewhere only the standard's own model knows."""
 
 STEEPEST = 0.2
 """A plan touches no surface steeper to the stylus than the run did, and none beyond this cosine."""
@@ -49,7 +57,8 @@ def offered(run: Run, rng: np.random.Generator) -> Touches:
 
     Every offer joins a touched point with rotary readings that the run has used, in the same or in
     another set-up, from either side of each rotary axis, at a later time; the linear axes follow.
-    Offers beyond a travel or steeper to the stylus than the run's own touches are left out.
+    Offers beyond a travel, steeper to the stylus than the run's own touches, or from where the run
+    has not touched that feature are left out.
 
     Args:
         run: The measurements.
@@ -57,7 +66,7 @@ def offered(run: Run, rng: np.random.Generator) -> Touches:
     """
     t = run.touches
     n = len(t)
-    count = 4 * OFFERED
+    count = DRAWN * OFFERED
     point, pose = rng.integers(n, size=count), rng.integers(n, size=count)
     q = t.q[pose].copy()
     picked = replace(t[point], q=q, setup=t.setup[pose], pose=t.pose[pose])
@@ -68,6 +77,7 @@ def offered(run: Run, rng: np.random.Generator) -> Touches:
         approach[:, t.chain.axis_index(axis)] = rng.choice([-1.0, 1.0], size=count)
     picked = replace(picked, q=q, approach=approach)
     keep = _within(picked) & (_facing(picked) >= max(float(_facing(t).min()), STEEPEST))
+    keep &= _known_side(t, picked)
     return picked[np.flatnonzero(keep)[:OFFERED]]
 
 
@@ -89,6 +99,24 @@ def _facing(touches: Touches) -> Array:
     """Cosine between the outward normal and the direction from the tip to the spindle, (N,)."""
     tool = touches.chain.link_index("t")
     return np.einsum("ni,ni->n", touches.reach.twist[:, tool, 2], touches.normal_table)
+
+
+def _from_side(touches: Touches) -> Array:
+    """Direction from the tip to the spindle as the standard sees it, (N, 3)."""
+    tool = touches.chain.link_index("t")
+    turns = np.array([s.T_table_artefact[:3, :3] for s in touches.setups])
+    return np.einsum("nij,ni->nj", turns[touches.setup], touches.reach.twist[:, tool, 2])
+
+
+def _known_side(known: Touches, offers: Touches) -> BoolArray:
+    """Offers that come to their feature from about where it was touched before, (M,)."""
+    before, now = _from_side(known), _from_side(offers)
+    out = np.zeros(len(offers), dtype=bool)
+    for feature in np.unique(offers.feature):
+        rows = np.flatnonzero(offers.feature == feature)
+        sides = np.unique(np.round(before[known.feature == feature], 6), axis=0)
+        out[rows] = (now[rows] @ sides.T).max(axis=1) >= np.cos(CONE)
+    return out
 
 
 def plan(first: Fit, second: Fit, names: tuple[str, str], rng: np.random.Generator) -> Plan | None:

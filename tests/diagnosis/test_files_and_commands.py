@@ -447,7 +447,7 @@ def backwards(rows):
     [
         (with_all("T_spindle_degC", lambda i, row: "20.0"), "T_spindle_degC is constant at 20"),
         (with_value("T_spindle_degC", "nan"), "the sensor is left out"),
-        (lambda rows: [rows[0], *rows], "1 row stands twice; the copy is left out"),
+        (lambda rows: [rows[0], *rows], "1 row stands twice; copies are left out"),
         (backwards, "time_s goes back"),
         (lambda rows: rows[:26], "1 table pose only"),
         (lambda rows: rows[:60], "60 touches for"),
