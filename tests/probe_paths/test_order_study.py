@@ -1,0 +1,97 @@
+"""What an order costs and gains: against brute force, the whole covariance, the plan's programs."""
+
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from artefact.touchable import Requests
+from probe_paths.duration import probing_time
+from probe_paths.order_study import _sd_beside, _short_way, _shortest, orders
+from probe_paths.plan import PlanOptions
+from probe_paths.probe import Probe
+from twin.ordinary import ordinary_model
+from twin.touches import Setup
+from twin.units import MINUTE, UM
+
+END_OF_A_FILE = 10.0
+"""Turning home and back, s."""
+
+
+@pytest.fixture(scope="module")
+def found(plan):
+    return orders(plan, ordinary_model(plan.chain), 1.0 * UM)
+
+
+def test_quicker_orders_know_less_of_drift(found, plan):
+    durations = [order.duration for order in found]
+    assert durations == sorted(durations, reverse=True)
+    assert found[0].touches == len(plan)
+    assert {order.touches for order in found[1:]} == {int(np.sum(plan.request >= 0))}
+    # the planned order has more touches, more time between them, and every pose twice
+    assert found[0].drift == min(order.drift for order in found)
+    assert found[-1].drift > 1.1 * found[0].drift
+    assert all(0.0 < value < np.inf for order in found for value in order.reversal)
+
+
+def test_the_planned_order_takes_as_long_as_its_programs(found, programs, plan):
+    # the ends of the files are all that differs: one here, several there
+    ends = END_OF_A_FILE * len(programs.programs)
+    assert found[0].duration == pytest.approx(programs.duration, abs=ends)
+
+
+def test_touches_are_the_same_in_every_order(plan):
+    bare = np.flatnonzero(plan.request >= 0)
+    short = _shortest(replace(plan, **{k: getattr(plan, k)[bare] for k in _PER_TOUCH}))
+    assert sorted(short.request) == sorted(plan.request[bare])
+    poses = [visit.pose for visit in short.visits]
+    assert len(poses) == len(set(poses)) == len({visit.pose for visit in plan.visits})
+    for name in ("point", "contact"):
+        of = dict(zip(plan.request[bare], getattr(plan, name)[bare], strict=True))
+        for row, request in enumerate(short.request):
+            assert np.array_equal(getattr(short, name)[row], of[request])
+
+
+_PER_TOUCH = ("visit", "request", "feature", "point", "normal", "start", "contact", "direction")
+
+
+def test_short_way_against_all_ways():
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        poses, home = rng.uniform(-2.0, 2.0, (6, 2)), np.zeros(2)
+
+        def turned(way, poses=poses, home=home):
+            path = np.concatenate([home[None], poses[list(way)], home[None]])
+            return np.abs(np.diff(path, axis=0)).max(axis=1).sum()
+
+        shortest = min(turned(way) for way in permutations(range(6)))
+        way = _short_way(poses, home)
+        assert sorted(way) == list(range(6))
+        assert turned(way) <= 1.1 * shortest
+
+
+def test_standard_deviations_against_the_whole_covariance():
+    rng = np.random.default_rng(0)
+    C, W = rng.normal(size=(40, 3)), rng.normal(size=(40, 7))
+    both = np.concatenate([C, W], axis=1)
+    covariance = np.linalg.inv(np.eye(10) + both.T @ both)
+    np.testing.assert_allclose(_sd_beside(C, W), np.sqrt(np.diag(covariance)[:3]), rtol=1e-10)
+
+
+def test_time_of_another_body(plan, programs, small):
+    rows = np.flatnonzero(plan.request >= 0)
+    rotary = [plan.chain.axis_index(name) for name in plan.chain.rotary_axes]
+    wanted = Requests(
+        plan.feature[rows], plan.point[rows], plan.normal[rows], plan.contact[rows][:, rotary]
+    )
+    seconds = probing_time(small, plan.chain, plan.probe, plan.setup, wanted, plan.options)
+    assert seconds == pytest.approx(programs.duration, rel=0.02)
+    # a touch that cannot be made counts like the others
+    upside_down = replace(
+        wanted, normal=wanted.normal * np.where(np.arange(len(rows)) < 1, -1, 1)[:, None]
+    )
+    again = probing_time(small, plan.chain, plan.probe, plan.setup, upside_down, plan.options)
+    assert again == pytest.approx(seconds, abs=2.0 * MINUTE)
+    none = replace(wanted, normal=-wanted.normal)
+    assert np.isnan(probing_time(small, plan.chain, Probe(), Setup("a"), none, PlanOptions()))
