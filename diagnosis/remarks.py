@@ -53,8 +53,8 @@ def _touches(fit: Fit) -> list[str]:
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[fit.used], axis=0))
     if poses < MIN_POSES:
         out.append(
-            f"{poses} table pose{'s' if poses > 1 else ''} only: errors of the rotary axes can "
-            f"{'hardly' if poses > 1 else 'not'} be seen, and touches are held out in blocks "
+            f"{poses} table pose{'s' if poses > 1 else ''} only: errors of the rotary axes "
+            f"{'can hardly' if poses > 1 else 'cannot'} be seen, and touches are held out in blocks "
             "instead of by pose"
         )
     return out

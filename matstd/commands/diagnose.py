@@ -142,6 +142,7 @@ def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
     from diagnosis.sentences import values
     from twin.units import UM
+    from twin.words import digits
 
     return (
         step.effect.name if step.effect is not None else "model to begin with",
@@ -149,5 +150,5 @@ def _row(step: Step) -> tuple[str, ...]:
         f"{step.p_value:.0e}" if step.effect is not None else "",
         f"{step.fit.rms / UM:.3f}",
         f"{step.fit.test_rms / UM:.3f}",
-        f"{step.fit.noise.chi2_ratio:.2f}",
+        digits(step.fit.noise.chi2_ratio),
     )
