@@ -54,8 +54,8 @@ def _touches(fit: Fit) -> list[str]:
     if poses < MIN_POSES:
         out.append(
             f"{poses} table pose{'s' if poses > 1 else ''} only: errors of the rotary axes "
-            f"{'can hardly' if poses > 1 else 'cannot'} be seen, and touches are held out in blocks "
-            "instead of by pose"
+            f"{'can hardly' if poses > 1 else 'cannot'} be seen, and touches are held out in "
+            "blocks instead of by pose"
         )
     return out
 
