@@ -11,22 +11,19 @@ from pathlib import Path
 import numpy as np
 
 from artefact.knowable import Knowable, knowable, write_identifiability
-from artefact.placement import Placement, PlacementOptions, place
-from artefact.sites import Fittings, Frame
-from artefact.standard import Material
+from artefact.placement import Placement, place
 from artefact.standard_file import write_standard
-from artefact.touchable import Probing
 from cad_out.conformity import Conformity
 from cad_out.export import export_standard
 from diagnosis.fit import Fit, fit_run
 from diagnosis.identification_file import write_identification
 from diagnosis.proof import Proof, probed_volume, prove
 from matstd.project_file import Project
+from matstd.wanted import frame, placement_options, probe, probing
 from probe_paths.campaign import Campaign, simulate
 from probe_paths.contacts import VirtualMachine
-from probe_paths.plan import TouchPlan
+from probe_paths.plan import PlanOptions, TouchPlan
 from probe_paths.planner import plan_touches
-from probe_paths.probe import Probe
 from probe_paths.program import ProgramSet, make_programs
 from sensitivity.crew import Crew
 from sensitivity.maps import draw_maps
@@ -40,13 +37,9 @@ from twin.files.error_file import errors_toml
 from twin.files.run_writer import write_run
 from twin.files.whole import write_whole
 from twin.frames import Array
-from twin.units import KG_M3
 
 PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""
-
-_SPHERE_HEIGHTS = (60.0, 95.0, 130.0)
-"""Of the sphere centres above the seat, mm: as far apart as the blank's patches leave room for."""
 
 Stage = Callable[[str, int, int], None]
 """Told the name of a stage, what is done and how much there is."""
@@ -116,6 +109,11 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
+    placement = _placement(project, workspace, rng_place, progress)
+    write_standard(folder / "standard.toml", placement.standard)
+    progress("what can be told apart", 0, 1)
+    known = knowable(placement.criterion, placement.requests, rng_known)
+    write_identifiability(folder / "identifiability.json", known)
     study = run_study(
         population,
         workspace,
@@ -130,11 +128,6 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     write_study(study, folder / "sensitivity")
     maps = draw_maps(study, folder / "sensitivity", rng_maps)
     maps += draw_path(study, folder / "sensitivity")
-    placement = _placement(project, workspace, rng_place, progress)
-    write_standard(folder / "standard.toml", placement.standard)
-    progress("what can be told apart", 0, 1)
-    known = knowable(placement.criterion, placement.requests, rng_known)
-    write_identifiability(folder / "identifiability.json", known)
     progress("STEP and STL", 0, 1)
     conformity = export_standard(placement.standard, folder)
     progress("probing programs", 0, 1)
@@ -169,19 +162,13 @@ def _generators(project: Project) -> list[np.random.Generator]:
     return np.random.default_rng(project.seed).spawn(5)
 
 
-def _probe(project: Project) -> Probe:
-    return Probe(project.probe_radius, project.probe_length)
-
-
 def _placement(
     project: Project, workspace: Workspace, rng: np.random.Generator, progress: Stage
 ) -> Placement:
     """Standard and touches for the project's machine."""
-    wanted, probe = project.standard, _probe(project)
-    material = Material(wanted.material, wanted.density_kg_m3 * KG_M3, wanted.expansion_per_K)
     return place(
-        Probing(project.chain, project.setup, probe.shape, probe.length),
-        Frame(fittings=Fittings(sphere_heights=_SPHERE_HEIGHTS), material=material),
+        probing(project),
+        frame(project),
         workspace,
         rng,
         project.ranges,
@@ -190,27 +177,15 @@ def _placement(
     )
 
 
-def placement_options(project: Project) -> PlacementOptions:
-    """How much is tried and measured, and what for."""
-    wanted = project.standard
-    return PlacementOptions(
-        name=wanted.name,
-        serial=wanted.serial,
-        patches=wanted.patches,
-        touches=wanted.touches,
-        poses=wanted.poses,
-        noise=project.noise,
-        criterion=wanted.criterion,
-        potential=wanted.potential,
-        draws=wanted.drawn_machines,
-        tail=wanted.worst_share,
-    )
-
-
 def _plan(project: Project, placement: Placement) -> TouchPlan:
     """Touches that the placement wants, in the order of a cautious operator."""
     return plan_touches(
-        placement.standard, project.chain, _probe(project), project.setup, placement.requests
+        placement.standard,
+        project.chain,
+        probe(project),
+        project.setup,
+        placement.requests,
+        PlanOptions(table_radius=project.limits.table_radius_mm),
     )
 
 
@@ -228,7 +203,8 @@ def _prove(
     machine = VirtualMachine(
         project.chain, lambda touches: contribution(errors, touches), noise=project.noise
     )
-    campaign = simulate(programs, placement.standard, machine, rng_noise)
+    table = project.limits.table_radius_mm
+    campaign = simulate(programs, placement.standard, machine, rng_noise, table_radius=table)
     fit = fit_run(campaign.run, population.expected())
     poses = probed_volume(campaign.run, PROOF_POSES, rng_poses)
     return Proven(seed, errors, campaign, fit, prove(fit, errors, project.setup, poses))

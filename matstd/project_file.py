@@ -3,12 +3,19 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from pydantic import Field
 
 from matstd.errors_table import ErrorsTable, Expected, expected_errors
+from matstd.standard_tables import (
+    BlankTable,
+    LimitsTable,
+    StandardTable,
+    check_body,
+    check_standard,
+)
 from sensitivity.batches import MACHINES_A_BATCH
 from sensitivity.sampling import Population
 from twin.chain import Chain
@@ -36,23 +43,6 @@ class MonteCarloTable(Table):
     tolerance_um: float = Field(default=float("inf"), gt=0.0)
 
 
-class StandardTable(Table):
-    """`[standard]`: what shall be made."""
-
-    name: str = "FFS-1"
-    serial: str = ""
-    material: str = "X40Cr14 (1.2083), hardened"
-    density_kg_m3: float = Field(default=7800.0, gt=0.0)
-    expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
-    patches: int = Field(default=10, ge=8, le=16)
-    touches: int = Field(default=480, ge=100, le=2000)
-    poses: int = Field(default=30, ge=8, le=100)
-    criterion: Literal["I", "G", "D", "A", "E"] = "I"
-    potential: float = Field(default=0.3, ge=0.0, le=0.95)
-    drawn_machines: int = Field(default=0, ge=0, le=100)
-    worst_share: float = Field(default=1.0, gt=0.0, le=1.0)
-
-
 class SetupTable(Table):
     """`[setup.a]`: pose of the standard in the table frame."""
 
@@ -78,6 +68,8 @@ class ProjectTable(Table):
     montecarlo: MonteCarloTable = MonteCarloTable()
     errors: ErrorsTable = ErrorsTable()
     standard: StandardTable = StandardTable()
+    blank: BlankTable = BlankTable()
+    limits: LimitsTable = LimitsTable()
     setup: dict[str, SetupTable] = Field(default_factory=lambda: {"a": SetupTable()})
     simulation: SimulationTable = SimulationTable()
 
@@ -101,6 +93,8 @@ class Project:
         expected: Errors that the machine is expected to have.
         standard: Name, material, expansion, number of patches, touches and table poses, and what
             they are chosen for.
+        blank: What it is made from.
+        limits: What workshop, probe and table allow.
         setup: Where the standard stands on the table.
         noise: Standard deviation of one simulated touch, mm.
         machines: Number of random machines of the proof.
@@ -119,6 +113,8 @@ class Project:
     tolerance: float
     expected: Expected
     standard: StandardTable
+    blank: BlankTable
+    limits: LimitsTable
     setup: Setup
     noise: float
     machines: int
@@ -163,7 +159,8 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
             f"{table.montecarlo.draws} with digits = {table.montecarlo.digits}",
             f"{2 * MACHINES_A_BATCH} or more: stable digits need two batches",
         )
-    _check_choice(table.standard, path)
+    check_standard(table.standard, path)
+    check_body(table.blank, table.limits, table.standard, table.probe.radius_mm, path)
     name, setup = next(iter(table.setup.items()))
     return Project(
         path=path,
@@ -179,6 +176,8 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         tolerance=table.montecarlo.tolerance_um * UM,
         expected=expected_errors(table.errors, chain, path),
         standard=table.standard,
+        blank=table.blank,
+        limits=table.limits,
         setup=Setup(
             name,
             pose(fixed_xyz(np.array(setup.rotation_deg) * DEG), np.array(setup.origin_mm)),
@@ -186,24 +185,6 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         noise=table.simulation.noise_um * UM,
         machines=table.simulation.machines,
     )
-
-
-def _check_choice(wanted: StandardTable, path: Path) -> None:
-    """Keys of `[standard]` that contradict one another."""
-    if wanted.worst_share < 1.0 and not wanted.drawn_machines:
-        raise BadFile(
-            path,
-            "standard.worst_share",
-            f"{wanted.worst_share:g} with drawn_machines = 0",
-            "drawn machines of which that share is the worst, or no such key",
-        )
-    if wanted.poses * 2 > wanted.touches:
-        raise BadFile(
-            path,
-            "standard.poses",
-            f"{wanted.poses} with touches = {wanted.touches}",
-            "two touches or more for every table pose",
-        )
 
 
 def _workspace(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from artefact.clearance import TABLE_RADIUS
 from artefact.standard import Standard
 from probe_paths.collisions import check_moves
 from probe_paths.contacts import VirtualMachine
@@ -45,6 +46,7 @@ def simulate(
     machine: VirtualMachine,
     rng: np.random.Generator,
     probe: Probe | None = None,
+    table_radius: float = TABLE_RADIUS,
 ) -> Campaign:
     """Run program files on the twin and evaluate the logs that they leave.
 
@@ -54,6 +56,7 @@ def simulate(
         machine: As it really is; the evaluation knows only its nominal chain.
         rng: For the noise of the trigger.
         probe: In the spindle; None takes the one that each program states.
+        table_radius: Of the table's face, mm: moves are kept clear of it.
 
     Raises:
         BadFile: A program that the control, or a cautious operator, would not run.
@@ -62,7 +65,7 @@ def simulate(
     """
     texts = [read_program(path, machine.chain, probe) for path in programs]
     for text in texts:
-        check_moves(text, standard, machine.chain)
+        check_moves(text, standard, machine.chain, table_radius)
     runs = run_programs(texts, standard, machine, rng)
     if runs[-1].why:
         raise NotReachable(runs[-1].why, runs=runs)

@@ -34,7 +34,9 @@ class _Moves:
         return _Moves(self.line[rows], self.before[rows], self.after[rows])
 
 
-def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
+def check_moves(
+    program: ReadProgram, standard: Standard, chain: Chain, table_radius: float = TABLE_RADIUS
+) -> None:
     """Refuse a program that would drive the probe into the standard or the table.
 
     The machine and the set-up are taken as nominal. Moves above everything are free; below that
@@ -45,13 +47,14 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
         program: As read from its text.
         standard: What stands on the table.
         chain: The machine.
+        table_radius: Of the table's face, mm.
 
     Raises:
         BadFile: Line of the first move that comes too near, and what it comes near to.
     """
     probe = Probe(program.heading.radius, program.heading.length)
     setup = program.heading.setup
-    solid = obstacles(standard, setup, TABLE_RADIUS)
+    solid = obstacles(standard, setup, table_radius)
     moves = _moves(program)
     rotary = [chain.axis_index(name) for name in chain.rotary_axes]
     z = chain.axis_index("Z")
@@ -65,7 +68,7 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     low = straight[
         np.flatnonzero(lowest < top_height(chain, straight.after[:, rotary], solid, probe))
     ]
-    room = Room(chain, standard, setup, probe, TABLE_RADIUS)
+    room = Room(chain, standard, setup, probe, table_radius)
     if len(low.line):
         gap, nearest = room.gap(low.after)
         _refuse(program, low.line, gap, nearest)

@@ -201,7 +201,9 @@ def fill(selection: Selection, count: int, quotas: tuple[Quota, ...] = ()) -> No
     while (chosen := int(selection.chosen.sum())) < count:
         free = _open(quotas, selection.chosen)
         if not free.any():
-            raise DesignError(f"{chosen} of {count} touches chosen, and no other may be taken")
+            raise DesignError(
+                f"{chosen} of {count} touches can be chosen under the shares of each kind"
+            )
         selection.add(int(np.argmax(np.where(free, selection.gains, -np.inf))))
         if selection.aim.is_curved and chosen % _TURN == 0:
             selection.refresh()

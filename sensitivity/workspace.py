@@ -107,7 +107,9 @@ def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
     mesh = np.meshgrid(*each, indexing="ij")
     q = _inside(workspace, np.stack([m.ravel() for m in mesh], axis=-1))
     if not len(q):
-        raise NotReachable(f"no pose of the workspace has its tool point in {workspace.volume}")
+        raise NotReachable(
+            f"no pose of the workspace has its tool point in {_box(workspace.volume)}"
+        )
     return q
 
 
@@ -157,8 +159,16 @@ def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) 
             return found[:count]
     raise NotReachable(
         f"only {len(found)} of {_ROUNDS * count} poses have their tool point in "
-        f"{workspace.volume} with every axis within its limits"
+        f"{_box(workspace.volume)} with every axis within its limits"
     )
+
+
+def _box(volume: Box | None) -> str:
+    """A box in the table frame in words."""
+    if volume is None:
+        return "the workspace"
+    spans = (f"{a} {lo:.0f} to {hi:.0f}" for a, lo, hi in zip("xyz", *volume, strict=True))
+    return f"{', '.join(spans)} mm of the table"
 
 
 def section(

@@ -7,14 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from artefact.constraints import Limits
 from artefact.criterion import CRITERIA, Wishes
 from artefact.placement import PlacementOptions
 from matstd.cli import main
-from matstd.design import placement_options
 from matstd.project_file import read_project
+from matstd.wanted import frame, placement_options, probing
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
 
+WANTED = "touches = 240                  # 100 to 2000\nposes = 30 "
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
@@ -130,6 +132,16 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("worst_share = 1.0", "worst_share = 0.25", "drawn_machines = 0"),
         ("poses = 30 ", "poses = 4 ", "standard.poses"),
         ("touches = 240", "touches = 50", "standard.touches"),
+        (WANTED, "touches = 100\nposes = 60 ", "found 60 with touches = 100"),
+        ("base_mm = [280.0, 280.0]", "base_mm = [360.0, 280.0]", "no larger than the table, 320"),
+        ("base_mm = [280.0, 280.0]", "base_mm = [90.0, 280.0]", "160 mm or more"),
+        ("table_radius_mm = 160.0", "table_radius_mm = 100.0", "no larger than the table, 200"),
+        ("max_mass_kg = 60.0", "max_mass_kg = 5.0", "more than 18.3 kg"),
+        ("\nradius_mm = 3.0", "\nradius_mm = 20.0", "limits.min_concave_radius_mm"),
+        ("gap_mm = 1.0", "gap_mm = -1.0", "limits.gap_mm"),
+        ("gap_mm = 1.0", "gap_mm = 60.0", "8 patches fit on the blank; between them the ball"),
+        ("B = [-90.0, 20.0]", "B = [28.0, 30.0]", "limits of B leave no room"),
+        ("origin_mm = [0.0, 0.0", "origin_mm = [2000.0, 0.0", "only 0 of 16000 poses"),
     ],
 )
 def test_bad_project(
@@ -144,6 +156,35 @@ def test_bad_project(
     assert expected in told
     assert told.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
+    """The defaults are those that the example states; other ones arrive in base units."""
+    path = small_project(tmp_path)
+    text = path.read_text()
+    stated = read_project(path)
+    path.write_text(re.sub(r"(?s)\[blank\].*?(?=\[setup\.a\])", "", text))
+    left_out = read_project(path)
+    assert frame(left_out) == frame(stated)
+    assert probing(left_out).table_radius == probing(stated).table_radius == 160.0
+    for key, value in {
+        "base_mm": "[240.0, 200.0]",
+        "height_mm": "180.0",
+        "min_concave_radius_mm": "9.0",
+        "max_slope_deg": "30.0",
+        "gap_mm": "2.0",
+        "max_mass_kg": "40.0",
+        "table_radius_mm": "130.0",
+    }.items():
+        text = re.sub(rf"(?m)^{key} = [^#\n]*", f"{key} = {value} ", text)
+    path.write_text(text)
+    project = read_project(path)
+    made = frame(project)
+    assert made.base.half_size == (120.0, 100.0)
+    assert made.blank_height == 180.0
+    assert max(made.fittings.sphere_heights) < 180.0
+    assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0)
+    assert probing(project).table_radius == 130.0
 
 
 def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:

@@ -100,7 +100,7 @@ def test_quotas_hold(case):
     exchange(selection, (quota,))
     count = np.bincount(kind[selection.chosen], minlength=3)
     assert count.tolist() == [2, 5, 8] or (count[0] <= 2 and count[1] <= 5 and count.sum() == 15)
-    with pytest.raises(DesignError, match="no other may be taken"):
+    with pytest.raises(DesignError, match="under the shares of each kind"):
         fill(Selection(aim, W), 10, (Quota(kind, np.array([2, 2, 2])),))
 
 
