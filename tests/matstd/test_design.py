@@ -158,6 +158,22 @@ def test_bad_project(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("relation", ["groups", "correlation"])
+def test_what_the_example_only_mentions_is_accepted(tmp_path: Path, relation: str) -> None:
+    """Every commented key, but for groups and correlations, of which there may be one."""
+    path = small_project(tmp_path)
+    text = path.read_text().replace("draws = 300", "draws = 20480")
+    other = {"groups": r"\[errors.correlation", "correlation": r"\[\[errors.groups"}[relation]
+    text = re.sub(rf"(?m)^# {other}.*\n(# .*\n)*?(?=# \[|\n)", "", text)
+    path.write_text(re.sub(r"(?m)^# (?=\[|\w+ = )", "", text))
+    project = read_project(path)
+    assert (project.digits, project.tolerance) == (1, pytest.approx(0.1))
+    assert project.expected.dependence is not None
+    chain = project.chain
+    assert project.population.shapes_of(chain.symbol("EXX")) == ("linear", "sinusoidal")
+    assert project.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
+
+
 def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
     """The defaults are those that the example states; other ones arrive in base units."""
     path = small_project(tmp_path)
