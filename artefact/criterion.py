@@ -25,12 +25,13 @@ from sensitivity.purpose import (
 from sensitivity.sampling import Population
 from sensitivity.scales import drawn_scales
 from sensitivity.workspace import Box, Workspace, latin_hypercube
-from twin.errors import DesignError
+from twin.errors import DesignError, NotReachable
 from twin.frames import Array
 from twin.model import Model
 from twin.ranges import Ranges
 from twin.symbols import Family
 from twin.touches import at_poses
+from twin.units import DEG
 
 SETUP_SD = (1.0, 5e-3)
 """How far the standard may stand from where it is believed to stand, mm and rad. It is never known,
@@ -293,6 +294,9 @@ def random_touches(
         rotary: Limits of every rotary axis (R, 2), from which readings are drawn evenly, rad.
         count: Number of touches; fewer where the machine reaches fewer.
         rng: Source of the random numbers.
+
+    Raises:
+        NotReachable: The machine reaches none.
     """
     low, high = np.array(volume)
     tries = 6 * count
@@ -303,4 +307,10 @@ def random_touches(
         normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
         rotary=rng.uniform(rotary[:, 0], rotary[:, 1], (tries, len(rotary))),
     )
-    return wanted[np.flatnonzero(probing.is_reachable(wanted))[:count]]
+    reached = np.flatnonzero(probing.is_reachable(wanted))[:count]
+    if not len(reached):
+        raise NotReachable(
+            f"none of {tries} random touches looks within {probing.steepest / DEG:.1f} degrees of "
+            "the tool axis with every axis within its travel"
+        )
+    return wanted[reached]

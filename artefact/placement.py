@@ -37,7 +37,7 @@ from sensitivity.identifiability import Identifiability, identifiability
 from sensitivity.information import whitened
 from sensitivity.sampling import Population
 from sensitivity.workspace import Workspace
-from twin.errors import NotBuildable
+from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
 from twin.ranges import Ranges
 
@@ -168,9 +168,18 @@ def _standard(
     few = poses[np.unique((np.arange(20) * 0.618034 % 1.0 * len(poses)).astype(np.int64))]
     wanted = joined([_face_touches(f"{i}", site, frame.base, few) for i, site in enumerate(sites)])
     wanted = wanted[aim.probing.is_reachable(wanted)]
+    if not len(wanted):
+        raise NotReachable(
+            f"no face on any of {len(sites)} sites can be touched at a table pose with every axis "
+            "within its travel"
+        )
     W, group = aim.rows(wanted), wanted.feature.astype(np.int64)
     take = max(4, options.touches // options.patches)
-    refused = ""
+    limits = frame.limits
+    refused = (
+        f"between them the ball of radius {limits.ball_radius:g} mm has to pass with a gap of "
+        f"{limits.gap:g} mm"
+    )
     for _ in range(_REBUILDS):
         chosen = best_groups(aim.purpose, W, group, options.patches, take, apart=fits)
         if len(chosen) < options.patches:

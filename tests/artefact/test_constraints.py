@@ -57,31 +57,6 @@ def changed(standard, number, **what):
     return replace(standard, patches=tuple(patches))
 
 
-@pytest.mark.parametrize(
-    ("limits", "message"),
-    [
-        (
-            Limits(min_concave_radius=200.0),
-            r"FF\d+: smallest concave radius is .* mm, limit 200.000 mm",
-        ),
-        (Limits(max_slope=5 * DEG), r"FF\d+: slope is .* deg, limit 5.000 deg"),
-        (Limits(max_mass=10.0), r"demo: mass is 28.\d* kg, limit 10.000 kg"),
-        (Limits(gap=40.0), r"room for the ball before"),
-    ],
-)
-def test_a_limit_that_binds_is_named(standard, limits, message):
-    with pytest.raises(NotBuildable, match=message) as caught:
-        check(standard, limits)
-    assert "\n" not in str(caught.value)
-    assert caught.value.facts["constraints"][0].slack < 0.0
-
-
-def test_column_that_ends_in_the_air(standard):
-    short = changed(standard, 7, depth=30.0)
-    with pytest.raises(NotBuildable, match="FF8: depth of the column's end in the body"):
-        check(short, LIMITS)
-
-
 def test_patch_beyond_the_blank(standard):
     low = replace(standard, blank_height=140.0)
     with pytest.raises(NotBuildable, match="FF1: height is 15"):
