@@ -43,7 +43,7 @@ def known_content(design: Design, folder: Path) -> dict[str, Any]:
         "degree_rows": _degree_rows(known),
         "alone": [_alone(a) for a in known.alone],
         "combinations": [
-            {"words": c.words, "u": _size(c.u, c.unit), "gain": c.gain}
+            {"words": _with_minus(c.words), "u": _size(c.u, c.unit), "gain": c.gain}
             for c in known.combinations[:_SHOWN_COMBINATIONS]
         ],
         "resolved": _by_cause(resolved),
@@ -64,13 +64,24 @@ def _alone(alone: Alone) -> dict[str, str]:
     return {"words": alone.words, "expected": expected, "u": u}
 
 
-def _conditions(known: Knowable) -> list[tuple[str, float]]:
+def _conditions(known: Knowable) -> list[tuple[str, str]]:
     gauge = known.gauge
-    return [
-        ("every column brought to length one", gauge.condition),
-        ("parameters in units of their expected sizes", gauge.condition_prior),
-        ("parameters in µm and µrad", gauge.condition_raw),
-    ]
+    found = {
+        "every column brought to length one": gauge.condition,
+        "parameters in units of their expected sizes": gauge.condition_prior,
+        "parameters in µm and µrad": gauge.condition_raw,
+    }
+    return [(words, _rounded(value)) for words, value in found.items()]
+
+
+def _rounded(value: float) -> str:
+    """A large number with the digits that make sense, `15 000`."""
+    return f"{float(f'{value:.2g}'):,.0f}".replace(",", "\u202f")
+
+
+def _with_minus(words: str) -> str:
+    """Signs of an equation as they are set in print."""
+    return words.replace("= - ", "= −").replace(" - ", " − ")
 
 
 def _degree_rows(known: Knowable) -> list[dict[str, Any]]:
@@ -116,7 +127,7 @@ def _by_cause(freedoms: Sequence[FreedomWords]) -> list[dict[str, Any]]:
     order = list(dict.fromkeys(map(cause, freedoms)))
     ranked = sorted(freedoms, key=lambda f: order.index(cause(f)))
     return [
-        {"resolved_by": by, "why": why, "words": [f.words for f in members]}
+        {"resolved_by": by, "why": why, "words": [_with_minus(f.words) for f in members]}
         for (by, why), members in groupby(ranked, key=cause)
     ]
 
