@@ -208,3 +208,16 @@ def test_the_commands_of_the_spindle_say_what_the_readme_quotes(tmp_path):
     for step in result(tmp_path / "out")["steps"][1:]:
         (row,) = [line for line in words.splitlines() if line.strip().startswith(step["effect"])]
         assert " ".join(row.split()) in " ".join(readme.split())
+
+
+@pytest.mark.slow
+def test_the_python_of_the_readme_runs_as_it_stands(tmp_path, capsys, monkeypatch):
+    text = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
+    code = text.split("## Use it from Python")[1].split("```python\n")[1].split("```")[0]
+    (tmp_path / "examples").symlink_to(EXAMPLES)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    found, compared = capsys.readouterr().out.splitlines()
+    assert found.startswith("The model lacks one effect: thermal-lag(")
+    assert compared.endswith("What is left looks like noise.")
+    assert (tmp_path / "model.toml").is_file()
