@@ -19,6 +19,7 @@ from twin.frames import Array
 from twin.model import columns
 from twin.touches import IntArray, Touches
 from twin.units import DEG, MINUTE, UM, URAD
+from twin.words import noun
 
 LETTERS = "XYZABC"
 
@@ -163,7 +164,7 @@ def _drivers(effect: Effect, touches: Touches) -> Mapping[str, Array]:
     tuning = effect.tuning if isinstance(effect, Tunable) else {}
     out: dict[str, Array] = {}
     time = _time(touches)
-    if {"tau", "instant"} & set(tuning):
+    if isinstance(effect, Tunable) and any(i.unit == "s" for i in effect.inner(touches)):
         out |= time
     for axis in touches.chain.programmed_axes:
         q = touches.reading(axis)
@@ -174,7 +175,7 @@ def _drivers(effect: Effect, touches: Touches) -> Mapping[str, Array]:
     n = normal_in_tool(touches)
     out["azimuth of the normal about the tool axis in °"] = np.arctan2(n[:, 1], n[:, 0]) / DEG
     out["angle between normal and tool axis in °"] = np.arccos(np.clip(n[:, 2], -1.0, 1.0)) / DEG
-    out |= {k.replace("_degC", " in °C"): v for k, v in known.items() if k.startswith("T_")}
+    out |= {f"{noun(k)} in °C": v for k, v in known.items() if k.startswith("T_")}
     if "spindle_rpm" in known:
         out["spindle speed in 1/min"] = known["spindle_rpm"]
     out |= time

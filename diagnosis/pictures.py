@@ -222,7 +222,10 @@ def _where(touches: Touches, rows: IntArray) -> tuple[Array, Array, str, str]:
     known += [
         (f"{c} of the table in mm", touches.point_table[rows, i]) for i, c in enumerate("xyz")
     ]
-    moved = [k for k in known if np.ptp(k[1]) > 1e-6][:2] or known[:2]
+    moved = [k for k in known if np.ptp(k[1]) > 1e-6][:2]
+    if not moved:
+        number = np.arange(1.0, len(rows) + 1.0)
+        moved = [("all at one place", np.zeros(len(rows))), ("table pose, in order", number)]
     (y_name, y), (x_name, x) = (moved[0], moved[-1])
     return x, y, x_name, y_name
 

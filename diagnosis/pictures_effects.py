@@ -34,6 +34,10 @@ MOST_BARS = 14
 
 TEN = float(np.log(10.0))
 
+SLOW, SCATTERED = 0.01, 0.3
+"""Mean squared step over the variance, up to which a course is slow, and up to which it is one: a
+cycle of a dozen touches is in between."""
+
 RATIO = 12.0
 """Between the largest and the smallest error of a fall, from which its scale is logarithmic."""
 
@@ -267,12 +271,16 @@ def _course(ax: Any, found: Partial, effect: Effect, colour: str) -> None:
     if not found.variable:
         ax.plot(x[[0, -1]], x[[0, -1]], color=colour, lw=1.8, zorder=4, label=effect.name)
         return
-    distinct = np.unique(x)
-    smooth = len(distinct) > 12 and float(np.mean(np.diff(y) ** 2)) < 0.01 * float(np.var(y))
-    if smooth:
+    if len(np.unique(x)) > 12 and _roughness(found) < SCATTERED:
         ax.plot(x, y, color=colour, lw=1.8, zorder=4, label=effect.name)
     else:
         ax.plot(x, y, "_", ms=7, mew=1.6, color=colour, zorder=4, label=effect.name)
+
+
+def _roughness(found: Partial) -> float:
+    """Mean squared step of the course from touch to touch over its variance; 2 where it is none."""
+    y = found.explained[np.argsort(found.x, kind="stable")]
+    return float(np.mean(np.diff(y) ** 2)) / max(float(np.var(y)), 1e-30)
 
 
 def _touches(ax: Any, found: Partial, y: Array, tested: BoolArray) -> None:
@@ -286,7 +294,8 @@ def _touches(ax: Any, found: Partial, y: Array, tested: BoolArray) -> None:
             ax.plot(found.x[part], y[part], ".", ms=2.4, color=colour, alpha=0.7, label=word)
     for which, colour in ((~tested, INK), (tested, RED)):
         if which.sum() > 1:
-            x, mean, error = binned(found.x[which], y[which], found.weight[which], 24)
+            most = 24 if _roughness(found) < SLOW else 72
+            x, mean, error = binned(found.x[which], y[which], found.weight[which], most)
             style = {"ms": 4.2, "lw": 1.2, "color": colour, "zorder": 5}
             ax.errorbar(x, mean, error, fmt="o", **style)
     ax.axhline(0.0, color=SOFT, lw=0.8)
