@@ -8,6 +8,8 @@ from artefact.standard import Base
 from twin.frames import Array
 
 _AZIMUTHS = 90  # places tried along the rim
+_ALL = 4e6  # choices that are all compared
+_SAME = 1e-9  # mm
 
 
 def rim(base: Base, inset: float) -> Array:
@@ -24,7 +26,30 @@ def rim(base: Base, inset: float) -> Array:
 
 
 def spread(options: Sequence[Array]) -> list[Array]:
-    """One place from each list, as far apart as an exchange from several starts finds."""
+    """One place from each list, so that the smallest distance between two of them is largest.
+
+    All choices are compared where there are few enough; otherwise it is the best that an exchange
+    from several starts finds.
+    """
+    counts = [len(places) for places in options]
+    chosen = _best_of_all(options) if np.prod(counts, dtype=float) <= _ALL else _exchanged(options)
+    return [places[i] for places, i in zip(options, chosen, strict=True)]
+
+
+def _best_of_all(options: Sequence[Array]) -> list[int]:
+    counts = [len(places) for places in options]
+    smallest = np.full(counts, np.inf)
+    for k, places in enumerate(options):
+        for other in range(k):
+            apart = np.linalg.norm(options[other][:, None] - places, axis=-1)
+            shape = [n if i in (other, k) else 1 for i, n in enumerate(counts)]
+            smallest = np.minimum(smallest, apart.reshape(shape))
+    # places that are as good but for rounding: the first of them on every machine
+    first = np.flatnonzero(smallest.ravel() >= smallest.max() - _SAME)[0]
+    return [int(i) for i in np.unravel_index(first, counts)]
+
+
+def _exchanged(options: Sequence[Array]) -> list[int]:
     best: list[int] = []
     best_gap = -1.0
     for first in range(0, len(options[0]), 5):
@@ -41,9 +66,9 @@ def spread(options: Sequence[Array]) -> list[Array]:
             float(_gaps(places[[i]], options, chosen, skip=k)[0])
             for k, (places, i) in enumerate(zip(options, chosen, strict=True))
         )
-        if gap > best_gap + 1e-9:
+        if gap > best_gap + _SAME:
             best, best_gap = chosen, gap
-    return [places[i] for places, i in zip(options, best, strict=True)]
+    return best
 
 
 def _gaps(
