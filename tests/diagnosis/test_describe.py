@@ -1,0 +1,44 @@
+"""Sizes as they are told: unbiased, and in their intervals as often as these say."""
+
+import numpy as np
+import pytest
+
+from diagnosis.describe import size
+from twin.effect import Parameter
+
+DRAWS = 1000
+BINOMIAL = 4.0
+"""Standard deviations of a share by which it may be off."""
+
+
+class Vector:
+    """Stands for an effect with parameters of one unit, and an angle that is none of its size."""
+
+    def __init__(self, count):
+        lengths = [Parameter(f"a{i}", "mm", 0.01) for i in range(count)]
+        self.parameters = (*lengths, Parameter("turn", "rad", 1e-5))
+
+
+KNOWN = {
+    "sine and cosine": ([3.0, 4.0], [0.3, 0.3]),
+    "displacement": ([6.0, -5.0, 4.0], [0.3, 0.3, 1.0]),
+    "one of four seen": ([4.5, 0.0, 0.0, 0.0], [0.2, 1.0, 1.0, 1.0]),
+    "twice its noise": ([2.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.3, 1.0, 1.0, 1.0, 1.0, 1.0]),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_noise_across_does_not_lengthen(name) -> None:
+    """The length of noisy estimates, over and over: right on average, intervals hold."""
+    true, sd = (np.array(v) * 1e-3 for v in KNOWN[name])
+    effect = Vector(len(true))
+    covariance = np.diag(np.append(sd**2, 1e-12))
+    rng = np.random.default_rng(4)
+    z = []
+    for _ in range(DRAWS):
+        theta = np.append(true + sd * rng.standard_normal(len(sd)), 3e-6)
+        told = size(effect, theta, covariance)
+        z.append((told.value * told.factor - np.linalg.norm(true)) / (told.u * told.factor))
+    assert abs(np.mean(z)) < 0.15  # the plain length is off by 0.04, -0.03, 0.75 and 1.26
+    held = np.mean(np.abs(z) < 1.96)
+    assert held > 0.93 - BINOMIAL * np.sqrt(0.95 * 0.05 / DRAWS)
