@@ -12,6 +12,9 @@ from twin.touches import IntArray, Touches
 SHORTEST = 4.0
 """Shortest period, in mean distances of touches."""
 
+ALIAS = 2.0
+"""Shortest period in usual steps between times: a faster wave looks like a slower one."""
+
 LONGEST = 0.5
 """Lowest frequency, in turns over the run: what is slower is no wave but a drift."""
 
@@ -63,7 +66,7 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
     span = float(np.ptp(time))
     if span <= 0.0:
         return Wave(0, 1.0, 0.0, np.inf, "normal", np.zeros((len(time), 0)))
-    highest = len(rows) / (SHORTEST * span)
+    highest = min(len(rows) / (SHORTEST * span), 1.0 / (ALIAS * _step(time)))
     count = int(min(MOST, max(BLOCK, PER_LINE * highest * span)))
     frequency = np.linspace(LONGEST / span, max(highest, 1.0 / span), count)
     along = directions(touches)
@@ -78,6 +81,11 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
     columns = _wave(time, np.array([found]), weight)
     scale = 10.0 / max(float(np.abs(columns).max()), 1e-300)
     return Wave(count * len(along), p, drop, 1.0 / found, best[2], columns * scale)
+
+
+def _step(time: Array) -> float:
+    """Usual step between times at which anything was touched, s."""
+    return float(np.median(np.diff(np.unique(time))))
 
 
 def _scan(
