@@ -168,7 +168,8 @@ def rounds(
         effects = refined_set(library.complement, _sized(chosen))
         again = task.fit((*added, *effects)).gross
         further = offered(touches, again, effects) & ~tried & (remaining > 1)
-        if not remaining or (np.array_equal(again.rows, base.gross.rows) and not further.any()):
+        is_settled = np.array_equal(again.rows, base.gross.rows) and not further.any()
+        if is_settled or budget.is_spent or not remaining:
             break
         tried |= further
         base = task.fit(added, gross=without(again, further))
