@@ -1,0 +1,42 @@
+"""A search that never has enough ends at its limit, and says so."""
+
+import diagnosis.rounds as rounds
+from diagnosis.diagnose import diagnose
+from diagnosis.selection import MOST_SETS, Budget
+from twin.library import parse_effect
+
+KEY = (8, "hmc1995", ("thermal-expansion(Y,scaleY)",))
+LIBRARY = ("thermal-expansion(Y,scaleY)", "backlash(X)", "drift", "probe-radius", "probe-lobing")
+ENDED = f"the search was ended after {MOST_SETS:.0f} sets"
+
+
+def told(run):
+    library = [parse_effect(name, run.touches.chain) for name in LIBRARY]
+    d = diagnose(run, candidates=library)
+    return [e.name for e in d.found], any(ENDED in line for line in d.remarks)
+
+
+def test_a_usual_search_is_far_from_its_limit(case, monkeypatch) -> None:
+    made = []
+
+    def budget():
+        made.append(Budget())
+        return made[-1]
+
+    monkeypatch.setattr(rounds, "Budget", budget)
+    assert told(case(*KEY).run) == (["thermal-expansion(Y,scaleY)"], False)
+    (one,) = made
+    assert 0.8 * MOST_SETS < one.left < MOST_SETS
+
+
+def test_a_search_at_its_limit_ends_and_says_so(case, monkeypatch) -> None:
+    monkeypatch.setattr(rounds, "Budget", lambda: Budget(0.5))
+    assert told(case(*KEY).run)[1]
+
+
+def test_large_sets_count_for_more() -> None:
+    small, large = Budget(), Budget()
+    small.spend(800, 6)
+    large.spend(20_000, 170)
+    assert MOST_SETS - small.left < 1.01
+    assert MOST_SETS - large.left > 10.0
