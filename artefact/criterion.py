@@ -28,7 +28,6 @@ from sensitivity.workspace import Box, Workspace, latin_hypercube
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
 from twin.model import Model
-from twin.ranges import Ranges
 from twin.symbols import Family
 from twin.touches import at_poses
 from twin.units import DEG
@@ -153,7 +152,7 @@ def criterion(
     rng: np.random.Generator,
     name: str = "I",
     wishes: Wishes | None = None,
-    ranges: Ranges | None = None,
+    population: Population | None = None,
 ) -> Criterion:
     """Criterion of a machine, a blank and a user's workspace.
 
@@ -166,7 +165,7 @@ def criterion(
         rng: Draws the poses.
         name: One of `CRITERIA`.
         wishes: Potential terms and drawn machines; None for neither.
-        ranges: From which machines are drawn, those of the model; None for the default ones.
+        population: From which machines are drawn, that of the model; None for the default one.
 
     Raises:
         DesignError: Another name.
@@ -184,7 +183,7 @@ def criterion(
     G = np.concatenate(tips)
     aim = purpose(G, W, prior_sd)
     if wishes.draws:
-        aim = robust(aim, _scales(probing, model, ranges, wishes.draws, rng), wishes.tail)
+        aim = robust(aim, _scales(probing, model, population, wishes.draws, rng), wishes.tail)
     purposes = {
         "I": aim,
         "G": worst_pose(aim, G, prior_sd),
@@ -227,14 +226,18 @@ def _sharing(aim: Purpose, rows: Array, count: int, share: float) -> Purpose:
 
 
 def _scales(
-    probing: Probing, model: Model, ranges: Ranges | None, draws: int, rng: np.random.Generator
+    probing: Probing,
+    model: Model,
+    population: Population | None,
+    draws: int,
+    rng: np.random.Generator,
 ) -> Array:
     """Sizes of the errors of drawn machines over the expected ones, (S, P); the set-up stays free.
 
     Raises:
-        DesignError: The model is not that of the ranges.
+        DesignError: The model is not that of the population.
     """
-    population = Population(probing.chain, ranges or Ranges())
+    population = population or Population(probing.chain)
     if not set(model.names) <= set(population.model.names):
         raise DesignError("machines can be drawn for the errors of a population alone")
     scale = drawn_scales(population, draws, rng, model)

@@ -32,8 +32,8 @@ from artefact.touchable import Probing, Requests, joined
 from artefact.visibility import visibility
 from sensitivity.blocks import Progress, silent
 from sensitivity.certificate import Certificate
+from sensitivity.distributions import Distributions
 from sensitivity.groups import best_groups
-from sensitivity.identifiability import Identifiability, identifiability
 from sensitivity.information import whitened
 from sensitivity.sampling import Population
 from sensitivity.workspace import Workspace
@@ -60,7 +60,6 @@ class Placement:
         rivals: This standard first, then other artefacts at as many touches.
         certificate: How near the touches are to the best choice among all that could be made on the
             standard at its table poses and that keep the same shares of poses, spheres, patches.
-        identifiability: What the touches cannot separate.
     """
 
     standard: Standard
@@ -69,7 +68,6 @@ class Placement:
     before: tuple[float, float]
     rivals: tuple[Rival, ...]
     certificate: Certificate
-    identifiability: Identifiability
 
     @property
     def own(self) -> Rival:
@@ -85,6 +83,7 @@ def place(
     ranges: Ranges | None = None,
     options: PlacementOptions | None = None,
     progress: Progress = silent,
+    distributions: Distributions | None = None,
 ) -> Placement:
     """Design a standard for a machine.
 
@@ -97,6 +96,7 @@ def place(
         ranges: Expected amplitudes of the errors; None for the default ones.
         options: How much.
         progress: Told what is being done.
+        distributions: Shapes of the errors over the readings; None for the ordinary ones.
 
     Raises:
         NotBuildable: The blank is larger than the table, or no choice of sites meets every limit;
@@ -105,8 +105,8 @@ def place(
     """
     options = options or PlacementOptions()
     _check_blank(frame.base, probing)
-    ranges = ranges or Ranges()
-    model = Population(probing.chain, ranges).expected("w")
+    population = Population(probing.chain, ranges or Ranges(), distributions or Distributions())
+    model = population.expected("w")
     aim = criterion(
         probing,
         model,
@@ -116,7 +116,7 @@ def place(
         rng,
         options.criterion,
         options.wishes,
-        ranges,
+        population,
     )
     progress("placement", 1, 6)
     all_poses = table_poses(aim, options.poses)
@@ -135,7 +135,6 @@ def place(
     lots = random_lots(tried, len(requests), rng)
     own = judged(f"standard {options.name}", aim, requests, lots, library, standard)
     rivals = compare(aim, all_poses, poses, frame, options, library, rng)
-    W = aim.whitened(requests)
     progress("placement", 6, 6)
     return Placement(
         standard=standard,
@@ -144,7 +143,6 @@ def place(
         before=before(aim),
         rivals=(own, *rivals),
         certificate=nearness,
-        identifiability=identifiability(W, aim.prior_sd, model.names),
     )
 
 

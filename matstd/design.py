@@ -174,6 +174,7 @@ def _placement(
         project.ranges,
         placement_options(project),
         progress,
+        project.expected.distributions,
     )
 
 

@@ -10,9 +10,9 @@ from matstd.standard_tables import BASE_THICKNESS, CORNER_RADIUS
 from probe_paths.probe import Probe
 from twin.units import DEG, KG_M3
 
-_SPHERE_HEIGHTS = (60.0 / 220.0, 95.0 / 220.0, 130.0 / 220.0)
-"""Of the sphere centres above the seat, as shares of the blank's height: as far apart as the
-patches leave room for."""
+_LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
+"""Of the sphere centres above the seat, mm and as a share of the blank's height: as far apart as
+base and patches leave room for."""
 
 
 def probe(project: Project) -> Probe:
@@ -36,11 +36,10 @@ def frame(project: Project) -> Frame:
     """Blank, fittings, material and limits of the standard."""
     wanted, blank, limits = project.standard, project.blank, project.limits
     a, b = blank.base_mm
+    low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * blank.height_mm
     return Frame(
         base=Base((0.5 * a, 0.5 * b), CORNER_RADIUS, BASE_THICKNESS),
-        fittings=Fittings(
-            sphere_heights=tuple(round(blank.height_mm * h, 1) for h in _SPHERE_HEIGHTS)
-        ),
+        fittings=Fittings(sphere_heights=(low, round(0.5 * (low + high), 1), round(high, 1))),
         material=Material(wanted.material, wanted.density_kg_m3 * KG_M3, wanted.expansion_per_K),
         blank_height=blank.height_mm,
         limits=Limits(

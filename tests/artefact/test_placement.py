@@ -174,13 +174,6 @@ def test_every_patch_says_what_it_is_for(placement, chain):
     assert len(named) >= 8  # patches are for different errors
 
 
-def test_what_touches_cannot_separate_is_listed(placement):
-    found = placement.identifiability
-    assert found.rank + len(found.freedoms) == found.parameters
-    words = [str(f) for f in found.freedoms]
-    assert any(w.startswith("location(EC0C) cannot be told from") for w in words)
-
-
 def test_the_same_seed_gives_the_same_standard(placement, probing, workspace):
     again = place(probing, Frame(), workspace, np.random.default_rng(3), options=OPTIONS)
     np.testing.assert_array_equal(again.requests.point, placement.requests.point)
