@@ -3,18 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
 
 from matstd.crew import add_scheduler
 
-if TYPE_CHECKING:
-    from matstd.project_file import Project
-    from sensitivity.study import Study
-    from sensitivity.workspace import Workspace
-    from twin.frames import Array
-
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler")
-_SHOWN = 5
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -83,35 +75,13 @@ def _study(args: argparse.Namespace) -> int:
     from matstd.project_file import read_project
 
     project = read_project(args.source, _settings(args))
-    workspace, poses = _where(project, args.poses)
     with results_folder(args.output, args.force) as folder:
-        import numpy as np
-
         from matstd.console import stages
-        from matstd.report_study import write_study_page
-        from sensitivity.maps import draw_maps
-        from sensitivity.study import run_study
-        from sensitivity.study_file import write_study
-        from sensitivity.trajectory_pictures import draw_path
+        from matstd.study_run import study_project
 
-        rng_study, rng_maps = (np.random.default_rng(project.seed).spawn(4)[i] for i in (0, 3))
         with stages() as progress, hired(args.scheduler) as crew:
-            study = run_study(
-                project.population,
-                workspace,
-                poses,
-                project.draws,
-                rng_study,
-                progress,
-                project.tolerance,
-                project.digits,
-                crew,
-            )
-            progress("maps", 0, 1)
-            write_study(study, folder)
-            shown = draw_maps(study, folder, rng_maps) + draw_path(study, folder)
-            remarks = write_study_page(study, folder, shown, args.source)
-    for line in [*remarks, *_words(study)]:
+            told = study_project(project, args.poses, folder, progress, crew)
+    for line in told:
         print(line)
     print(f"{args.output}: look at report.html")
     return 0
@@ -121,41 +91,3 @@ def _settings(args: argparse.Namespace) -> dict[str, float]:
     """Keys of `[montecarlo]` that the command line sets; the project file is checked with them."""
     given = {key: getattr(args, key) for key in ("draws", "digits", "tolerance_um")}
     return {key: value for key, value in given.items() if value is not None}
-
-
-def _where(project: Project, poses_file: str | None) -> tuple[Workspace, int | Array]:
-    """Workspace and poses, of the project or of a pose file."""
-    import numpy as np
-
-    from sensitivity.workspace import Workspace
-    from twin.errors import BadFile
-    from twin.files.pose_file import read_poses
-
-    chain, length = project.chain, project.probe_length
-    if poses_file is None:
-        return Workspace(chain, project.workspace, length), project.poses
-    q, lengths = read_poses(poses_file, chain)
-    if np.ptp(lengths) > 0.0:
-        span = f"{lengths.min():g} to {lengths.max():g}"
-        raise BadFile(poses_file, "tool_length_mm", span, "one tool length for a study")
-    return Workspace(chain, project.workspace, float(lengths[0]) or length), q
-
-
-def _words(study: Study) -> list[str]:
-    """The study in a few lines."""
-    from twin.units import UM
-
-    v = study.volumetric
-    lines = [
-        v.statement,
-        f"volumetric error over {len(study.q)} poses: mean {v.mean.mean() / UM:.1f} µm, "
-        f"P95 {v.p95.mean() / UM:.1f} µm, at the worst pose {v.p95.max() / UM:.1f} µm",
-    ]
-    if v.tolerance < float("inf"):
-        lines.append(
-            f"beyond {v.tolerance / UM:g} µm: on average {v.exceedance.mean():.1%} "
-            f"of the machines, {v.exceedance.max():.1%} at the worst pose"
-        )
-    ranked = ", ".join(f"{name} {share:.1%}" for name, share in study.ranking()[:_SHOWN])
-    lines.append(f"largest shares of the variance: {ranked}")
-    return lines
