@@ -13,7 +13,7 @@ from artefact.touch_curve_picture import draw_touch_curves
 from cad_out.picture import draw_standard
 from diagnosis.proof_picture import write_proof_picture
 from matstd.design import Design, Proven
-from matstd.page import digits, write_page
+from matstd.page import digits, percent, write_page
 from matstd.report_known import known_content
 from matstd.report_study import draw_study_volumes, study_content
 from matstd.report_time import minutes, order_content
@@ -153,12 +153,14 @@ def _criterion(design: Design) -> str:
     wanted = design.project.standard
     words = [CRITERIA[wanted.criterion]]
     if wanted.drawn_machines:
-        which = "" if wanted.worst_share == 1.0 else f"the worst {wanted.worst_share:.0%} of "
+        which = "" if wanted.worst_share == 1.0 else f"the worst {percent(wanted.worst_share)} of "
         words.append(f"averaged over {which}{wanted.drawn_machines} drawn machines")
     if wanted.potential and wanted.criterion == "D":
         words.append("with the effects of the library beside them")
     elif wanted.potential:
-        words.append(f"with a share of {wanted.potential:.0%} for showing effects of the library")
+        words.append(
+            f"with a share of {percent(wanted.potential)} for showing effects of the library"
+        )
     return ", ".join(words)
 
 

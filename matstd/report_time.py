@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from matstd.design import Design
+from matstd.page import percent
 from probe_paths.duration import probing_time
 from probe_paths.order_study import Order, orders
 from probe_paths.probe import Probe
@@ -33,7 +34,7 @@ def order_content(design: Design) -> dict[str, Any]:
         "rotary_axes": design.plan.chain.rotary_axes,
         "order_words": (
             f"The order costs {(planned.duration - quickest.duration) / MINUTE:.0f} minutes more "
-            f"than the shortest ways ({planned.duration / quickest.duration - 1.0:.0%}). For that "
+            f"than the shortest ways ({percent(planned.duration / quickest.duration - 1.0)}). For that "
             f"the rate of a drift is known {quickest.drift / planned.drift:.1f} times better"
             f"{_reversals(planned, quickest, design.plan.chain.rotary_axes)}."
         ),
