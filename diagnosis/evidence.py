@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_factor, solve_triangular
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.special import betainc
 
 from diagnosis.candidates import Complement, IntArray, Signatures
@@ -68,6 +68,12 @@ class EffectSet:
         if len(inside) == 0:
             return inside
         return np.asarray(solve_triangular(self._factor, inside, lower=True, check_finite=False))
+
+    def coefficients(self, b: Array) -> Array:
+        """Parameters of the effects that fit a direction b (N + P,) best, (K,)."""
+        if self.A.shape[1] == 0:
+            return np.zeros(0)
+        return np.asarray(cho_solve((self._factor, True), self.A.T @ b, check_finite=False))
 
     @cached_property
     def along(self) -> Array:

@@ -240,7 +240,7 @@ class Search:
         S = C.T @ C - E.T @ E
         g = C.T @ self.complement.residual - E.T @ effects.along
         phi = np.linalg.solve(S + np.eye(len(S)), g)
-        direction = C @ phi - effects.A @ _coefficients(effects, C @ phi)
+        direction = C @ phi - effects.A @ effects.coefficients(C @ phi)
         return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-300))
 
     def polished(self, chosen: Chosen) -> Chosen:
@@ -358,11 +358,3 @@ class Search:
                 self.chosen(m for m in chosen.members if m is not weakest.member)
             )
         return chosen
-
-
-def _coefficients(effects: EffectSet, b: Array) -> Array:
-    """Parameters of a set that fit a direction b best, (K,)."""
-    if effects.A.shape[1] == 0:
-        return np.zeros(0)
-    G = effects.A.T @ effects.A + np.eye(effects.A.shape[1])
-    return np.asarray(np.linalg.solve(G, effects.A.T @ b))
