@@ -91,10 +91,17 @@ def two_holes(standard):
 
 
 def cut_rim(standard):
+    # where along the side of the base there is most room for it
     first, base = standard.holes[0], standard.base
-    x = np.copysign(base.half_size[0] - first.bore_radius - 1.0, first.x)
-    holes = (replace(first, x=float(x), y=0.6 * first.y), *standard.holes[1:])
-    return replace(standard, holes=holes), LIMITS
+    x, y = base.half_size[0] - first.bore_radius - 1.0, np.linspace(-100.0, 100.0, 41)
+    at, up = np.meshgrid(y, np.arange(base.thickness, standard.blank_height, 5.0))
+    points = np.column_stack([np.full(at.size, x), at.ravel(), up.ravel()])
+    others = [body for name, body in standard.bodies.items() if name != "BASE"]
+    room = np.min([body.distance(points) for body in others], axis=0).reshape(at.shape).min(axis=0)
+    for hole in standard.holes[1:]:
+        room = np.minimum(room, np.hypot(hole.x - x, hole.y - y) - hole.bore_radius)
+    moved_out = replace(first, x=x, y=float(y[np.argmax(room)]))
+    return replace(standard, holes=(moved_out, *standard.holes[1:])), LIMITS
 
 
 def crowded(standard):
