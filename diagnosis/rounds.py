@@ -169,7 +169,7 @@ def rounds(
         again = task.fit((*added, *effects)).gross
         further = offered(touches, again, effects) & ~tried & (remaining > 1)
         is_settled = np.array_equal(again.rows, base.gross.rows) and not further.any()
-        if is_settled or budget.is_spent or not remaining:
+        if is_settled or not remaining:
             break
         tried |= further
         base = task.fit(added, gross=without(again, further))
