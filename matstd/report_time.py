@@ -35,7 +35,8 @@ def order_content(design: Design) -> dict[str, Any]:
         "order_words": (
             f"The order costs {(planned.duration - quickest.duration) / MINUTE:.0f} minutes more "
             f"than the shortest ways ({percent(planned.duration / quickest.duration - 1.0)}). "
-            f"For that the rate of a drift is known {quickest.drift / planned.drift:.1f} times better"
+            f"For that the rate of a drift is known {quickest.drift / planned.drift:.1f} times "
+            f"better"
             f"{_reversals(planned, quickest, design.plan.chain.rotary_axes)}."
         ),
     }
