@@ -45,7 +45,8 @@ LISTED = 25
 
 MOST_SETS = 1500.0
 """Sets of effects that all searches of one diagnosis may try. A usual run asks for a hundred, one
-that nothing explains for three hundred; more is only asked for where nothing ever is enough."""
+that nothing explains for three hundred; a long record of which every sensor knows something, or
+one of near copies, asks for more, and is told when it did not get it."""
 
 LARGE = 5e7
 """Touches times squared columns from which a set counts for more than one."""

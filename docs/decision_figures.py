@@ -106,9 +106,9 @@ def foot_points() -> dict[str, str]:
     from ex08_virtual_probing import probed
 
     from diagnosis.linear import solve
-    from twin.effects.setup_error import setup_errors
     from probe_paths.evaluate import foot_points as foot
     from sensitivity.sampling import Population
+    from twin.effects.setup_error import setup_errors
     from twin.frames import pose
     from twin.model import columns as columns_of
     from twin.touches import Setup, Touches
