@@ -52,7 +52,7 @@ def draw(result):
     rest = result["not predicted after 160 touches, µm"]
     bars = right.barh([name.replace(" scatter", "") for name in rest], rest.values())
     right.bar_label(bars, fmt="%.1f", padding=3)
-    right.set(xlabel="not predicted, µm rms", xlim=(0, 7.5), ylim=(6.6, -0.6))
+    right.set(xlabel="not predicted, µm rms", xlim=(0, 8), ylim=(6.6, -0.6))
     return figure
 
 
