@@ -15,9 +15,10 @@ import numpy as np
 
 from sensitivity.distributions import Distributions
 from sensitivity.indices import rms
-from sensitivity.lengths import BINS, count_lengths, one_blas_thread
+from sensitivity.lengths import BINS, count_lengths
 from sensitivity.montecarlo import volumetric
 from sensitivity.sampling import Population, coefficients, drawn_in_chunks
+from sensitivity.threads import one_blas_thread
 from sensitivity.workspace import Workspace, latin_hypercube
 from twin.files.machine_file import read_machine
 from twin.touches import at_poses

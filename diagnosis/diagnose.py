@@ -25,6 +25,7 @@ from diagnosis.selection import LISTED, MOST_SETS, Search, Verified
 from diagnosis.sizes import sizes
 from diagnosis.structure import Structure, find_structure
 from diagnosis.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
+from sensitivity.threads import one_blas_thread
 from twin.copies import counted_once
 from twin.effect import Effect
 from twin.library import proposals
@@ -36,6 +37,7 @@ DEPENDENCES = 2
 """Patterns, one after the other, of which `depends_on` tells."""
 
 
+@one_blas_thread()
 def diagnose(
     run: Run,
     model: Model | None = None,

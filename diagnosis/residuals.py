@@ -14,6 +14,7 @@ from diagnosis.prior import Prior
 from diagnosis.regions import Region, regions
 from diagnosis.remarks import remarks
 from diagnosis.structure import Structure, find_structure
+from sensitivity.threads import one_blas_thread
 from twin.copies import counted_once
 from twin.frames import Array
 from twin.model import Model
@@ -134,6 +135,7 @@ class Comparison:
         return tuple(out)
 
 
+@one_blas_thread()
 def compare(
     run: Run, model: Model, estimates: Prior | None = None, progress: Progress = quiet
 ) -> Comparison:

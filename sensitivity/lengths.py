@@ -5,9 +5,7 @@ a histogram are kept. One BLAS thread each, and own threads over the blocks: idl
 spin. With numba installed (the extra `fast`) the counting is compiled; numpy is the reference.
 """
 
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from os import cpu_count
 from typing import Any
@@ -17,6 +15,7 @@ from numpy.typing import NDArray
 
 from sensitivity.blocks import blocks
 from sensitivity.kernels import MACHINES_A_BLOCK, Kernels, compiled
+from sensitivity.threads import one_blas_thread
 from twin.frames import Array
 
 BINS = 2048
@@ -179,12 +178,3 @@ def _worst(size: Sizes, reference: int, allowed: int, worst: NDArray[np.int64]) 
     place = reference - allowed
     limit = np.partition(by_machine[:, :reference], place, axis=1)[:, place]
     worst += (by_machine >= limit[:, None]).sum(axis=0)
-
-
-@contextmanager
-def one_blas_thread() -> Iterator[None]:
-    """One thread for every product of matrices within."""
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(1, user_api="blas"):
-        yield

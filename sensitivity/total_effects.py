@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from sensitivity.batches import seed_words
 from sensitivity.blocks import blocks
 from sensitivity.by_parameter import jacobian_by_parameter
-from sensitivity.lengths import one_blas_thread
 from sensitivity.sampling import Population, coefficients, draw, shape_columns
+from sensitivity.threads import one_blas_thread
 from twin.errors import DesignError, ShapeMismatch
 from twin.frames import Array
 
