@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 
-import diagnosis.diagnose as diagnosing
-from diagnosis.verdict import Diagnosis, Step, Verdict
-from twin.files.run_file import read_run
+import diagnosis.answer.diagnose as diagnosing
+from diagnosis.answer import Diagnosis, Step, Verdict
+from twin.files import read_run
 from twin.units import UM
 
 HALF_WIDTH = 1.96

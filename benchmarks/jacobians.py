@@ -1,6 +1,7 @@
 """How fast are the Jacobians of all error parameters?   python benchmarks/jacobians.py
 
-Prints poses per second of `sensitivity.by_parameter` for the 71 parameters of the HSM 600U and for
+Prints poses per second of `sensitivity.first_order.by_parameter` for the 71 parameters of the HSM
+600U and for
 the 60 of the same machine without its spindle axis, beside two measures of the same run: central
 differences of the exact product, and filling an array of that size with a number.
 """
@@ -12,14 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from sensitivity.by_parameter import jacobian_by_parameter
-from sensitivity.jacobian import jacobian
-from sensitivity.workspace import Workspace, latin_hypercube
-from twin.chain import Chain
-from twin.contribution import Contribution
-from twin.files.machine_file import read_machine
-from twin.kinematics import exact_tip
-from twin.symbols import Family
+from sensitivity.first_order import Workspace, jacobian, jacobian_by_parameter, latin_hypercube
+from twin.files import read_machine
+from twin.machine import Chain, Contribution, Family, exact_tip
 
 MACHINE = Path(__file__).parent.parent / "examples" / "hsm600u-machine.toml"
 LENGTH = 160.0

@@ -13,15 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from sensitivity.distributions import Distributions
-from sensitivity.indices import rms
-from sensitivity.lengths import BINS, count_lengths
-from sensitivity.montecarlo import volumetric
-from sensitivity.sampling import Population, coefficients, drawn_in_chunks
-from sensitivity.threads import one_blas_thread
-from sensitivity.workspace import Workspace, latin_hypercube
-from twin.files.machine_file import read_machine
-from twin.touches import at_poses
+from sensitivity.first_order import Workspace, latin_hypercube, rms
+from sensitivity.montecarlo import BINS, count_lengths, volumetric
+from sensitivity.population import Distributions, Population, coefficients, drawn_in_chunks
+from twin.compute import one_blas_thread
+from twin.files import read_machine
+from twin.record import at_poses
 from twin.units import UM
 
 MACHINE = Path(__file__).parent.parent / "examples" / "hsm600u-machine.toml"

@@ -13,23 +13,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from artefact.criterion import criterion, random_touches
-from artefact.sites import Frame
-from artefact.touchable import Probing
-from probe_paths.probe import Probe
-from sensitivity.certificate import relaxed, rounded
-from sensitivity.sampling import Population
-from sensitivity.shares import heaviest
-from sensitivity.workspace import Workspace
-from twin.chain import Chain
-from twin.effect import Effect
-from twin.effects.geometric import HigherOrder
-from twin.effects.location import LocationError
-from twin.files.machine_file import read_machine
-from twin.model import Model
-from twin.ranges import Ranges
-from twin.symbols import Family
-from twin.touches import Setup
+from artefact.layout import Frame
+from artefact.reach import Probing
+from artefact.worth import criterion, random_touches
+from information.selection import heaviest, relaxed, rounded
+from probe_paths.plan import Probe
+from sensitivity.first_order import Workspace
+from sensitivity.population import Population
+from twin.effects import HigherOrder, LocationError
+from twin.files import read_machine
+from twin.machine import Chain, Family, Ranges
+from twin.model import Effect, Model
+from twin.record import Setup
 from twin.units import UM
 
 CANDIDATES, TOUCHES = 20_000, 300

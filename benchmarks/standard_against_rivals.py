@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.comparison import Rival
-from artefact.placement import PlacementOptions, place
-from artefact.sites import Fittings, Frame
-from artefact.touchable import Probing
-from matstd.project_file import read_project
-from probe_paths.probe import Probe
-from sensitivity.workspace import Workspace
+from artefact.brief import read_project
+from artefact.compare import Rival
+from artefact.layout import Fittings, Frame
+from artefact.place import PlacementOptions, place
+from artefact.reach import Probing
+from probe_paths.plan import Probe
+from sensitivity.first_order import Workspace
 from twin.units import UM
 
 PROJECT = Path(__file__).parents[1] / "examples" / "hsm600u.toml"

@@ -10,11 +10,9 @@ import time
 import numpy as np
 from jacobians import LENGTH, MACHINE, best_of, matrix_rate
 
-from sensitivity.indices import covariance
-from sensitivity.normal_length import normal_length
-from sensitivity.sampling import Population
-from sensitivity.workspace import Workspace, latin_hypercube
-from twin.files.machine_file import read_machine
+from sensitivity.first_order import Workspace, covariance, latin_hypercube, normal_length
+from sensitivity.population import Population
+from twin.files import read_machine
 
 
 def main(poses: int) -> None:

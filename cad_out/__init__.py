@@ -1,6 +1,4 @@
-"""CAD of a standard: a solid, STEP and STL files, their measured conformity, pictures."""
+"""CAD of a standard: a solid, STEP and STL files, and their measured conformity."""
 
-from cad_out.conformity import Conformity
-from cad_out.export import export_standard
-
-__all__ = ["Conformity", "export_standard"]
+PARTS = ("build", "verify")
+"""From bottom to top: each imports only from those before it."""

@@ -12,12 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.contribution import Contribution
-from twin.files.machine_file import read_machine
-from twin.kinematics import exact_tip, tip
-from twin.ordinary import ordinary_model
-from twin.symbols import Family
-from twin.touches import at_poses
+from twin.files import read_machine
+from twin.library import ordinary_model
+from twin.machine import Contribution, Family, exact_tip, tip
+from twin.record import at_poses
 from twin.units import DEG, UM
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -58,7 +56,7 @@ def columns() -> dict[str, str]:
             out.append((both[0] - both[1]) / (2.0 * step))
         return np.stack(out, axis=1)
 
-    from sensitivity.jacobian import jacobian
+    from sensitivity.first_order import jacobian
 
     closed = jacobian(chain, q, LENGTH)
     off = np.abs(closed - differences()).max() / np.abs(closed).max()
@@ -105,13 +103,13 @@ def foot_points() -> dict[str, str]:
     from ex06_step import standard
     from ex08_virtual_probing import probed
 
-    from diagnosis.linear import solve
-    from probe_paths.evaluate import foot_points as foot
-    from sensitivity.sampling import Population
-    from twin.effects.setup_error import setup_errors
+    from diagnosis.fit import solve
+    from probe_paths.campaign import foot_points as foot
+    from sensitivity.population import Population
+    from twin.effects import setup_errors
     from twin.frames import pose
     from twin.model import columns as columns_of
-    from twin.touches import Setup, Touches
+    from twin.record import Setup, Touches
 
     chain, made, rng = read_machine(MACHINE), standard(), np.random.default_rng(0)
     beside = pose(t=np.array([0.4, 0.3, 0.0]))
@@ -140,7 +138,7 @@ def step_file() -> dict[str, str]:
     """Our AP242 writer against build123d's export_step, on the standard of example 6."""
     from ex06_step import standard
 
-    from cad_out.export import export_standard
+    from cad_out.verify import export_standard
 
     made = standard()
     with tempfile.TemporaryDirectory() as folder:
@@ -152,7 +150,7 @@ def step_file() -> dict[str, str]:
             "built = build_solid(read_standard(sys.argv[1]))\n"
             "export_step(Solid(built.shape), sys.argv[2])\n"
         )
-        from artefact.standard_file import write_standard
+        from artefact.body import write_standard
 
         source, theirs = Path(folder) / "standard.toml", Path(folder) / "theirs.step"
         write_standard(source, made)
@@ -195,8 +193,8 @@ def clearance() -> dict[str, str]:
     """Room for the probe at touches, from distances to convex bodies."""
     from ex06_step import standard
 
-    from artefact.clearance import clearance
-    from probe_paths.probe import Probe
+    from artefact.reach import clearance
+    from probe_paths.plan import Probe
 
     made = standard()
     rng = np.random.default_rng(0)

@@ -8,12 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.effect import contribution
-from twin.effects.geometric import component
-from twin.files.machine_file import read_machine
-from twin.kinematics import exact_tip, tip
-from twin.model import Model
-from twin.touches import at_poses
+from twin.effects import component
+from twin.files import read_machine
+from twin.machine import exact_tip, tip
+from twin.model import Model, contribution
+from twin.record import at_poses
 from twin.units import UM, URAD
 
 HERE = Path(__file__).parent

@@ -9,10 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from sensitivity.jacobian import sensitivity
-from twin.files.machine_file import read_machine
-from twin.ranges import Ranges
-from twin.symbols import LETTERS, Family
+from sensitivity.first_order import sensitivity
+from twin.files import read_machine
+from twin.machine import LETTERS, Family, Ranges
 from twin.units import DEG, UM
 
 HERE = Path(__file__).parent

@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from sensitivity.jacobian import sensitivity
-from sensitivity.trajectory import along_path, paper_trajectory
-from sensitivity.workspace import Workspace
-from twin.effects.geometric import component
-from twin.files.machine_file import read_machine
+from sensitivity.first_order import Workspace, sensitivity
+from sensitivity.study import along_path, paper_trajectory
+from twin.effects import component
+from twin.files import read_machine
 from twin.units import DEG, UM
 
 HERE = Path(__file__).parent

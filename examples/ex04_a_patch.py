@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.freeform import OVERHANG, graph_patch
+from artefact.body import OVERHANG, graph_patch
 from twin.frames import fixed_xyz, pose
 from twin.units import DEG
 

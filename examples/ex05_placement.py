@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.placement import PlacementOptions, place
-from artefact.sites import Frame
-from artefact.touchable import Probing
-from probe_paths.probe import Probe
-from sensitivity.workspace import Workspace
-from twin.files.machine_file import read_machine
+from artefact.layout import Frame
+from artefact.place import PlacementOptions, place
+from artefact.reach import Probing
+from probe_paths.plan import Probe
+from sensitivity.first_order import Workspace
+from twin.files import read_machine
 from twin.frames import apply
-from twin.touches import Setup
+from twin.record import Setup
 from twin.units import DEG, UM
 
 HERE = Path(__file__).parent

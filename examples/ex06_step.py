@@ -9,10 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.constraints import Limits, check
-from artefact.freeform import OVERHANG
-from artefact.sites import Site, standard_from_sites
-from cad_out.export import export_standard
+from artefact.body import OVERHANG, Limits, check
+from artefact.layout import Site, standard_from_sites
+from cad_out.verify import export_standard
 from twin.units import DEG, UM
 
 HERE = Path(__file__).parent
@@ -46,7 +45,7 @@ def main(folder):
 if __name__ == "__main__":
     from PIL import Image
 
-    from cad_out.picture import draw_standard
+    from report.scenes import draw_standard
 
     with tempfile.TemporaryDirectory() as scratch:
         for name, value in main(scratch).items():

@@ -8,14 +8,12 @@ from pathlib import Path
 import numpy as np
 from ex06_step import standard
 
-from artefact.touchable import joined
-from probe_paths.interpreter import interpret
-from probe_paths.plan import requests_at
-from probe_paths.planner import plan_touches
-from probe_paths.probe import Probe
-from probe_paths.program import make_programs
-from twin.files.machine_file import read_machine
-from twin.touches import Setup
+from artefact.reach import joined
+from probe_paths.control import interpret
+from probe_paths.emit import make_programs
+from probe_paths.plan import Probe, plan_touches, requests_at
+from twin.files import read_machine
+from twin.record import Setup
 from twin.units import DEG
 
 HERE = Path(__file__).parent

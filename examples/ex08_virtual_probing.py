@@ -11,20 +11,17 @@ from pathlib import Path
 import numpy as np
 from ex06_step import standard
 
-from artefact.touchable import joined
+from artefact.reach import joined
+from diagnosis.answer import probed_volume, prove
 from diagnosis.fit import fit_run
-from diagnosis.proof import probed_volume, prove
-from diagnosis.proof_picture import write_proof_picture
-from probe_paths.campaign import simulate
-from probe_paths.contacts import VirtualMachine
-from probe_paths.plan import PlanOptions, requests_at
-from probe_paths.planner import plan_touches
-from probe_paths.probe import Probe
-from probe_paths.program import make_programs
-from sensitivity.sampling import Population, drawn_errors
-from twin.effect import contribution
-from twin.files.machine_file import read_machine
-from twin.touches import Setup
+from probe_paths.campaign import VirtualMachine, simulate
+from probe_paths.emit import make_programs
+from probe_paths.plan import PlanOptions, Probe, plan_touches, requests_at
+from report.plots import write_proof_picture
+from sensitivity.population import Population, drawn_errors
+from twin.files import read_machine
+from twin.model import contribution
+from twin.record import Setup
 from twin.units import DEG, UM
 
 MACHINE, NOISE = Path(__file__).with_name("hsm600u-machine.toml"), 1.0 * UM

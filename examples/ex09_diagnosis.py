@@ -7,10 +7,10 @@ the residuals are not noise, names the effect with its size, and the error falls
 import numpy as np
 from ex08_virtual_probing import MACHINE, probed
 
-from diagnosis.diagnose import diagnose
-from diagnosis.sentences import verdict_sentence
-from sensitivity.sampling import Population, drawn_errors
-from twin.files.machine_file import read_machine
+from diagnosis.answer import diagnose
+from report.words import verdict_sentence
+from sensitivity.population import Population, drawn_errors
+from twin.files import read_machine
 from twin.library import parse_effect
 from twin.units import UM, URAD
 

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from ex08_virtual_probing import MACHINE, probed
 
-from diagnosis.diagnose import diagnose
-from diagnosis.sentences import verdict_sentence
-from sensitivity.sampling import Population, drawn_errors
-from twin.effect import Parameter, Term, Where
-from twin.effects.kind import Kind
-from twin.files.machine_file import read_machine
+from diagnosis.answer import diagnose
+from report.words import verdict_sentence
+from sensitivity.population import Population, drawn_errors
+from twin.files import read_machine
 from twin.library import register
+from twin.model import Kind, Parameter, Term, Where
 from twin.units import UM
 
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.effect import Inner, Parameter, Term, Where
 from twin.library import Kind
+from twin.model import Inner, Parameter, Term, Where
 from twin.units import UM
 
 

@@ -55,8 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _users_fault(error: Exception) -> Exception | None:
     """A failure inside effects that the user wrote, as one line; None if it is our own."""
-    from twin.library import users_files
-    from twin.trial import fault, users_lines
+    from twin.library import fault, users_files, users_lines
 
     for path in users_files().values():
         if users_lines(error, path):
@@ -87,7 +86,7 @@ class _Version(argparse.Action):
     """Prints the versions that a result depends on."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from matstd.versions import versions
+        from twin.versions import versions
 
         for name, version in versions().items():
             print(f"{name} {version}")

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sensitivity.crew import Crew
+    from sensitivity.montecarlo import Crew
 
 
 def add_scheduler(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +31,7 @@ def hired(address: str | None) -> Iterator[Crew]:
     if address is None:
         yield None
         return
-    from sensitivity.cluster import cluster
+    from sensitivity.montecarlo import cluster
 
     with cluster(address) as client:
         yield client

@@ -5,92 +5,36 @@ Each stage is one call into one room; nothing is computed here.
 
 import shutil
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from artefact.knowable import Knowable, knowable, write_identifiability
-from artefact.placement import Placement, place
-from artefact.standard_file import write_standard
-from cad_out.conformity import Conformity
-from cad_out.export import export_standard
-from diagnosis.fit import Fit, fit_run
-from diagnosis.identification_file import write_identification
-from diagnosis.proof import Proof, probed_volume, prove
-from matstd.project_file import Project
+from artefact.body import write_standard
+from artefact.brief import Project
+from artefact.compare import knowable, write_identifiability
+from artefact.place import Placement, place
+from cad_out.verify import export_standard
+from diagnosis.answer import probed_volume, prove
+from diagnosis.files import write_identification
+from diagnosis.fit import fit_run
 from matstd.wanted import frame, placement_options, probe, probing
-from probe_paths.campaign import Campaign, simulate
-from probe_paths.contacts import VirtualMachine
-from probe_paths.plan import PlanOptions, TouchPlan
-from probe_paths.planner import plan_touches
-from probe_paths.program import ProgramSet, make_programs
-from sensitivity.crew import Crew
-from sensitivity.maps import draw_maps
-from sensitivity.sampling import Population, drawn_errors
-from sensitivity.study import Study, run_study
-from sensitivity.study_file import write_study
-from sensitivity.trajectory_pictures import draw_path
-from sensitivity.workspace import Workspace
-from twin.effect import Effect, contribution
-from twin.files.error_file import errors_toml
-from twin.files.run_writer import write_run
-from twin.files.whole import write_whole
-from twin.frames import Array
+from probe_paths.campaign import VirtualMachine, simulate
+from probe_paths.emit import make_programs
+from probe_paths.plan import PlanOptions, TouchPlan, plan_touches
+from report.maps import draw_maps, draw_path
+from report.pages import Design, Proven
+from sensitivity.first_order import Workspace
+from sensitivity.montecarlo import Crew
+from sensitivity.population import Population, drawn_errors
+from sensitivity.study import run_study, write_study
+from twin.files import errors_toml, write_run, write_whole
+from twin.model import contribution
 
 PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""
 
 Stage = Callable[[str, int, int], None]
 """Told the name of a stage, what is done and how much there is."""
-
-
-@dataclass(frozen=True, eq=False)
-class Proven:
-    """One random machine, probed with the emitted programs and identified.
-
-    Attributes:
-        seed: Of its errors and noise, beside the project's.
-        errors: Its true errors.
-        campaign: The programs run on its twin.
-        fit: The identified model.
-        proof: Predicted against true volumetric error.
-    """
-
-    seed: int
-    errors: list[tuple[Effect, Array]]
-    campaign: Campaign
-    fit: Fit
-    proof: Proof
-
-
-@dataclass(frozen=True, eq=False)
-class Design:
-    """Everything that a design run made; the files of the same names hold it.
-
-    Attributes:
-        project: What was asked for.
-        study: Sensitivities and random machines.
-        maps: File and caption of the study's pictures.
-        placement: Standard and touches.
-        conformity: CAD files, measured after they were written.
-        plan: Touches in their order.
-        programs: Text that makes them.
-        machines: Random machines, probed and identified.
-        known: What the touches can and cannot tell apart.
-        effective: Number of parameters that the first machine's data decide rather than the prior.
-    """
-
-    project: Project
-    study: Study
-    maps: list[tuple[str, str]]
-    placement: Placement
-    conformity: Conformity
-    plan: TouchPlan
-    programs: ProgramSet
-    machines: tuple[Proven, ...]
-    known: Knowable
-    effective: float
 
 
 def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -> Design:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from twin.errors import DesignError
-from twin.files.whole import NOT_WRITABLE
+from twin.files import NOT_WRITABLE
 
 
 @contextmanager

@@ -4,21 +4,22 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
+from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
-from diagnosis.model_file import SavedModel, check_machine, read_model
-from twin.effect import Effect
 from twin.errors import DesignError, NotEnoughData
-from twin.files.run_file import read_run
+from twin.files import read_run
 from twin.library import (
     is_seen,
     kinds,
     load_installed_effects,
     load_user_effects,
     parse_effect,
+    try_effect,
+    try_kind,
     users_files,
 )
-from twin.run import Run
-from twin.trial import try_effect, try_kind
+from twin.model import Effect
+from twin.record import Run
 
 
 def read_inputs(

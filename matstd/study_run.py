@@ -4,17 +4,15 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.project_file import Project
-from matstd.report_study import write_study_page
-from sensitivity.blocks import Progress
-from sensitivity.crew import Crew
-from sensitivity.maps import draw_maps
-from sensitivity.study import Study, run_study
-from sensitivity.study_file import write_study
-from sensitivity.trajectory_pictures import draw_path
-from sensitivity.workspace import Workspace
+from artefact.brief import Project
+from report.maps import draw_maps, draw_path
+from report.pages import write_study_page
+from sensitivity.first_order import Workspace
+from sensitivity.montecarlo import Crew
+from sensitivity.study import Study, run_study, write_study
+from twin.compute import Progress
 from twin.errors import BadFile
-from twin.files.pose_file import read_poses
+from twin.files import read_poses
 from twin.frames import Array
 from twin.units import UM
 

@@ -1,13 +1,11 @@
 """What a project asks for, in the terms of placement and planning."""
 
-from artefact.constraints import Limits
-from artefact.placement import PlacementOptions
-from artefact.sites import Fittings, Frame
-from artefact.standard import Base, Material
-from artefact.touchable import Probing
-from matstd.project_file import Project
-from matstd.standard_tables import BASE_THICKNESS, CORNER_RADIUS
-from probe_paths.probe import Probe
+from artefact.body import Base, Limits, Material
+from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, Project
+from artefact.layout import Fittings, Frame
+from artefact.place import PlacementOptions
+from artefact.reach import Probing
+from probe_paths.plan import Probe
 from twin.units import DEG, KG_M3
 
 _LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0

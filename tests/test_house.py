@@ -1,6 +1,7 @@
-"""The architecture as a test: floors, heavy imports, sizes, start-up, words that do not belong."""
+"""The architecture as a test: floors, parts, faces, heavy imports, sizes, start-up."""
 
 import ast
+import importlib
 import subprocess
 import sys
 from pathlib import Path
@@ -8,40 +9,58 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-ALLOWED = {
+BELOW = {
     "twin": set(),
     "sensitivity": {"twin"},
-    "artefact": {"twin", "sensitivity"},
-    "diagnosis": {"twin", "sensitivity"},
+    "information": {"twin"},
+    "artefact": {"twin", "sensitivity", "information"},
+    "diagnosis": {"twin", "information"},
     "cad_out": {"twin", "artefact"},
     "probe_paths": {"twin", "artefact"},
-    "matstd": {
-        "twin",
-        "sensitivity",
-        "artefact",
-        "diagnosis",
-        "cad_out",
-        "probe_paths",
-    },
 }
+ALLOWED = BELOW | {
+    "report": set(BELOW),
+    "matstd": {*BELOW, "report"},
+}
+"""Which rooms a room may import."""
+VOCABULARY = {
+    "twin.units",
+    "twin.frames",
+    "twin.errors",
+    "twin.words",
+    "twin.compute",
+    "twin.versions",
+}
+"""Modules that every room speaks: they lie below all parts and are imported as they are."""
 HEAVY = {"build123d", "OCP", "pyvista", "vtk", "matplotlib", "trimesh", "manifold3d"}
+DRAWING = {"matplotlib", "pyvista", "vtk"}
 # The kernel's own files name forty of its classes each; they are imported inside functions only.
-KERNEL = {"cad_out/solid.py", "cad_out/faces.py", "cad_out/exchange.py"}
+KERNEL = {"cad_out/build/solid.py", "cad_out/build/faces.py", "cad_out/build/exchange.py"}
+MAX_FILES = 16
 MAX_LINES = 400
 MAX_CODE = 60
+FACE = range(3, 31)
+"""Names of a face."""
 
 FILES = [f for room in ALLOWED for f in sorted((ROOT / room).rglob("*.py"))]
-IDS = [str(f.relative_to(ROOT)) for f in FILES]
+IDS = [f.relative_to(ROOT).as_posix() for f in FILES]
+TREES = {f: ast.parse(f.read_text(encoding="utf-8")) for f in FILES}
+PARTS = {room: importlib.import_module(room).PARTS for room in ALLOWED if room not in {"matstd"}}
+
+
+def module_of(file: Path) -> str:
+    """Dotted name of a file's module."""
+    return ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
 def imports(tree: ast.AST) -> list[tuple[str, int]]:
-    """First words of all imported modules with their line."""
+    """All imported modules with their line."""
     found = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            found += [(alias.name.split(".")[0], node.lineno) for alias in node.names]
+            found += [(alias.name, node.lineno) for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            found.append((node.module.split(".")[0], node.lineno))
+            found.append((node.module, node.lineno))
     return found
 
 
@@ -51,39 +70,109 @@ def top_level_imports(tree: ast.Module) -> list[tuple[str, int]]:
     return imports(ast.Module(body=body, type_ignores=[]))
 
 
+def is_package(name: str) -> bool:
+    """Whether a dotted name is a folder of ours."""
+    return (ROOT / name.replace(".", "/") / "__init__.py").exists()
+
+
+def part_of(name: str) -> str:
+    """`twin.machine.chain` -> `twin.machine`; what lies beside the parts is its own."""
+    return ".".join(name.split(".")[:2])
+
+
 @pytest.mark.parametrize("file", FILES, ids=IDS)
-def test_imports_run_one_way(file: Path) -> None:
+def test_rooms_import_one_way(file: Path) -> None:
     room = file.relative_to(ROOT).parts[0]
-    tree = ast.parse(file.read_text(encoding="utf-8"))
-    for name, line in imports(tree):
-        assert name not in ALLOWED or name == room or name in ALLOWED[room], (
-            f"{file}:{line}: {room} imports {name}"
+    for name, line in imports(TREES[file]):
+        other = name.split(".")[0]
+        assert other not in ALLOWED or other == room or other in ALLOWED[room], (
+            f"{file}:{line}: {room} imports {other}"
         )
 
 
 @pytest.mark.parametrize("file", FILES, ids=IDS)
+def test_parts_import_one_way(file: Path) -> None:
+    """Within a room a part imports only those that its `__init__` lists before it."""
+    me = module_of(file)
+    room = me.split(".")[0]
+    if room not in PARTS or me == room:
+        return
+    order = [f"{room}.{part}" for part in PARTS[room]]
+    mine = order.index(part_of(me)) if part_of(me) in order else -1
+    assert mine >= 0 or part_of(me) in VOCABULARY, f"{me} is no part of {room}"
+    for name, line in imports(TREES[file]):
+        if name.split(".")[0] != room or name in VOCABULARY:
+            continue
+        assert name != room, f"{file}:{line}: imports its own room"
+        assert order.index(part_of(name)) <= mine, f"{file}:{line}: imports {name}, which is above"
+
+
+@pytest.mark.parametrize("file", FILES, ids=IDS)
+def test_parts_are_entered_by_their_faces(file: Path) -> None:
+    """Other parts and rooms import from an `__init__`, and only what it lists."""
+    mine = part_of(module_of(file))
+    for node in ast.walk(TREES[file]):
+        if not isinstance(node, ast.ImportFrom) or not node.module or node.level:
+            continue
+        name = node.module
+        if name.split(".")[0] not in PARTS or part_of(name) == mine or name in VOCABULARY:
+            continue
+        where = f"{file}:{node.lineno}"
+        assert is_package(name), f"{where}: {name} is not a face"
+        listed = set(importlib.import_module(name).__all__)
+        for alias in node.names:
+            assert alias.name in listed or (
+                (ROOT / name.replace(".", "/") / f"{alias.name}.py").exists()
+            ), f"{where}: {alias.name} is not in the face of {name}"
+
+
+FACES = sorted(
+    module_of(f)
+    for f in FILES
+    if f.name == "__init__.py"
+    and module_of(f).count(".") == 1
+    and not module_of(f).startswith("matstd")
+)
+
+
+@pytest.mark.parametrize("name", FACES)
+def test_faces_are_short_and_true(name: str) -> None:
+    face = importlib.import_module(name)
+    assert len(face.__all__) in FACE, len(face.__all__)
+    assert len(set(face.__all__)) == len(face.__all__)
+    for listed in face.__all__:
+        assert getattr(face, listed) is not None, listed
+
+
+def test_folders_are_small() -> None:
+    for folder in {f.parent for f in FILES}:
+        count = len(list(folder.glob("*.py")))
+        assert count <= MAX_FILES, f"{folder}: {count} files"
+
+
+@pytest.mark.parametrize("file", FILES, ids=IDS)
 def test_heavy_libraries_are_imported_where_they_are_used(file: Path) -> None:
-    tree = ast.parse(file.read_text(encoding="utf-8"))
+    tree = TREES[file]
+    room = file.relative_to(ROOT).parts[0]
     is_kernel = file.relative_to(ROOT).as_posix() in KERNEL
     for name, line in top_level_imports(tree):
-        allowed = is_kernel and name == "OCP"
-        assert allowed or name not in HEAVY, f"{file}:{line}: {name} at the top of the file"
+        top = name.split(".")[0]
+        assert (is_kernel and top == "OCP") or top not in HEAVY, f"{file}:{line}: {name} at the top"
     if not is_kernel:
         for node in tree.body:
             module = f"{getattr(node, 'module', '')}".replace(".", "/") + ".py"
             assert module not in KERNEL, f"{file}:{node.lineno}: loads the CAD kernel"
-    if file.relative_to(ROOT).parts[0] != "cad_out":
-        for name, line in imports(tree):
-            assert name not in {"build123d", "OCP"}, f"{file}:{line}: {name} outside cad_out"
+    for name, line in imports(tree):
+        top = name.split(".")[0]
+        assert room == "cad_out" or top not in {"build123d", "OCP"}, f"{file}:{line}: {name}"
+        assert room == "report" or top not in DRAWING, f"{file}:{line}: {name} below report"
 
 
 @pytest.mark.parametrize("file", FILES, ids=IDS)
 def test_files_and_functions_stay_readable(file: Path) -> None:
-    text = file.read_text(encoding="utf-8")
-    assert text.count("\n") <= MAX_LINES
-    tree = ast.parse(text)
-    assert ast.get_docstring(tree), "no docstring"
-    for node in ast.walk(tree):
+    assert file.read_text(encoding="utf-8").count("\n") <= MAX_LINES
+    assert ast.get_docstring(TREES[file]), "no docstring"
+    for node in ast.walk(TREES[file]):
         if isinstance(node, ast.FunctionDef):
             doc = ast.get_docstring(node) or ""
             size = (node.end_lineno or 0) - node.lineno - (doc.count("\n") + 1 if doc else 0)
@@ -92,7 +181,8 @@ def test_files_and_functions_stay_readable(file: Path) -> None:
 
 def test_scipy_stats_stays_out_of_the_twin() -> None:
     for file in (ROOT / "twin").rglob("*.py"):
-        assert "scipy" not in file.read_text(encoding="utf-8"), file
+        assert "import scipy" not in file.read_text(encoding="utf-8"), file
+        assert "from scipy" not in file.read_text(encoding="utf-8"), file
 
 
 def test_help_is_light() -> None:

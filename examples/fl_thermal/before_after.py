@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 from make_run import PROBES, spindle_run
 
-from diagnosis.diagnose import diagnose
-from diagnosis.verdict import Diagnosis
+from diagnosis.answer import Diagnosis, diagnose
 from twin.library import load_user_effects
 from twin.units import UM
 

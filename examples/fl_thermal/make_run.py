@@ -17,10 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.files.machine_file import read_machine
-from twin.files.run_writer import write_run
-from twin.run import Run
-from twin.touches import Setup, Touches
+from twin.files import read_machine, write_run
+from twin.record import Run, Setup, Touches
 from twin.units import UM
 
 HERE = Path(__file__).resolve().parent

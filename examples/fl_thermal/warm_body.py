@@ -8,10 +8,9 @@ directions at once, each by an amount of its own, but all at the same pace.
 
 from dataclasses import dataclass, replace
 
-from twin.effect import Parameter, Term, Where
-from twin.effects.kind import sensors
-from twin.effects.thermal_lag import SPINDLE, ThermalLag
+from twin.effects import SPINDLE, ThermalLag
 from twin.library import Kind
+from twin.model import Parameter, Term, Where, sensors
 from twin.units import UM
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from diagnosis.residuals import Comparison
+    from diagnosis.residual import Comparison
 
 OURS = ("pictures/*.png", "report.html")
 """Results that not every comparison leaves."""
@@ -33,12 +33,12 @@ def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
     import numpy as np
 
-    from diagnosis.diagnosis_file import write_comparison, write_residuals
-    from diagnosis.residuals import compare
+    from diagnosis.files import write_comparison, write_residuals
+    from diagnosis.residual import compare
     from matstd.console import stages
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
-    from twin.ordinary import ordinary_model
+    from twin.library import ordinary_model
 
     run, saved = read_inputs(args.run_file, args.model, args.effects, "so that it flatters it")
     model = saved.model if saved else ordinary_model(run.touches.chain)
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
         write_comparison(folder / "comparison.json", found)
         write_residuals(folder / "residuals.csv", found)
         if not args.no_report:
-            from matstd.report_compare import write_compare_page
+            from report.pages import write_compare_page
 
             show("report", 0, 1)
             title = Path(args.run_file).name
@@ -63,8 +63,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _tell(args: argparse.Namespace, found: Comparison) -> None:
     """The comparison in words."""
-    from diagnosis.sentences import comparison_sentence
     from matstd.console import say
+    from report.words import comparison_sentence
     from twin.units import UM
     from twin.words import signed
 

@@ -15,15 +15,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
+    from artefact.brief import read_project
     from matstd.crew import hired
     from matstd.folder import results_folder
-    from matstd.project_file import read_project
 
     project = read_project(args.project)
     with results_folder(args.output, args.force) as folder:
         from matstd.console import stages
         from matstd.design import design
-        from matstd.report_design import write_design_page
+        from report.pages import write_design_page
 
         with stages() as progress, hired(args.scheduler) as crew:
             made = design(project, folder, progress, crew)

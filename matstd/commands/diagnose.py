@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from diagnosis.model_file import SavedModel
-    from diagnosis.verdict import Diagnosis, Step
-    from twin.run import Run
+    from diagnosis.answer import Diagnosis, Step
+    from diagnosis.files import SavedModel
+    from twin.record import Run
 
 OURS = ("next_measurement_*.csv", "pictures/*.png", "report.html")
 """Results that not every diagnosis leaves."""
@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
         )
         _write(args, result, saved, folder)
         if not args.no_report:
-            from matstd.report_diagnosis import write_diagnosis_page
+            from report.pages import write_diagnosis_page
 
             show("report", 0, 1)
             title = Path(args.run_file).name
@@ -80,9 +80,9 @@ def _diagnosed(
     """The diagnosis, from the model file or from the ordinary model."""
     import numpy as np
 
-    from diagnosis.diagnose import diagnose
+    from diagnosis.answer import diagnose
     from matstd.inputs import is_learnt_from, named_effects
-    from twin.ordinary import ordinary_model
+    from twin.library import ordinary_model
 
     start = saved.model if saved else ordinary_model(run.touches.chain)
     known = saved.estimates if saved and not is_learnt_from(saved, run) else None
@@ -94,11 +94,10 @@ def _write(
     args: argparse.Namespace, result: Diagnosis, saved: SavedModel | None, folder: Path
 ) -> None:
     """Result, model and plans as files."""
-    from diagnosis.diagnosis_file import plan_text, write_diagnosis
-    from diagnosis.model_writer import write_model
+    from diagnosis.files import plan_text, write_diagnosis, write_model
     from matstd.inputs import is_learnt_from
-    from matstd.versions import versions
-    from twin.files.whole import write_whole
+    from twin.files import write_whole
+    from twin.versions import versions
 
     write_diagnosis(folder / "diagnosis.json", result)
     fit = result.fit if args.auto else result.steps[len(args.add)].fit
@@ -113,8 +112,8 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     """The verdict, the error falling, and what else should be known."""
     from rich.table import Column, Table
 
-    from diagnosis.sentences import rivals_words, verdict_sentence
     from matstd.console import console, say
+    from report.words import rivals_words, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = [
@@ -140,7 +139,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
 def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
-    from diagnosis.sentences import values
+    from report.words import values
     from twin.units import UM
     from twin.words import digits
 

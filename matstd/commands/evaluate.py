@@ -37,16 +37,13 @@ def run(args: argparse.Namespace) -> int:
 
     import numpy as np
 
-    from artefact.standard_file import read_standard
+    from artefact.body import read_standard
     from matstd.console import say
-    from probe_paths.dialect import Dialect
-    from probe_paths.evaluate import evaluate
-    from probe_paths.log import read_log
+    from probe_paths.campaign import evaluate
+    from probe_paths.control import read_log
+    from probe_paths.language import Dialect
     from twin.errors import DesignError
-    from twin.files.machine_file import read_machine
-    from twin.files.run_writer import write_run
-    from twin.files.sensor_file import read_sensors
-    from twin.files.whole import refuse_to_overwrite
+    from twin.files import read_machine, read_sensors, refuse_to_overwrite, write_run
     from twin.units import UM
 
     if not 1e-3 <= args.u_um <= 1000.0:

@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from twin.errors import BadFile, DesignError
-    from twin.files.toml import parse_toml, read_text
+    from twin.files import parse_toml, read_text
 
     path = Path(args.source)
     if parse_toml(read_text(path), path).get("format") == "project/1":
@@ -51,10 +51,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _table(args: argparse.Namespace) -> int:
     """One column a parameter: µm/µm, or µm/µrad for an angular one."""
-    from sensitivity.jacobian import sensitivity
-    from twin.files.machine_file import read_machine
-    from twin.files.pose_file import read_poses
-    from twin.files.whole import refuse_to_overwrite, write_whole
+    from sensitivity.first_order import sensitivity
+    from twin.files import read_machine, read_poses, refuse_to_overwrite, write_whole
     from twin.units import UM, URAD
 
     refuse_to_overwrite(args.output, args.force)
@@ -70,9 +68,9 @@ def _table(args: argparse.Namespace) -> int:
 
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
+    from artefact.brief import read_project
     from matstd.crew import hired
     from matstd.folder import results_folder
-    from matstd.project_file import read_project
 
     project = read_project(args.source, _settings(args))
     with results_folder(args.output, args.force) as folder:

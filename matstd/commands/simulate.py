@@ -33,17 +33,13 @@ def run(args: argparse.Namespace) -> int:
 
     import numpy as np
 
-    from artefact.standard_file import read_standard
-    from probe_paths.campaign import simulate
-    from probe_paths.contacts import VirtualMachine
-    from probe_paths.interpreter import stated_probe
-    from sensitivity.sampling import Population, drawn_errors
-    from twin.effect import contribution
+    from artefact.body import read_standard
+    from probe_paths.campaign import VirtualMachine, simulate
+    from probe_paths.control import stated_probe
+    from sensitivity.population import Population, drawn_errors
     from twin.errors import DesignError
-    from twin.files.error_file import read_errors
-    from twin.files.machine_file import read_machine
-    from twin.files.run_writer import write_run
-    from twin.files.whole import refuse_to_overwrite, write_whole
+    from twin.files import read_errors, read_machine, refuse_to_overwrite, write_run, write_whole
+    from twin.model import contribution
     from twin.units import UM
 
     if not 0.0 <= args.noise_um < 1000.0 or args.seed < 0:

@@ -16,12 +16,9 @@ def run(args: argparse.Namespace) -> int:
     """Write dx_um, dy_um, dz_um in the table frame, actual minus nominal."""
     import numpy as np
 
-    from twin.files.error_file import read_errors
-    from twin.files.machine_file import read_machine
-    from twin.files.pose_file import read_poses
-    from twin.files.whole import refuse_to_overwrite, write_whole
+    from twin.files import read_errors, read_machine, read_poses, refuse_to_overwrite, write_whole
     from twin.model import Model
-    from twin.touches import at_poses
+    from twin.record import at_poses
     from twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from artefact.sites import Frame, Site, standard_from_sites
-from artefact.standard import Standard
+from artefact.body.standard import Standard
+from artefact.layout.sites import Frame, Site, standard_from_sites
 from twin.units import DEG
 
 

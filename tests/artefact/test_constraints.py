@@ -5,11 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.constraints import Limits, check, constraints, max_slope, min_concave_radius, overhang
-from artefact.freeform import OVERHANG, graph_patch
-from artefact.sites import Fittings, Frame, Site, patch_of_site, standard_from_sites
-from artefact.spline import clamped_knots
-from artefact.standard import Base
+from artefact.body.constraints import (
+    Limits,
+    check,
+    constraints,
+    max_slope,
+    min_concave_radius,
+    overhang,
+)
+from artefact.body.freeform import OVERHANG, graph_patch
+from artefact.body.spline import clamped_knots
+from artefact.body.standard import Base
+from artefact.layout.sites import Fittings, Frame, Site, patch_of_site, standard_from_sites
 from twin.errors import NotBuildable, ShapeMismatch
 from twin.units import DEG
 

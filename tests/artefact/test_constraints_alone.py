@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.clearance import ProbeShape
-from artefact.constraints import (
+from artefact.body.constraints import (
     Limits,
     check,
     constraints,
@@ -15,14 +14,15 @@ from artefact.constraints import (
     min_concave_radius,
     overhang,
 )
-from artefact.freeform import graph_patch
-from artefact.placement import PlacementOptions, place
-from artefact.sites import Frame
-from artefact.touchable import Probing, Requests
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
+from artefact.body.freeform import graph_patch
+from artefact.layout.sites import Frame
+from artefact.place.placement import PlacementOptions, place
+from artefact.reach.clearance import ProbeShape
+from artefact.reach.touchable import Probing, Requests
+from sensitivity.first_order.workspace import Workspace
 from twin.errors import NotBuildable, NotReachable, OutsideTravel
-from twin.touches import Setup
+from twin.machine.chain import Axis, make_chain
+from twin.record.touches import Setup
 from twin.units import DEG
 
 LIMITS = Limits()

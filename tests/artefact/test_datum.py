@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from artefact.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
+from artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
 from twin.errors import ShapeMismatch
 from twin.units import NM
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline, NdBSpline, make_interp_spline
 from scipy.optimize import brentq, minimize
 
-from artefact.freeform import OVERHANG, graph_patch
-from artefact.spline import basis, clamped_knots, greville
+from artefact.body.freeform import OVERHANG, graph_patch
+from artefact.body.spline import basis, clamped_knots, greville
 from twin.errors import ShapeMismatch
 from twin.frames import fixed_xyz, pose
 from twin.units import NM, UM

@@ -5,19 +5,19 @@ import json
 import numpy as np
 import pytest
 
-from artefact import alternatives as module
-from artefact.alternatives import alternatives, both, machine_rank, set_up, tried_in, ways
-from artefact.criterion import criterion, random_touches
-from artefact.knowable import as_json, knowable, write_identifiability
-from artefact.sites import Frame
-from artefact.touchable import Probing
-from probe_paths.probe import Probe
-from sensitivity.combinations import combinations
-from sensitivity.identifiability import NEVER, SIDEWAYS
-from sensitivity.sampling import Population
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
-from twin.touches import Setup
+from artefact.compare import alternatives as module
+from artefact.compare.alternatives import alternatives, both, machine_rank, set_up, tried_in, ways
+from artefact.compare.knowable import as_json, knowable, write_identifiability
+from artefact.layout.sites import Frame
+from artefact.reach.touchable import Probing
+from artefact.worth.criterion import criterion, random_touches
+from information.identifiability.combinations import combinations
+from information.identifiability.separation import NEVER, SIDEWAYS
+from probe_paths.plan.probe import Probe
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from twin.machine.chain import Axis, make_chain
+from twin.record.touches import Setup
 from twin.units import DEG, UM
 
 TOUCHES = 240

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from artefact.meeting import contact
-from artefact.patch import Meeting
-from artefact.standard import Standard
+from artefact.body.patch import Meeting
+from artefact.body.standard import Standard
+from artefact.reach.first_contact import contact
 from twin.units import NM, UM
 
 BALL = 3.0

@@ -3,21 +3,21 @@
 import numpy as np
 import pytest
 
-from artefact.clearance import ProbeShape, clearance
-from artefact.constraints import Limits, check
-from artefact.meeting import contact
-from artefact.patch import Meeting
-from artefact.placement import PlacementOptions, place
-from artefact.sites import Frame
-from artefact.standard import Base
-from artefact.touch_choice import table_poses
-from artefact.touchable import Probing
-from sensitivity.information import Posterior
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
+from artefact.body.constraints import Limits, check
+from artefact.body.patch import Meeting
+from artefact.body.standard import Base
+from artefact.layout.sites import Frame
+from artefact.place.placement import PlacementOptions, place
+from artefact.reach.clearance import ProbeShape, clearance
+from artefact.reach.first_contact import contact
+from artefact.reach.touchable import Probing
+from artefact.worth.touch_choice import table_poses
+from information.criteria.posterior import Posterior
+from sensitivity.first_order.workspace import Workspace
 from twin.errors import DesignError, NotBuildable, NotReachable
-from twin.kinematics import table_to_tool, tip
-from twin.touches import Setup
+from twin.machine.chain import Axis, make_chain
+from twin.machine.kinematics import table_to_tool, tip
+from twin.record.touches import Setup
 from twin.units import DEG, NM
 
 LENGTH = 160.0

@@ -5,19 +5,19 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from artefact.attribution import error_shares
-from artefact.candidates import TALLEST, neighbours_fit, random_sites, smooth_heights
-from artefact.clearance import ProbeShape
-from artefact.constraints import Limits, max_slope, min_concave_radius
-from artefact.freeform import graph_patch
-from artefact.sites import Frame, Site
-from artefact.spread import spread
-from artefact.touchable import Probing, Requests, joined
-from twin.chain import Axis, make_chain
+from artefact.body.constraints import Limits, max_slope, min_concave_radius
+from artefact.body.freeform import graph_patch
+from artefact.layout.candidates import TALLEST, neighbours_fit, random_sites, smooth_heights
+from artefact.layout.sites import Frame, Site
+from artefact.layout.spread import spread
+from artefact.reach.clearance import ProbeShape
+from artefact.reach.touchable import Probing, Requests, joined
+from artefact.worth.attribution import error_shares
 from twin.errors import NotBuildable
 from twin.frames import fixed_xyz, pose
-from twin.kinematics import inverse_linear
-from twin.touches import Setup
+from twin.machine.chain import Axis, make_chain
+from twin.machine.kinematics import inverse_linear
+from twin.record.touches import Setup
 from twin.units import DEG, NM
 
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))

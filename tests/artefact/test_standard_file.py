@@ -5,8 +5,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from artefact.freeform import ErrorShare
-from artefact.standard_file import read_standard, write_standard
+from artefact.body.freeform import ErrorShare
+from artefact.body.standard_file import read_standard, write_standard
 from twin.errors import BadFile, DesignError
 
 

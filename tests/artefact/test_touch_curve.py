@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from artefact.clearance import ProbeShape
-from artefact.criterion import criterion, random_touches
-from artefact.sites import Frame
-from artefact.touch_curve import TouchCurve, touch_curve
-from artefact.touch_curve_picture import draw_touch_curves
-from artefact.touchable import Probing
-from sensitivity.information import Posterior
-from sensitivity.sampling import Population
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
+from artefact.layout.sites import Frame
+from artefact.reach.clearance import ProbeShape
+from artefact.reach.touchable import Probing
+from artefact.worth.criterion import criterion, random_touches
+from artefact.worth.touch_curve import TouchCurve, touch_curve
+from information.criteria.posterior import Posterior
+from report.plots.touch_curve_picture import draw_touch_curves
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
 from twin.errors import DesignError
-from twin.touches import Setup
+from twin.machine.chain import Axis, make_chain
+from twin.record.touches import Setup
 from twin.units import DEG, UM
 
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))

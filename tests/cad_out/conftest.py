@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.sites import Fittings, Frame, Site, standard_from_sites
-from artefact.standard import Base
-from cad_out.export import build_and_measure
+from artefact.body.standard import Base
+from artefact.layout.sites import Fittings, Frame, Site, standard_from_sites
+from cad_out.verify.export import build_and_measure
 from twin.units import DEG
 
 demo = runpy.run_path(str(Path(__file__).parent.parent / "artefact" / "demo.py"))
@@ -44,7 +44,7 @@ def built(small, tmp_path_factory):
 @pytest.fixture(scope="session")
 def random_standard():
     """Makes a standard of random sites that keeps its limits, from a seed."""
-    from artefact.constraints import Limits, check
+    from artefact.body.constraints import Limits, check
     from twin.errors import NotBuildable
 
     def make(seed):

@@ -7,19 +7,26 @@ import numpy as np
 import pytest
 
 import cad_out
-from artefact.datum import DatumSphere
-from cad_out import kernel
-from cad_out.conformity import FACE_LIMIT, face_deviations
-from cad_out.mesh import chord_errors, is_watertight, manifold_volume, mesh_volume, owners, read_stl
-from cad_out.part21 import SphereFace, SplineFace, read_faces
-from cad_out.process import run_apart
+from artefact.body.datum import DatumSphere
+from cad_out.build import kernel
+from cad_out.build.mesh import (
+    chord_errors,
+    is_watertight,
+    manifold_volume,
+    mesh_volume,
+    owners,
+    read_stl,
+)
+from cad_out.build.process import run_apart
+from cad_out.verify.conformity import FACE_LIMIT, face_deviations
+from cad_out.verify.part21 import SphereFace, SplineFace, read_faces
 from twin.errors import BadFile, NotBuildable
 from twin.units import NM, UM
 
 
 @pytest.mark.slow
 def test_ten_patches_conform_and_stay_below_their_limits(standard, tmp_path):
-    conformity = cad_out.export_standard(standard, tmp_path, chord=0.02)
+    conformity = cad_out.verify.export_standard(standard, tmp_path, chord=0.02)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["standard.step", "standard.stl"]
     assert conformity.faults() == []
     assert conformity.solids == 1
@@ -145,7 +152,7 @@ def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(small):
 
 def test_same_standard_gives_the_same_bytes(small, built, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONHASHSEED", "77")
-    cad_out.export_standard(small, tmp_path, chord=0.02)
+    cad_out.verify.export_standard(small, tmp_path, chord=0.02)
     for name in ("standard.step", "standard.stl"):
         assert (tmp_path / name).read_bytes() == (built[0] / name).read_bytes()
 
@@ -183,7 +190,7 @@ def test_a_refused_design_leaves_the_files_of_the_last_one(small, tmp_path):
     with pytest.raises(
         NotBuildable, match=r"'small' falls into 2 solids .* does not reach the body"
     ):
-        cad_out.export_standard(adrift, tmp_path)
+        cad_out.verify.export_standard(adrift, tmp_path)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["standard.step", "standard.stl"]
     assert (tmp_path / "standard.step").read_text() == "of the last run"
 
@@ -196,7 +203,7 @@ def test_a_crash_of_the_kernel_is_one_clear_error(small, tmp_path, monkeypatch):
     with pytest.raises(
         NotBuildable, match=r"CAD kernel crashed \(SIGSEGV, exit code -11\).*nothing was written"
     ) as caught:
-        cad_out.export_standard(small, tmp_path)
+        cad_out.verify.export_standard(small, tmp_path)
     assert "\n" not in str(caught.value)
     assert caught.value.facts["exit_code"] == -11
     assert list(tmp_path.iterdir()) == []
@@ -218,6 +225,6 @@ def test_a_task_that_fails_shows_its_last_line(tmp_path):
 @pytest.mark.parametrize("seed", range(8))
 def test_random_standards_build_valid_solids(random_standard, tmp_path, seed):
     standard = random_standard(seed)
-    conformity = cad_out.export_standard(standard, tmp_path, chord=0.02)
+    conformity = cad_out.verify.export_standard(standard, tmp_path, chord=0.02)
     assert conformity.faults() == []
     assert conformity.volume == pytest.approx(standard.volume(2.0), rel=2e-3)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from artefact.standard import Standard
-from cad_out.part import as_part
+from artefact.body.standard import Standard
+from cad_out.build.part import as_part
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::SyntaxWarning")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cad_out.picture import draw_standard, draw_values
+from report.scenes.standard_scene import draw_standard, draw_values
 from twin.errors import DesignError, MissingLibrary
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cad_out.volume_picture import PIXELS, Scene, composed, draw_volumes, eye
+from report.scenes.volume_scene import PIXELS, Scene, composed, draw_volumes, eye
 from twin.errors import DesignError, MissingLibrary, ShapeMismatch
 
 READINGS = (

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from simulator_case import DETECTABLE, read_back, simulate_case
 
-from diagnosis.diagnose import diagnose
-from diagnosis.fit import fit_run
-from twin.ordinary import ordinary_model
-from twin.run import Run
+from diagnosis.answer.diagnose import diagnose
+from diagnosis.fit.identification import fit_run
+from twin.library.ordinary import ordinary_model
+from twin.record.run import Run
 
 
 class Case(NamedTuple):

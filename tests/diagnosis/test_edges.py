@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.candidates import Sized
-from diagnosis.diagnose import diagnose
-from diagnosis.edges import offered
-from diagnosis.gross import GrossErrors
-from diagnosis.verdict import Verdict
+from diagnosis.answer.diagnose import diagnose
+from diagnosis.answer.verdict import Verdict
+from diagnosis.evidence.signatures import Sized
+from diagnosis.fit.gross import GrossErrors
+from diagnosis.search.edges import offered
 from twin.effects.artefact import ArtefactSlip
-from twin.library import parse_effect
+from twin.library.register import parse_effect
 from twin.units import UM
 
 NOTHING = (2, "hsm600u", ())

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.estimable import estimable
-from diagnosis.fit import fit_run
-from twin.model import columns
+from diagnosis.fit.estimable import estimable
+from diagnosis.fit.identification import fit_run
+from twin.model.model import columns
 from twin.units import NM
 
 MACHINES = 20

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from simulator_case import simulate_case
 
-from diagnosis.diagnosis_file import write_diagnosis
-from diagnosis.fit import fit_run
-from diagnosis.mixed_units import mixed_units
-from diagnosis.model_file import read_model
-from diagnosis.model_writer import write_model
-from diagnosis.remarks import remarks
+from diagnosis.files.diagnosis_file import write_diagnosis
+from diagnosis.files.model_file import read_model
+from diagnosis.files.model_writer import write_model
+from diagnosis.fit.identification import fit_run
+from diagnosis.fit.mixed_units import mixed_units
+from diagnosis.residual.remarks import remarks
 from matstd.cli import main
-from twin.copies import counted_once
 from twin.errors import BadFile
-from twin.ordinary import ordinary_model
+from twin.library.ordinary import ordinary_model
+from twin.record.copies import counted_once
 from twin.units import NM, UM
 
 NUMBER = (int, float)
@@ -300,7 +300,7 @@ def test_plans_stand_beside_the_diagnosis(tmp_path, table) -> None:
 
 
 def test_named_effects_and_effects_of_ones_own(folder, tmp_path, monkeypatch) -> None:
-    import twin.library as library
+    import twin.library.register as library
 
     monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
     (tmp_path / "mine.py").write_text(HOSE, encoding="utf-8")

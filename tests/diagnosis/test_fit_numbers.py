@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit import fit_run
-from diagnosis.linear import left_out, solve
-from diagnosis.remarks import remarks
+from diagnosis.fit.identification import fit_run
+from diagnosis.fit.linear import left_out, solve
+from diagnosis.residual.remarks import remarks
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 from twin.errors import NotEnoughData
-from twin.model import columns
-from twin.ordinary import ordinary_model
+from twin.library.ordinary import ordinary_model
+from twin.model.model import columns
 from twin.units import NM, UM
 
 ROUNDING = 1e-12

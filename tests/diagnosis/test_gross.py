@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from diagnosis.fit import fit_run
-from diagnosis.gross import find_gross
-from twin.ordinary import ordinary_model
+from diagnosis.fit.gross import find_gross
+from diagnosis.fit.identification import fit_run
+from twin.library.ordinary import ordinary_model
 from twin.units import UM
 
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from simulator_experiment import random_experiment, random_noise
 
-from diagnosis.diagnose import diagnose
-from diagnosis.sentences import verdict_sentence
-from diagnosis.verdict import Verdict
-from twin.library import parse_effect
-from twin.model import columns
+from diagnosis.answer.diagnose import diagnose
+from diagnosis.answer.verdict import Verdict
+from report.words.diagnosis_words import verdict_sentence
+from twin.library.register import parse_effect
+from twin.model.model import columns
 from twin.units import UM
 
 WITHIN = 4.0

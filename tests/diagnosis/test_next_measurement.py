@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnosis.next_measurement import CONE, offered
-from twin.kinematics import tip
+from diagnosis.answer.next_measurement import CONE, offered
+from twin.machine.kinematics import tip
 from twin.units import NM
 
 

@@ -7,34 +7,34 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.diagnose import diagnose
-from diagnosis.partial import partial, roughness
-from diagnosis.pictures import (
-    draw_on_standard,
-    draw_pose_arrows,
-    has_poses,
-    is_spread,
-    pose_vectors,
-)
-from diagnosis.pictures_effects import draw_candidates, draw_effect, draw_fall, draw_rivals
-from diagnosis.pictures_pattern import draw_pattern
-from diagnosis.pictures_residuals import (
+from diagnosis.answer.diagnose import diagnose
+from diagnosis.answer.verdict import Verdict
+from diagnosis.residual.comparison import compare
+from diagnosis.residual.partial import partial, roughness
+from report.pages.compare_page import write_compare_page
+from report.pages.diagnosis_page import write_diagnosis_page
+from report.pages.page import p_value
+from report.plots.effect_pictures import draw_candidates, draw_effect, draw_fall, draw_rivals
+from report.plots.pattern_pictures import draw_pattern
+from report.plots.residual_pictures import (
     binned,
     draw_normal_plot,
     draw_over_variables,
     ranked_variables,
     standardised,
 )
-from diagnosis.residuals import compare
-from diagnosis.sentences import named_value, verdict_sentence
-from diagnosis.verdict import Verdict
-from matstd.page import p_value
-from matstd.report_compare import write_compare_page
-from matstd.report_diagnosis import write_diagnosis_page
+from report.plots.spatial_pictures import (
+    draw_on_standard,
+    draw_pose_arrows,
+    has_poses,
+    is_spread,
+    pose_vectors,
+)
+from report.words.diagnosis_words import named_value, verdict_sentence
 from twin.effects.backlash import KIND as BACKLASH
 from twin.effects.periodic import KIND as PERIODIC
 from twin.effects.thermal_lag import KIND as LAG
-from twin.ordinary import ordinary_model
+from twin.library.ordinary import ordinary_model
 from twin.units import MINUTE, NM, UM
 from twin.words import with_uncertainty
 

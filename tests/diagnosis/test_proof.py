@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit import fit_run
-from diagnosis.proof import probed_volume, prove
-from sensitivity.sampling import Population, drawn_errors
-from twin.effect import contribution
+from diagnosis.answer.proof import probed_volume, prove
+from diagnosis.fit.identification import fit_run
+from sensitivity.population.sampling import Population, drawn_errors
 from twin.frames import apply, fixed_xyz, inverse, pose
-from twin.kinematics import exact_tip
-from twin.ordinary import ordinary_model
-from twin.touches import Setup
+from twin.library.ordinary import ordinary_model
+from twin.machine.kinematics import exact_tip
+from twin.model.effect import contribution
+from twin.record.touches import Setup
 from twin.units import NM, UM
 
 MACHINES = 6

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.candidates import Complement
-from diagnosis.evidence import EffectSet
-from diagnosis.fit import fit_run
-from diagnosis.patterns import thinned
-from diagnosis.waves import best_wave
-from twin.ordinary import ordinary_model
+from diagnosis.evidence.evidence import EffectSet
+from diagnosis.evidence.signatures import Complement
+from diagnosis.fit.identification import fit_run
+from diagnosis.residual.patterns import thinned
+from diagnosis.residual.waves import best_wave
+from twin.library.ordinary import ordinary_model
 from twin.units import UM
 
 KEY = (1, "hmc1995")

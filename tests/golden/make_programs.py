@@ -8,18 +8,18 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.datum import DatumSphere
-from artefact.freeform import FreeformPatch, graph_patch
-from artefact.standard import STEEL, Base, Standard
-from artefact.touchable import Requests
-from probe_paths.plan import PlanOptions, TouchPlan, requests_at
-from probe_paths.planner import plan_touches
-from probe_paths.probe import Probe
-from probe_paths.program import ProgramSet, make_programs
-from probe_paths.writer import Feeds
-from twin.chain import Axis, Chain, make_chain
+from artefact.body.datum import DatumSphere
+from artefact.body.freeform import FreeformPatch, graph_patch
+from artefact.body.standard import STEEL, Base, Standard
+from artefact.reach.touchable import Requests
+from probe_paths.emit.program import ProgramSet, make_programs
+from probe_paths.emit.writer import Feeds
+from probe_paths.plan.planner import plan_touches
+from probe_paths.plan.probe import Probe
+from probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
 from twin.frames import pose, rotation
-from twin.touches import Setup
+from twin.machine.chain import Axis, Chain, make_chain
+from twin.record.touches import Setup
 from twin.units import DEG
 
 FOLDER = Path(__file__).parent / "programs"

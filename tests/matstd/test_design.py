@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.constraints import Limits
-from artefact.criterion import CRITERIA, Wishes
-from artefact.placement import PlacementOptions
+from artefact.body.constraints import Limits
+from artefact.brief.project_file import read_project
+from artefact.place.placement import PlacementOptions
+from artefact.worth.criterion import CRITERIA, Wishes
 from matstd.cli import main
-from matstd.project_file import read_project
 from matstd.wanted import frame, placement_options, probing
 from twin.files.run_file import read_run
 from twin.units import UM, URAD

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-import twin.library as library
+import twin.library.register as library
 from matstd.cli import main
 
 

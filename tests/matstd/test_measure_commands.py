@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from simulator_case import simulate_case
 
-from diagnosis.model_file import read_model
+from diagnosis.files.model_file import read_model
 from matstd.cli import main
 from twin.files.run_file import read_run
 from twin.units import UM
@@ -156,14 +156,13 @@ def test_old_plans_do_not_outlive_their_diagnosis(folder, tmp_path) -> None:
 
 def test_a_full_disk_is_one_line(folder, tmp_path, capsys, monkeypatch) -> None:
     """While a picture is drawn, which is where most of the bytes go."""
-    import diagnosis.ink
 
     def full(figure: object, path: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(diagnosis.ink, "save", full)
-    monkeypatch.setattr("diagnosis.pictures_residuals.save", full)
-    monkeypatch.setattr("diagnosis.pictures.save", full)
+    monkeypatch.setattr("report.plots.ink.save", full)
+    monkeypatch.setattr("report.plots.residual_pictures.save", full)
+    monkeypatch.setattr("report.plots.spatial_pictures.save", full)
     words = ["compare", str(folder / "run.csv"), "-o", str(tmp_path / "o")]
     assert main(words) == BAD
     told = capsys.readouterr().err
@@ -249,7 +248,7 @@ LATE = Kind("late", "", "f", "u", "t", "s", lambda c, a: Late(), lambda t: (Late
 def test_a_users_formula_that_fails_is_a_line_of_his_file(
     folder, tmp_path, capsys, monkeypatch, old, new, expected
 ) -> None:
-    from twin import library
+    from twin.library import register as library
 
     monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
     (tmp_path / "late.py").write_text(LATE.replace(old, new) if old else LATE, encoding="utf-8")

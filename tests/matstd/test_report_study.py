@@ -5,7 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from matstd.report_study import (
+from report.maps.canvas import figure, save
+from report.pages.study_page import (
     ERROR_3D,
     S_3D,
     draw_study_volumes,
@@ -13,14 +14,13 @@ from matstd.report_study import (
     sensitivity_scenes,
     write_study_page,
 )
-from sensitivity.canvas import figure, save
-from sensitivity.sampling import Population
-from sensitivity.study import run_study
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from sensitivity.study.machine_study import run_study
 from twin.files.machine_file import read_machine
 from twin.frames import apply
-from twin.kinematics import tip
+from twin.machine.chain import Axis, make_chain
+from twin.machine.kinematics import tip
 from twin.units import DEG, UM
 
 from .test_design import EXAMPLES

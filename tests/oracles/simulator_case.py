@@ -15,11 +15,11 @@ from simulator import probe, run_text
 from simulator_draw import random_direction, random_wave
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment, random_noise
 
-from twin.effect import Tunable
 from twin.files.run_file import read_run
-from twin.library import proposals
-from twin.model import columns
-from twin.ordinary import ordinary_model
+from twin.library.ordinary import ordinary_model
+from twin.library.register import proposals
+from twin.model.effect import Tunable
+from twin.model.model import columns
 
 DETECTABLE = 9.0
 ALIKE = 0.93

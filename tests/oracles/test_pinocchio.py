@@ -10,9 +10,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from twin.chain import Axis, Chain, Link, make_chain
-from twin.contribution import Contribution
-from twin.kinematics import exact_table_to_tool, reach, table_to_tool
+from twin.machine.chain import Axis, Chain, Link, make_chain
+from twin.machine.contribution import Contribution
+from twin.machine.kinematics import exact_table_to_tool, reach, table_to_tool
 from twin.units import DEG, NM
 
 LENGTH = 160.0

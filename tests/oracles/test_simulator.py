@@ -13,13 +13,13 @@ from simulator_experiment import MACHINES, random_experiment
 from simulator_machine import read_machine, tip
 from simulator_surface import foot, random_pads, surface_point
 
-from twin.contribution import Contribution
 from twin.files.machine_file import read_machine as read_chain
-from twin.kinematics import exact_tip
-from twin.kinematics import tip as twin_tip
-from twin.library import parse_effect
-from twin.model import columns
-from twin.symbols import Family
+from twin.library.register import parse_effect
+from twin.machine.contribution import Contribution
+from twin.machine.kinematics import exact_tip
+from twin.machine.kinematics import tip as twin_tip
+from twin.machine.symbols import Family
+from twin.model.model import columns
 from twin.units import NM, UM, URAD
 
 VOLUMETRIC = 0.02 * UM

@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from probe_paths.anchors import anchored
-from probe_paths.campaign import simulate
-from probe_paths.contacts import VirtualMachine
-from probe_paths.feet import foot_points
-from sensitivity.sampling import Population, drawn_errors
-from twin.effect import contribution
+from probe_paths.campaign.anchors import anchored
+from probe_paths.campaign.contacts import VirtualMachine
+from probe_paths.campaign.foot_points import foot_points
+from probe_paths.campaign.simulation import simulate
+from sensitivity.population.sampling import Population, drawn_errors
 from twin.frames import Array, apply, inverse
-from twin.kinematics import exact_tip
-from twin.run import Run
-from twin.touches import computed_deviation
+from twin.machine.kinematics import exact_tip
+from twin.model.effect import contribution
+from twin.record.run import Run
+from twin.record.touches import computed_deviation
 from twin.units import UM
 
 NOISE = 1.0 * UM

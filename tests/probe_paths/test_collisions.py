@@ -7,18 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from probe_paths.clearance import Room
-from probe_paths.collisions import SMALLEST_GAP, check_moves
-from probe_paths.evaluate import evaluate
-from probe_paths.interpreter import interpret
-from probe_paths.log import read_log
-from probe_paths.probe import Probe
-from probe_paths.steps import Move
-from probe_paths.virtual import run_program
+from probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
+from probe_paths.campaign.evaluate import evaluate
+from probe_paths.campaign.virtual import run_program
+from probe_paths.control.interpreter import interpret
+from probe_paths.control.log import read_log
+from probe_paths.control.steps import Move
+from probe_paths.plan.clearance import Room
+from probe_paths.plan.probe import Probe
 from twin.errors import BadFile
 from twin.frames import apply, inverse
-from twin.kinematics import tip
-from twin.touches import Setup
+from twin.machine.kinematics import tip
+from twin.record.touches import Setup
 from twin.units import UM
 
 TENTH = 0.1

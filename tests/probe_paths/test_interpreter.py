@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from probe_paths.interpreter import interpret, read_program, stated_probe
-from probe_paths.probe import Probe
-from probe_paths.steps import Halt, Move, Print, Probing
+from probe_paths.control.interpreter import interpret, read_program, stated_probe
+from probe_paths.control.steps import Halt, Move, Print, Probing
+from probe_paths.plan.probe import Probe
 from twin.errors import BadFile
 from twin.frames import apply, turn
-from twin.kinematics import linear_directions, tip
+from twin.machine.kinematics import linear_directions, tip
 from twin.units import DEG
 
 ROUNDING = 1e-4

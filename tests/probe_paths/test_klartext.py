@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from probe_paths import klartext as k
-from probe_paths.blocks import Kind, read_blocks
-from probe_paths.dialect import Dialect
-from probe_paths.heading import Heading, parse_heading, rounded_setup
+from probe_paths.language import klartext as k
+from probe_paths.language.blocks import Kind, read_blocks
+from probe_paths.language.dialect import Dialect
+from probe_paths.plan.heading import Heading, parse_heading, rounded_setup
 from twin.errors import DesignError
 from twin.frames import pose, rotation
-from twin.touches import Setup
+from twin.record.touches import Setup
 
 ROUNDING = 1e-6
 """Six decimals of millimetres and degrees in a heading."""

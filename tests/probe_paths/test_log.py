@@ -6,19 +6,19 @@ from datetime import datetime
 import numpy as np
 import pytest
 
-from probe_paths.contacts import VirtualMachine
-from probe_paths.dialect import Dialect
-from probe_paths.evaluate import evaluate
-from probe_paths.log import read_log
-from probe_paths.masks import MaskLine, parse_mask
-from probe_paths.virtual import FIRST_MORNING, run_programs
-from twin.effect import contribution
+from probe_paths.campaign.contacts import VirtualMachine
+from probe_paths.campaign.evaluate import evaluate
+from probe_paths.campaign.virtual import FIRST_MORNING, run_programs
+from probe_paths.control.log import read_log
+from probe_paths.language.dialect import Dialect
+from probe_paths.language.masks import MaskLine, parse_mask
 from twin.effects.geometric import ComponentError
 from twin.errors import BadFile, DesignError, NotEnoughData
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
 from twin.frames import pose, rotation
-from twin.touches import computed_deviation
+from twin.model.effect import contribution
+from twin.record.touches import computed_deviation
 from twin.units import NM, UM, URAD
 
 PRINTED = 1e-6

@@ -6,13 +6,13 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from artefact.touchable import Requests
-from probe_paths.duration import probing_time
-from probe_paths.order_study import _sd_beside, _short_way, _shortest, orders
-from probe_paths.plan import PlanOptions
-from probe_paths.probe import Probe
-from twin.ordinary import ordinary_model
-from twin.touches import Setup
+from artefact.reach.touchable import Requests
+from probe_paths.campaign.duration import probing_time
+from probe_paths.campaign.order_study import _sd_beside, _short_way, _shortest, orders
+from probe_paths.plan.probe import Probe
+from probe_paths.plan.touch_plan import PlanOptions
+from twin.library.ordinary import ordinary_model
+from twin.record.touches import Setup
 from twin.units import MINUTE, UM
 
 END_OF_A_FILE = 10.0

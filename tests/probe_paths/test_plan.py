@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.touchable import Requests
-from probe_paths.clearance import obstacles, swing_height, top_height
-from probe_paths.order import LONGEST_TURN, nearest_neighbours, visits, waypoints
-from probe_paths.plan import PlanOptions, requests_at
-from probe_paths.planner import plan_touches
-from probe_paths.probe import Probe
+from artefact.reach.touchable import Requests
+from probe_paths.plan.clearance import obstacles, swing_height, top_height
+from probe_paths.plan.order import LONGEST_TURN, nearest_neighbours, visits, waypoints
+from probe_paths.plan.planner import plan_touches
+from probe_paths.plan.probe import Probe
+from probe_paths.plan.touch_plan import PlanOptions, requests_at
 from twin.errors import DesignError, NotReachable, ShapeMismatch
 from twin.frames import apply
-from twin.kinematics import table_to_tool, tip
-from twin.touches import Setup
+from twin.machine.kinematics import table_to_tool, tip
+from twin.record.touches import Setup
 from twin.units import DEG
 
 ROUNDING = 1e-9

@@ -6,18 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from probe_paths.blocks import Kind, read_blocks
-from probe_paths.clock import Clock
-from probe_paths.dialect import Dialect
-from probe_paths.klartext import MAX_LINE, ProbeWords
-from probe_paths.plan import PlanOptions, requests_at
-from probe_paths.planner import plan_touches
-from probe_paths.probe import Probe
-from probe_paths.program import make_programs
-from probe_paths.writer import Feeds, visit_title
-from twin.chain import Axis, make_chain
+from probe_paths.control.clock import Clock
+from probe_paths.emit.program import make_programs
+from probe_paths.emit.writer import Feeds, visit_title
+from probe_paths.language.blocks import Kind, read_blocks
+from probe_paths.language.dialect import Dialect
+from probe_paths.language.klartext import MAX_LINE, ProbeWords
+from probe_paths.plan.planner import plan_touches
+from probe_paths.plan.probe import Probe
+from probe_paths.plan.touch_plan import PlanOptions, requests_at
 from twin.errors import DesignError
-from twin.touches import Setup
+from twin.machine.chain import Axis, make_chain
+from twin.record.touches import Setup
 from twin.units import DEG
 
 LAST_DIGIT = 2e-4

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.standard_file import write_standard
+from artefact.body.standard_file import write_standard
 from matstd.cli import main
-from probe_paths.virtual import FIRST_MORNING
+from probe_paths.campaign.virtual import FIRST_MORNING
 from twin.files.run_file import read_run
 from twin.units import NM, UM
 

@@ -7,22 +7,22 @@ import pytest
 from scipy.interpolate import BSpline
 from scipy.optimize import brentq, minimize
 
-from probe_paths.contacts import VirtualMachine
-from probe_paths.interpreter import interpret
-from probe_paths.plan import PlanOptions, requests_at
-from probe_paths.planner import plan_touches
-from probe_paths.probe import Probe
-from probe_paths.program import make_programs
-from probe_paths.virtual import Outcome, run_program, run_programs
-from twin.contribution import Contribution
-from twin.effect import contribution
+from probe_paths.campaign.contacts import VirtualMachine
+from probe_paths.campaign.virtual import Outcome, run_program, run_programs
+from probe_paths.control.interpreter import interpret
+from probe_paths.emit.program import make_programs
+from probe_paths.plan.planner import plan_touches
+from probe_paths.plan.probe import Probe
+from probe_paths.plan.touch_plan import PlanOptions, requests_at
 from twin.effects.geometric import ComponentError
 from twin.effects.location import LocationError
 from twin.errors import DesignError
 from twin.frames import apply, inverse, pose, rotation, turn
-from twin.kinematics import exact_tip, tip
-from twin.model import Model
-from twin.touches import Setup, Touches, at_poses
+from twin.machine.contribution import Contribution
+from twin.machine.kinematics import exact_tip, tip
+from twin.model.effect import contribution
+from twin.model.model import Model
+from twin.record.touches import Setup, Touches, at_poses
 from twin.units import DEG, NM, UM, URAD
 
 HARDLY_CURVED = 0.002 * UM

@@ -2,8 +2,8 @@
 
 import pytest
 
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, Chain, make_chain
+from sensitivity.first_order.workspace import Workspace
+from twin.machine.chain import Axis, Chain, make_chain
 from twin.units import DEG
 
 LENGTH = 160.0

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from sensitivity.maps import draw_maps
-from sensitivity.sampling import Population
-from sensitivity.study import run_study
-from sensitivity.study_file import write_study
-from sensitivity.workspace import Workspace
+from report.maps.maps import draw_maps
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from sensitivity.study.machine_study import run_study
+from sensitivity.study.study_file import write_study
 from twin.errors import NotReachable
-from twin.ranges import DEFAULT_RANGES, Ranges
+from twin.machine.ranges import DEFAULT_RANGES, Ranges
 
 
 @pytest.mark.filterwarnings("error")

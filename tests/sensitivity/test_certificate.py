@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import LinearConstraint, minimize
 
-from sensitivity.certificate import bound_at, certificate, relaxed, rounded
-from sensitivity.design import Purpose, Selection, exchange, fill
+from information.selection.certificate import bound_at, certificate, relaxed, rounded
+from information.selection.touch_selection import Purpose, Selection, exchange, fill
 from twin.errors import DesignError
 
 ROUNDING = 1e-9

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sensitivity.correlation import correlation, ties
-from sensitivity.correlation_picture import draw_ties
-from sensitivity.parameter_words import short
+from information.identifiability.correlation import correlation, ties
+from information.identifiability.parameter_words import short
+from report.maps.correlation_picture import draw_ties
 from twin.errors import ShapeMismatch
 
 NAMES = (

@@ -11,11 +11,11 @@ from os import _exit
 import numpy as np
 import pytest
 
-from sensitivity.cluster import cluster
-from sensitivity.crew import in_order
-from sensitivity.montecarlo import volumetric
-from sensitivity.sampling import Population
-from sensitivity.workspace import latin_hypercube
+from sensitivity.first_order.workspace import latin_hypercube
+from sensitivity.montecarlo.cluster import cluster
+from sensitivity.montecarlo.crew import in_order
+from sensitivity.montecarlo.random_machines import volumetric
+from sensitivity.population.sampling import Population
 from twin.errors import DesignError
 
 LENGTH, DRAWS = 160.0, 53_000  # five batches and a part of one

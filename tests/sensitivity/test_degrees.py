@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sensitivity.degrees import HIGHEST, SUPPORTED, supported_degrees
-from sensitivity.sampling import Population
-from twin.chain import Axis, make_chain
-from twin.model import Model
-from twin.symbols import Family
-from twin.touches import at_poses
+from information.identifiability.degrees import HIGHEST, SUPPORTED, supported_degrees
+from sensitivity.population.sampling import Population
+from twin.machine.chain import Axis, make_chain
+from twin.machine.symbols import Family
+from twin.model.model import Model
+from twin.record.touches import at_poses
 from twin.units import UM
 
 HALF = 200.0  # mm, half a travel

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from sensitivity.batches import first_order
-from sensitivity.dependence import Dependence, Group, amplitude, grouped, product_moment
-from sensitivity.distributions import Distributions, Mix
-from sensitivity.indices import covariance, parts, rms
-from sensitivity.sampling import Population, coefficients, draw, drawn_errors
-from sensitivity.workspace import latin_hypercube
+from sensitivity.first_order.indices import covariance, parts, rms
+from sensitivity.first_order.workspace import latin_hypercube
+from sensitivity.montecarlo.batches import first_order
+from sensitivity.population.dependence import Dependence, Group, amplitude, grouped, product_moment
+from sensitivity.population.distributions import Distributions, Mix
+from sensitivity.population.sampling import Population, coefficients, draw, drawn_errors
 from twin.effects.geometric import ComponentError
 from twin.errors import DesignError
-from twin.ranges import DEFAULT_RANGES, Ranges
+from twin.machine.ranges import DEFAULT_RANGES, Ranges
 
 LENGTH = 160.0
 NAMES = ("EXX", "EYX", "EC0Y")

@@ -5,8 +5,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from sensitivity.design import Purpose, Quota, Selection, exchange, fill, purpose
-from sensitivity.groups import best_groups
+from information.selection.groups import best_groups
+from information.selection.touch_selection import Purpose, Quota, Selection, exchange, fill, purpose
 from twin.errors import DesignError
 
 ROUNDING = 1e-9
@@ -27,7 +27,7 @@ def value_of(aim, W, rows):
 
 
 def test_updates_are_exact(case, monkeypatch):
-    monkeypatch.setattr("sensitivity.design._REFRESH", 10**9)
+    monkeypatch.setattr("information.selection.touch_selection._REFRESH", 10**9)
     aim, W = case
     selection = Selection(aim, W)
     rng = np.random.default_rng(1)

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from sensitivity.combinations import combinations
-from sensitivity.freedom_words import in_families
-from sensitivity.identifiability import NEVER, SIDEWAYS, identifiability
-from sensitivity.nullspace import seen, sparse
-from sensitivity.sampling import Population
-from sensitivity.workspace import Workspace, latin_hypercube
-from twin.chain import Axis, make_chain
-from twin.kinematics import exact_tip, tip
-from twin.model import Model
-from twin.touches import at_poses
+from information.identifiability.combinations import combinations
+from information.identifiability.freedom_words import in_families
+from information.identifiability.nullspace import seen, sparse
+from information.identifiability.separation import NEVER, SIDEWAYS, identifiability
+from sensitivity.first_order.workspace import Workspace, latin_hypercube
+from sensitivity.population.sampling import Population
+from twin.machine.chain import Axis, make_chain
+from twin.machine.kinematics import exact_tip, tip
+from twin.model.model import Model
+from twin.record.touches import at_poses
 
 SHAPES = ("linear", "parabolic", "sine", "cosine")
 EACH_SHAPE = f"(in each shape: {', '.join(SHAPES)})"

@@ -3,17 +3,13 @@
 import numpy as np
 import pytest
 
-from sensitivity.identifiability import identifiability
-from sensitivity.information import (
-    Posterior,
-    prior_sd_of_tip,
-    whitened,
-)
-from sensitivity.sampling import Population
-from sensitivity.workspace import latin_hypercube
+from information.criteria.posterior import Posterior, prior_sd_of_tip, whitened
+from information.identifiability.separation import identifiability
+from sensitivity.first_order.workspace import latin_hypercube
+from sensitivity.population.sampling import Population
 from twin.errors import ShapeMismatch
-from twin.kinematics import table_to_tool, tip
-from twin.touches import Setup, Touches, at_poses
+from twin.machine.kinematics import table_to_tool, tip
+from twin.record.touches import Setup, Touches, at_poses
 
 LENGTH = 160.0
 NOISE = 1e-3  # mm

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from sensitivity.by_parameter import jacobian_by_parameter
-from sensitivity.jacobian import jacobian, sensitivity
-from sensitivity.workspace import latin_hypercube
-from twin.chain import Axis, make_chain
-from twin.contribution import Contribution
-from twin.kinematics import exact_tip, reach
-from twin.symbols import Family
+from sensitivity.first_order.by_parameter import jacobian_by_parameter
+from sensitivity.first_order.jacobian import jacobian, sensitivity
+from sensitivity.first_order.workspace import latin_hypercube
+from twin.machine.chain import Axis, make_chain
+from twin.machine.contribution import Contribution
+from twin.machine.kinematics import exact_tip, reach
+from twin.machine.symbols import Family
 from twin.units import DEG, NM
 
 LENGTH = 160.0
@@ -88,7 +88,7 @@ def test_blocks_and_selections_change_nothing(chain, workspace, monkeypatch):
     q = latin_hypercube(workspace, 50, np.random.default_rng(2))
     length = np.linspace(100.0, 200.0, 50)
     whole = jacobian(chain, q, length)
-    monkeypatch.setattr("sensitivity.by_parameter._POSES_A_BLOCK", 7)
+    monkeypatch.setattr("sensitivity.first_order.by_parameter._POSES_A_BLOCK", 7)
     np.testing.assert_array_equal(jacobian(chain, q, length), whole)
     some = [chain.symbols[i] for i in (70, 3, 40)]
     np.testing.assert_array_equal(jacobian(chain, q, length, some), whole[:, [70, 3, 40]])

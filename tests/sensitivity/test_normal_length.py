@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.stats import chi
 
-from sensitivity.indices import covariance, mean_squares
-from sensitivity.jacobian import jacobian
-from sensitivity.montecarlo import volumetric
-from sensitivity.normal_length import LEVELS, normal_length, principal
-from sensitivity.sampling import Population
-from sensitivity.workspace import latin_hypercube
+from sensitivity.first_order.indices import covariance, mean_squares
+from sensitivity.first_order.jacobian import jacobian
+from sensitivity.first_order.normal_length import LEVELS, normal_length, principal
+from sensitivity.first_order.workspace import latin_hypercube
+from sensitivity.montecarlo.random_machines import volumetric
+from sensitivity.population.sampling import Population
 
 TABLE = 2e-4
 """Interpolation of the table may be off by so much of the value."""

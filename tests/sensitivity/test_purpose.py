@@ -6,9 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from sensitivity.certificate import relaxed, rounded
-from sensitivity.design import Quota, Selection, exchange, fill
-from sensitivity.purpose import (
+from information.criteria.design_criterion import (
     Purpose,
     determinant,
     parameters,
@@ -19,7 +17,9 @@ from sensitivity.purpose import (
     worst_pattern,
     worst_pose,
 )
-from sensitivity.shares import keeps, largest_sum
+from information.selection.certificate import relaxed, rounded
+from information.selection.shares import keeps, largest_sum
+from information.selection.touch_selection import Quota, Selection, exchange, fill
 from twin.errors import DesignError
 
 ROUNDING = 1e-9

@@ -9,15 +9,15 @@ its own ordinary model: several set-ups, linear, parabolic and sinusoidal errors
 import numpy as np
 import pytest
 
-from sensitivity.nullspace import seen
-from sensitivity.sampling import Population
-from sensitivity.workspace import Workspace, latin_hypercube
-from twin.chain import Axis, make_chain
+from information.identifiability.nullspace import seen
+from sensitivity.first_order.workspace import Workspace, latin_hypercube
+from sensitivity.population.sampling import Population
 from twin.effects.geometric import ComponentError, HigherOrder
 from twin.effects.location import LocationError
-from twin.model import Model
-from twin.symbols import Family
-from twin.touches import at_poses
+from twin.machine.chain import Axis, make_chain
+from twin.machine.symbols import Family
+from twin.model.model import Model
+from twin.record.touches import at_poses
 from twin.units import DEG
 
 RANKS = {

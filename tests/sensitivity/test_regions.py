@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from sensitivity.regions import region_totals, region_words, regions
-from sensitivity.regions_picture import draw_regions
-from sensitivity.sampling import Population
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
-from twin.kinematics import tip
-from twin.ranges import DEFAULT_RANGES, Ranges
+from report.maps.regions_picture import draw_regions
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from sensitivity.shares.regions import region_totals, region_words, regions
+from twin.machine.chain import Axis, make_chain
+from twin.machine.kinematics import tip
+from twin.machine.ranges import DEFAULT_RANGES, Ranges
 from twin.units import DEG, UM
 
 from .conftest import LENGTH

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from sensitivity.distributions import Distributions, Mix
-from sensitivity.sampling import (
+from sensitivity.first_order.workspace import latin_hypercube
+from sensitivity.population.distributions import Distributions, Mix
+from sensitivity.population.sampling import (
     DRAWS_A_CHILD,
     Population,
     coefficients,
@@ -12,15 +13,14 @@ from sensitivity.sampling import (
     drawn_errors,
     drawn_in_chunks,
 )
-from sensitivity.workspace import latin_hypercube
-from twin.effect import contribution
 from twin.effects.geometric import ComponentError
 from twin.effects.location import LocationError
 from twin.errors import DesignError
 from twin.files.error_file import errors_toml, read_errors
-from twin.ordinary import ordinary_model
-from twin.ranges import Ranges
-from twin.touches import at_poses
+from twin.library.ordinary import ordinary_model
+from twin.machine.ranges import Ranges
+from twin.model.effect import contribution
+from twin.record.touches import at_poses
 
 MANY = Distributions(periods=(1, 2, 3))
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from sensitivity.distributions import Distributions
-from sensitivity.montecarlo import volumetric
-from sensitivity.sampling import Population
-from sensitivity.stability import Stabiliser, Stability, numerical_tolerance
+from sensitivity.montecarlo.random_machines import volumetric
+from sensitivity.montecarlo.stability import Stabiliser, Stability, numerical_tolerance
+from sensitivity.population.distributions import Distributions
+from sensitivity.population.sampling import Population
 from twin.errors import DesignError
-from twin.ranges import DEFAULT_RANGES, Ranges
+from twin.machine.ranges import DEFAULT_RANGES, Ranges
 from twin.units import UM
 
 LENGTH = 160.0

@@ -5,12 +5,12 @@ import csv
 import numpy as np
 import pytest
 
-from sensitivity.maps import draw_maps
-from sensitivity.sampling import Population
-from sensitivity.study import run_study, section_pairs
-from sensitivity.study_file import write_study
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
+from report.maps.maps import draw_maps
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from sensitivity.study.machine_study import run_study, section_pairs
+from sensitivity.study.study_file import write_study
+from twin.machine.chain import Axis, make_chain
 from twin.units import DEG, UM
 
 

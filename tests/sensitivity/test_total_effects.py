@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from sensitivity.batches import first_order
-from sensitivity.dependence import Group, grouped
-from sensitivity.distributions import Distributions
-from sensitivity.sampling import Population, coefficients, draw
-from sensitivity.total_effects import norm_shares, total_effects
-from sensitivity.workspace import latin_hypercube
+from sensitivity.first_order.workspace import latin_hypercube
+from sensitivity.montecarlo.batches import first_order
+from sensitivity.population.dependence import Group, grouped
+from sensitivity.population.distributions import Distributions
+from sensitivity.population.sampling import Population, coefficients, draw
+from sensitivity.shares.total_effects import norm_shares, total_effects
 from twin.errors import DesignError, ShapeMismatch
-from twin.ranges import DEFAULT_RANGES, Ranges
+from twin.machine.ranges import DEFAULT_RANGES, Ranges
 
 SINGLE = 1e-5
 """Indices are off by so little where the compiled code calculates in single precision."""

@@ -7,17 +7,17 @@ import pytest
 from simulator_machine import read_machine as second_model
 from simulator_machine import tip as second_tip
 
-from sensitivity.distributions import Distributions
-from sensitivity.montecarlo import volumetric
-from sensitivity.sampling import Population
-from sensitivity.trajectory import along_path, axis_effect, axis_errors, paper_trajectory
-from sensitivity.trajectory_pictures import axis_effect_picture, statistics_picture
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
+from report.maps.trajectory_pictures import axis_effect_picture, statistics_picture
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.montecarlo.random_machines import volumetric
+from sensitivity.population.distributions import Distributions
+from sensitivity.population.sampling import Population
+from sensitivity.study.trajectory import along_path, axis_effect, axis_errors, paper_trajectory
 from twin.effects.geometric import component
 from twin.effects.location import LocationError
 from twin.errors import DesignError, OutsideTravel, UnknownAxis
 from twin.files.machine_file import read_machine
+from twin.machine.chain import Axis, make_chain
 from twin.units import DEG, NM, UM, URAD
 
 LENGTH = 160.0

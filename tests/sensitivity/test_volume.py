@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from sensitivity.rotary_picture import draw_rotary, level, points_over_rotary
-from sensitivity.sampling import Population
-from sensitivity.study import run_study
-from sensitivity.volume import has_volume, volume
-from sensitivity.workspace import Workspace
-from twin.chain import Axis, make_chain
+from report.maps.rotary_picture import draw_rotary, level, points_over_rotary
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from sensitivity.study.machine_study import run_study
+from sensitivity.study.volume import has_volume, volume
 from twin.errors import NotReachable
 from twin.frames import apply
-from twin.kinematics import tip
+from twin.machine.chain import Axis, make_chain
+from twin.machine.kinematics import tip
 from twin.units import DEG, UM
 
 from .conftest import LENGTH
@@ -57,7 +57,7 @@ def test_a_volume_holds_its_values_in_the_order_of_the_readings(tilted, chain):
 
 
 def test_the_error_without_sampling_is_that_of_drawn_machines(workspace, chain, tilted):
-    from sensitivity.montecarlo import volumetric
+    from sensitivity.montecarlo.random_machines import volumetric
 
     population = Population(chain)
     sampled = volumetric(population, tilted.q, LENGTH, 2000, np.random.default_rng(1)).p95

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sensitivity.workspace import Workspace, grid, latin_hypercube, section
+from sensitivity.first_order.workspace import Workspace, grid, latin_hypercube, section
 from twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
-from twin.kinematics import tip
+from twin.machine.kinematics import tip
 from twin.units import DEG
 
 LENGTH = 160.0

@@ -8,11 +8,11 @@ outward normal n reads dev = -n . (motion of the tip) + n . (shift of the standa
 import numpy as np
 import pytest
 
-from twin.chain import Axis, make_chain
-from twin.effect import Tunable
-from twin.library import parse_effect
-from twin.model import columns
-from twin.touches import Setup, Touches
+from twin.library.register import parse_effect
+from twin.machine.chain import Axis, make_chain
+from twin.model.effect import Tunable
+from twin.model.model import columns
+from twin.record.touches import Setup, Touches
 from twin.units import DEG, NM, UM, URAD
 
 HSM = make_chain(

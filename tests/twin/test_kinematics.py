@@ -5,8 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from twin.chain import Axis, Chain, make_chain
-from twin.contribution import Contribution
 from twin.errors import NotReachable, ShapeMismatch
 from twin.frames import (
     apply,
@@ -18,8 +16,10 @@ from twin.frames import (
     skew,
     turned_about,
 )
-from twin.kinematics import exact_tip, inverse_linear, reach, table_to_tool, tip
-from twin.symbols import Family
+from twin.machine.chain import Axis, Chain, make_chain
+from twin.machine.contribution import Contribution
+from twin.machine.kinematics import exact_tip, inverse_linear, reach, table_to_tool, tip
+from twin.machine.symbols import Family
 from twin.units import DEG, NM
 
 RELATIVE = 1e-6

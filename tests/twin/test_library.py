@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import twin.library as library
-from twin.chain import Axis, make_chain
+import twin.library.register as library
 from twin.effects.backlash import KIND as BACKLASH
-from twin.effects.kind import Kind
 from twin.errors import BadFile, DesignError, UnknownAxis, UnknownEffect, UnknownSymbol
-from twin.touches import at_poses
+from twin.machine.chain import Axis, make_chain
+from twin.model.kind import Kind
+from twin.record.touches import at_poses
 from twin.units import DEG
 
 CHAIN = make_chain(

@@ -8,7 +8,7 @@ import pytest
 from twin.errors import BadFile
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
-from twin.touches import computed_deviation
+from twin.record.touches import computed_deviation
 from twin.units import NM, UM
 
 MACHINE = """format = "machine/1"

@@ -19,13 +19,13 @@ or tilt, R the body's rotation, with the minus of the workpiece side on C' and B
 import numpy as np
 import pytest
 
-from twin.chain import Axis, Chain, make_chain
 from twin.effects.geometric import ComponentError
 from twin.effects.location import LocationError
-from twin.kinematics import tip
-from twin.model import Model
-from twin.symbols import Family
-from twin.touches import at_poses
+from twin.machine.chain import Axis, Chain, make_chain
+from twin.machine.kinematics import tip
+from twin.machine.symbols import Family
+from twin.model.model import Model
+from twin.record.touches import at_poses
 from twin.units import DEG, NM, UM, URAD
 
 LENGTH = 160.0

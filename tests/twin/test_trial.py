@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin import library
-from twin.chain import Axis, make_chain
 from twin.errors import BadFile, UnknownEffect
-from twin.touches import at_poses
-from twin.trial import try_kind, users_lines
+from twin.library import register as library
+from twin.library.trial import try_kind, users_lines
+from twin.machine.chain import Axis, make_chain
+from twin.record.touches import at_poses
 
 FILE = '''from dataclasses import dataclass, replace
 

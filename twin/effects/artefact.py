@@ -6,11 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.chain import Chain
-from twin.effect import Effect, Inner, Parameter, Term, Where
-from twin.effects.kind import Kind, counted, sensor_record, sensors
 from twin.frames import Array
-from twin.touches import Touches
+from twin.machine import Chain
+from twin.model import Effect, Inner, Kind, Parameter, Term, Where, counted, sensor_record, sensors
+from twin.record import Touches
 from twin.units import T_REF, UM, URAD
 
 HOUR = 3600.0

@@ -5,11 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Parameter, Term, Where
-from twin.effects.kind import Kind, checked_axis, counted, moving_axes, own_component
 from twin.frames import Array
-from twin.touches import Touches
+from twin.machine import Chain
+from twin.model import (
+    Kind,
+    Parameter,
+    Term,
+    Where,
+    checked_axis,
+    counted,
+    moving_axes,
+    own_component,
+)
+from twin.record import Touches
 from twin.units import UM, URAD
 
 USAGE = "backlash(axis)"

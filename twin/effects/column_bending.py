@@ -6,10 +6,12 @@ from itertools import combinations
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Parameter, Term, Where
-from twin.effects.kind import (
+from twin.machine import Chain
+from twin.model import (
     Kind,
+    Parameter,
+    Term,
+    Where,
     checked_linear,
     counted,
     moving_axes,
@@ -18,7 +20,7 @@ from twin.effects.kind import (
     sensor_record,
     sensors,
 )
-from twin.touches import Touches
+from twin.record import Touches
 from twin.units import URAD
 
 USAGE = "column-bending(axis,sensor,sensor)"

@@ -5,10 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Parameter, Term, Where
-from twin.effects.kind import (
+from twin.frames import Array
+from twin.machine import Chain, Family, Symbol, scaled
+from twin.model import (
     Kind,
+    Parameter,
+    Term,
+    Where,
     base_unit,
     checked_axis,
     component_symbol,
@@ -16,10 +19,7 @@ from twin.effects.kind import (
     moving_axes,
     refusal,
 )
-from twin.frames import Array
-from twin.shapes import scaled
-from twin.symbols import Family, Symbol
-from twin.touches import Touches
+from twin.record import Touches
 from twin.units import UM, URAD
 
 USAGE = "coupling(symbol,axis)"

@@ -6,13 +6,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Effect, Parameter, Term, Where
-from twin.effects.kind import Kind, base_unit, component_symbol, counted, moving_axes, refusal
-from twin.ranges import Ranges
-from twin.shapes import SHAPES, ShapeName, scaled, shape
-from twin.symbols import Family, Symbol
-from twin.touches import Touches
+from twin.machine import SHAPES, Chain, Family, Ranges, ShapeName, Symbol, scaled, shape
+from twin.model import (
+    Effect,
+    Kind,
+    Parameter,
+    Term,
+    Where,
+    base_unit,
+    component_symbol,
+    counted,
+    moving_axes,
+    refusal,
+)
+from twin.record import Touches
 from twin.units import DEG
 
 USAGE = "geometric(symbol,degree or shape)"
@@ -26,7 +33,7 @@ class ComponentError:
     """One component error of an axis in one of the distributions of the D-MT paper.
 
     ``E(q) = a f(q)`` with f the constant, linear, parabolic or sinusoidal shape of unit peak
-    amplitude (`twin.shapes`). One parameter, the peak amplitude, mm or rad.
+    amplitude (`twin.machine.shapes`). One parameter, the peak amplitude, mm or rad.
 
     Attributes:
         symbol: Which component of which axis.

@@ -5,10 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Effect, Parameter, Term, Where
-from twin.effects.kind import (
+from twin.machine import Chain, Family, Symbol
+from twin.model import (
+    Effect,
     Kind,
+    Parameter,
+    Term,
+    Where,
     base_unit,
     checked_axis,
     component_symbol,
@@ -17,8 +20,7 @@ from twin.effects.kind import (
     own_component,
     refusal,
 )
-from twin.symbols import Family, Symbol
-from twin.touches import Touches
+from twin.record import Touches
 from twin.units import UM, URAD
 
 USAGE = "gravity(symbol[,axis])"

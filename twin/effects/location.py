@@ -5,12 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Parameter, Term, Where
-from twin.effects.kind import Kind, counted, refusal
-from twin.ranges import Ranges
-from twin.symbols import Family, Symbol
-from twin.touches import Touches
+from twin.machine import Chain, Family, Ranges, Symbol
+from twin.model import Kind, Parameter, Term, Where, counted, refusal
+from twin.record import Touches
 
 USAGE = "location(symbol)"
 
@@ -19,8 +16,8 @@ USAGE = "location(symbol)"
 class LocationError:
     """A constant displacement of an axis's line, of its zero, of the workpiece or of the tool.
 
-    The chain knows how it reaches the tip (`twin.kinematics.place_as_twist`): a squareness turns
-    the direction of travel of a linear axis, `EX0C`, `EA0C` displace and tilt a rotary axis's
+    The chain knows how it reaches the tip (`twin.machine.kinematics.place_as_twist`): a squareness
+    turns the direction of travel of a linear axis, `EX0C`, `EA0C` displace and tilt a rotary axis's
     line, `EX0X`, `EC0C` add to a reading. One parameter, mm or rad.
 
     Attributes:

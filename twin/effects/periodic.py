@@ -5,18 +5,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Inner, Parameter, Term, Where
-from twin.effects.kind import (
+from twin.machine import Chain, Family, Symbol
+from twin.model import (
+    Inner,
     Kind,
+    Parameter,
+    Term,
+    Where,
     base_unit,
     component_symbol,
     counted,
     moving_axes,
     own_component,
 )
-from twin.symbols import Family, Symbol
-from twin.touches import Touches
+from twin.record import Touches
 from twin.units import UM, URAD
 
 USAGE = "periodic(symbol)"

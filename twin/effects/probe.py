@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Effect, Inner, Parameter, Term, Where
-from twin.effects.kind import Kind, counted
 from twin.frames import Array
-from twin.touches import Touches
+from twin.machine import Chain
+from twin.model import Effect, Inner, Kind, Parameter, Term, Where, counted
+from twin.record import Touches
 from twin.units import UM
 
 

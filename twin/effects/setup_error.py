@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.effect import Parameter, Term, Where
-from twin.touches import Touches
+from twin.model import Parameter, Term, Where
+from twin.record import Touches
 from twin.units import UM
 
 SHIFT_SD = 1000.0 * UM

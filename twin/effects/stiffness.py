@@ -5,12 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Parameter, Term, Where
-from twin.effects.kind import Kind, counted, own_component, refusal
 from twin.errors import UnknownEffect
 from twin.frames import Array
-from twin.touches import Touches
+from twin.machine import Chain
+from twin.model import Kind, Parameter, Term, Where, counted, own_component, refusal
+from twin.record import Touches
 from twin.units import UM
 
 USAGE = "stiffness(axis or t)"

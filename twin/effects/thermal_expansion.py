@@ -3,10 +3,12 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from twin.chain import Chain
-from twin.effect import Parameter, Term, Where
-from twin.effects.kind import (
+from twin.machine import Chain
+from twin.model import (
     Kind,
+    Parameter,
+    Term,
+    Where,
     checked_linear,
     counted,
     moving_axes,
@@ -14,7 +16,7 @@ from twin.effects.kind import (
     sensor_record,
     sensors,
 )
-from twin.touches import Touches
+from twin.record import Touches
 from twin.units import T_REF
 
 USAGE = "thermal-expansion(axis,sensor)"

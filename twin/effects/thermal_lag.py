@@ -10,10 +10,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.effect import Inner, Parameter, Term, Where
-from twin.effects.kind import (
+from twin.errors import UnknownEffect
+from twin.frames import Array
+from twin.machine import Chain, Family, Symbol
+from twin.model import (
+    Inner,
     Kind,
+    Parameter,
+    Term,
+    Where,
     base_unit,
     component_symbol,
     counted,
@@ -23,10 +28,7 @@ from twin.effects.kind import (
     sensors,
     varies,
 )
-from twin.errors import UnknownEffect
-from twin.frames import Array
-from twin.symbols import Family, Symbol
-from twin.touches import Touches
+from twin.record import Touches
 from twin.units import MINUTE, T_REF, UM, URAD
 
 USAGE = "thermal-lag(symbol,drive)"

@@ -1,1 +1,34 @@
 """The border: users' files in, users' files out, in the units that stand in their names."""
+
+from twin.files.error_file import errors_toml, read_errors
+from twin.files.machine_file import AxisTable, Pair, Vector, WorkpieceTable, read_machine
+from twin.files.pose_file import read_poses, reading_columns
+from twin.files.run_file import read_run
+from twin.files.run_writer import write_run
+from twin.files.sensor_file import read_sensors
+from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.files.whole import NOT_WRITABLE, refuse_to_overwrite, write_whole, written_whole
+
+__all__ = [
+    "NOT_WRITABLE",
+    "AxisTable",
+    "Pair",
+    "Table",
+    "Vector",
+    "WorkpieceTable",
+    "check_format",
+    "checked",
+    "errors_toml",
+    "parse_toml",
+    "read_errors",
+    "read_machine",
+    "read_poses",
+    "read_run",
+    "read_sensors",
+    "read_text",
+    "reading_columns",
+    "refuse_to_overwrite",
+    "write_run",
+    "write_whole",
+    "written_whole",
+]

@@ -6,14 +6,12 @@ from typing import Literal
 
 from pydantic import Field
 
-from twin.chain import Chain
-from twin.effect import Effect
-from twin.effects.geometric import ComponentError
-from twin.effects.location import LocationError
+from twin.effects import ComponentError, LocationError
 from twin.errors import BadFile, UnknownSymbol
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.frames import Array
-from twin.symbols import Family, Symbol
+from twin.machine import Chain, Family, Symbol
+from twin.model import Effect
 from twin.units import DEG, UM, URAD
 
 LARGEST = 1e6

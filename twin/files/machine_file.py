@@ -5,9 +5,9 @@ from typing import Annotated
 
 from pydantic import Strict
 
-from twin.chain import Axis, Chain, make_chain
 from twin.errors import BadFile, DesignError, UnknownAxis
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.machine import Axis, Chain, make_chain
 from twin.units import DEG
 
 Vector = Annotated[tuple[float, float, float], Strict(False)]  # TOML has lists, not tuples

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.chain import Chain
 from twin.errors import BadFile
 from twin.files.table import CsvTable
 from twin.files.toml import read_text
 from twin.frames import Array
+from twin.machine import Chain
 from twin.units import DEG
 
 FARTHEST = 1e5

@@ -5,13 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.copies import counted_once
 from twin.errors import BadFile
 from twin.files.pose_file import reading_columns
 from twin.files.table import CsvTable
 from twin.frames import Array
-from twin.run import Run
-from twin.touches import IntArray, computed_deviation
+from twin.record import IntArray, Run, computed_deviation, counted_once
 from twin.units import UM
 
 ABSURD = 10.0

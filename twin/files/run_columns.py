@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 
-from twin.chain import Chain
 from twin.errors import BadFile
 from twin.files.pose_file import FARTHEST
 from twin.files.table import CsvTable
 from twin.frames import Array
-from twin.touches import IntArray, Labels, linear_approach
+from twin.machine import Chain
+from twin.record import IntArray, Labels, linear_approach
 from twin.units import UM
 
 SENSOR = re.compile(r"T_(\w+)_degC\Z")

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field
 
-from twin.chain import Chain
 from twin.errors import BadFile
 from twin.files import run_columns as columns
 from twin.files.machine_file import Vector, read_machine
@@ -15,8 +14,8 @@ from twin.files.run_checks import checked_run
 from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
-from twin.run import Run
-from twin.touches import IntArray, Setup, Touches, computed_deviation
+from twin.machine import Chain
+from twin.record import IntArray, Run, Setup, Touches, computed_deviation
 from twin.units import DEG, UM
 
 _OPTIONAL = (

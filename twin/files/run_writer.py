@@ -10,7 +10,7 @@ from twin.files.pose_file import reading_columns
 from twin.files.run_columns import FORCE, NORMAL, POINT
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
-from twin.run import Run
+from twin.record import Run
 from twin.units import DEG, UM
 
 

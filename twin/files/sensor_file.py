@@ -11,7 +11,7 @@ from twin.files.run_columns import temperatures
 from twin.files.table import CsvTable
 from twin.files.toml import read_text
 from twin.frames import Array
-from twin.run import Run
+from twin.record import Run
 
 EPOCH = datetime(2000, 1, 1)
 

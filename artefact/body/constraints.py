@@ -1,0 +1,228 @@
+"""What makes a standard buildable and touchable, each as a number with its limit."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.body.datum import DatumSphere, outline_distance
+from artefact.body.freeform import FreeformPatch
+from artefact.body.patch import rows
+from artefact.body.solids import Body
+from artefact.body.standard import Base, Standard
+from twin.errors import NotBuildable
+from twin.frames import Array, apply
+from twin.units import DEG
+
+BURIED = 2.0
+"""How deep the end of a column must lie inside base or core, mm."""
+
+_FACE_PITCH = 4.0  # mm, of the points of a face that must be free
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What workshop, stylus and table allow.
+
+    Attributes:
+        min_concave_radius: For the ball-end cutter, mm; never less than the ball's own radius.
+        max_slope: Between a face's normal and its patch's own direction, rad.
+        ball_radius: Of the largest probe ball, mm.
+        gap: Left between the ball at any touch and every other body, mm.
+        max_mass: Of the standard, kg.
+    """
+
+    min_concave_radius: float = 12.0
+    max_slope: float = 45.0 * DEG
+    ball_radius: float = 3.0
+    gap: float = 1.0
+    max_mass: float = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """One constraint as a number: met where `slack` is not negative.
+
+    Attributes:
+        name: What is constrained.
+        subject: Feature it is about.
+        value: What the standard has.
+        limit: What is asked.
+        slack: Distance from the limit on the good side, in the unit of the value.
+        unit: Of value, limit and slack.
+    """
+
+    name: str
+    subject: str
+    value: float
+    limit: float
+    slack: float
+    unit: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.subject}: {self.name} is {self.value:.3f} {self.unit}, "
+            f"limit {self.limit:.3f} {self.unit}"
+        )
+
+
+def constraints(standard: Standard, limits: Limits) -> tuple[Constraint, ...]:
+    """Every constraint of a standard with its slack, met or not.
+
+    Args:
+        standard: To be judged.
+        limits: What is asked.
+
+    Returns:
+        Curvature, slope, blank, burial and freedom of every patch; place and freedom of every
+        sphere and hole; the mass.
+    """
+    found: list[Constraint] = []
+    for patch in standard.patches:
+        found += _of_patch(standard, patch, limits)
+    for sphere in standard.spheres:
+        found += _of_sphere(standard, sphere, limits)
+    found += _of_holes(standard)
+    found.append(_at_most("mass", standard.name, standard.mass(step=6.0), limits.max_mass, "kg"))
+    return tuple(found)
+
+
+def check(standard: Standard, limits: Limits) -> None:
+    """Refuse a standard that cannot be made or probed.
+
+    Raises:
+        NotBuildable: Names the constraint that binds most, and how many more are violated.
+    """
+    violated = sorted((c for c in constraints(standard, limits) if c.slack < 0.0), key=_severity)
+    if violated:
+        more = f" (and {len(violated) - 1} more)" if len(violated) > 1 else ""
+        raise NotBuildable(
+            f"standard '{standard.name}': {violated[0]}{more}",
+            constraints=violated,
+        )
+
+
+def _severity(constraint: Constraint) -> float:
+    return constraint.slack / max(abs(constraint.limit), 1e-9)
+
+
+def min_concave_radius(patch: FreeformPatch) -> float:
+    """Smallest concave radius on the trimmed face, mm; inf where it is convex everywhere.
+
+    Largest principal curvature on a 1 mm grid, then on grids ever finer round its maximum.
+    """
+    uv, step = patch.grid(1.0), 1.0
+    largest = 0.0
+    for _ in range(4):
+        concave = patch.curvature(uv)[:, 0]
+        best = uv[np.argmax(concave)]
+        largest = max(largest, float(concave.max()))
+        offsets = np.linspace(-step, step, 9)
+        around = best + np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2)
+        uv = np.clip(around, -np.asarray(patch.half_size), np.asarray(patch.half_size))
+        step /= 4.0
+    return 1.0 / largest if largest > 0.0 else np.inf
+
+
+def max_slope(patch: FreeformPatch) -> float:
+    """Largest angle between normal and patch direction on a 1 mm grid of the face, rad."""
+    return float(patch.slope(patch.grid(1.0)).max())
+
+
+def overhang(patch: FreeformPatch, base: Base) -> float:
+    """How far the column of a patch reaches beyond the outline of the base, mm; negative inside.
+
+    Its four edges are followed from the mean plane of the face down to mid-base, where the column
+    is cut off: one that leans outwards could else come out through the side of the base.
+    """
+    (a, b), T = patch.half_size, patch.T_artefact_patch
+    corners = apply(T, np.array([[x, y, 0.0] for x in (-a, a) for y in (-b, b)]))
+    to_cut = (corners[:, 2] - 0.5 * base.thickness) / max(T[2, 2], 1e-9)
+    ends = corners - np.clip(to_cut, 0.0, patch.depth)[:, None] * T[:3, 2]
+    both = np.concatenate([corners, ends])[:, :2]
+    return float(outline_distance(both, base.half_size, base.corner_radius).max())
+
+
+def _of_patch(standard: Standard, patch: FreeformPatch, limits: Limits) -> Iterator[Constraint]:
+    smallest = max(limits.min_concave_radius, limits.ball_radius)
+    yield _at_least("smallest concave radius", patch.name, min_concave_radius(patch), smallest)
+    yield _at_most("slope", patch.name, max_slope(patch) / DEG, limits.max_slope / DEG, "deg")
+    uv = patch.grid(_FACE_PITCH)
+    face, base = patch.point(uv), standard.base
+    outside = outline_distance(face[:, :2], base.half_size, base.corner_radius).max()
+    outside = max(float(outside), overhang(patch, base))
+    yield _at_most("reach beyond the outline of the blank", patch.name, outside, 0.0)
+    yield _at_most("height", patch.name, float(face[:, 2].max()), standard.blank_height)
+    yield _at_least(
+        "depth of the column's end in the body", patch.name, _burial(standard, patch), BURIED
+    )
+    centres = face + limits.ball_radius * patch.normal(uv)
+    others = {name: body for name, body in standard.bodies.items() if name != patch.name}
+    name, room = _nearest(others, centres)
+    yield _at_least(
+        f"room for the ball before {name}", patch.name, room - limits.ball_radius, limits.gap
+    )
+
+
+def _of_sphere(standard: Standard, sphere: DatumSphere, limits: Limits) -> Iterator[Constraint]:
+    own = {sphere.name, f"{sphere.name} stem"}
+    others = {name: body for name, body in standard.bodies.items() if name not in own}
+    base = standard.base
+    name, room = _nearest(others, rows(sphere.centre))
+    room -= sphere.radius + 2.0 * limits.ball_radius
+    yield _at_least(f"room for the ball before {name}", sphere.name, room, limits.gap)
+    heights = np.linspace(sphere.foot, sphere.centre[2], 9)
+    axis = np.column_stack([np.tile(sphere.centre[:2], (9, 1)), heights])
+    others.pop("BASE")
+    name, room = _nearest(others, axis)
+    yield _at_least(
+        f"distance of the stem from {name}", sphere.name, room - sphere.foot_radius, limits.gap
+    )
+    inset = -outline_distance(rows(sphere.centre[:2]), base.half_size, base.corner_radius)[0]
+    yield _at_least("stem inside the outline", sphere.name, inset - sphere.foot_radius, 1.0)
+    yield _at_most("height", sphere.name, sphere.centre[2] + sphere.radius, standard.blank_height)
+
+
+def _of_holes(standard: Standard) -> Iterator[Constraint]:
+    base = standard.base
+    heights = np.arange(base.thickness, standard.blank_height + 4.0, 4.0)
+    above = {name: body for name, body in standard.bodies.items() if name != "BASE"}
+    for k, hole in enumerate(standard.holes):
+        for other in standard.holes[:k]:
+            wall = np.hypot(hole.x - other.x, hole.y - other.y)
+            wall -= hole.bore_radius + other.bore_radius
+            yield _at_least(f"wall to {other.name}", hole.name, float(wall), 3.0)
+        xy = np.array([[hole.x, hole.y]])
+        inset = -outline_distance(xy, base.half_size, base.corner_radius)[0]
+        yield _at_least("wall to the outline", hole.name, inset - hole.bore_radius, 3.0)
+        yield _at_most("depth of the counterbore", hole.name, hole.bore_depth, base.thickness - 5.0)
+        name, room = _nearest(above, np.column_stack([np.repeat(xy, len(heights), 0), heights]))
+        yield _at_least(f"access from above past {name}", hole.name, room - hole.bore_radius, 1.0)
+
+
+def _burial(standard: Standard, patch: FreeformPatch) -> float:
+    """Depth of the end of a column's axis inside base or core, mm; it is cut off in mid-base."""
+    origin, back = patch.T_artefact_patch[:3, 3], -patch.direction
+    depth = patch.depth
+    if back[2] < 0.0:
+        depth = min(depth, (0.5 * standard.base.thickness - origin[2]) / back[2])
+    end = rows(origin + depth * back)
+    anchors = [standard.bodies[name] for name in ("BASE", "CORE") if name in standard.bodies]
+    return float(max(-anchor.distance(end)[0] for anchor in anchors))
+
+
+def _nearest(bodies: dict[str, Body], points: Array) -> tuple[str, float]:
+    """The body nearest to any of the points (N, 3) and its distance, mm."""
+    rooms = {name: float(body.distance(points).min()) for name, body in bodies.items()}
+    if not rooms:
+        return "nothing", np.inf
+    name = min(rooms, key=rooms.__getitem__)
+    return name, rooms[name]
+
+
+def _at_least(name: str, subject: str, value: float, limit: float, unit: str = "mm") -> Constraint:
+    return Constraint(name, subject, value, limit, value - limit, unit)
+
+
+def _at_most(name: str, subject: str, value: float, limit: float, unit: str = "mm") -> Constraint:
+    return Constraint(name, subject, value, limit, limit - value, unit)

@@ -1,0 +1,193 @@
+"""Datum features of a standard: spheres on stems, the plane of the base, mounting holes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry, unit
+from twin.errors import ShapeMismatch
+from twin.frames import Array
+
+STEM_CLEARANCE = 15.0 * np.pi / 180.0
+"""Angle kept between a touch on a sphere and the rim of its stem, rad."""
+
+
+@dataclass(frozen=True, eq=False)
+class DatumSphere:
+    """A precision ball on an upright conical stem.
+
+    Its parameters are azimuth and elevation, rad: ``p = c + r (cos e cos a, cos e sin a, sin e)``.
+
+    Attributes:
+        name: Feature name, SPH1 ...
+        centre: Shape (3,), artefact frame, mm.
+        radius: Of the ball, mm.
+        stem_radius: Of the stem's cone at the height of the ball's centre, mm.
+        foot_radius: Of the stem at its foot, mm.
+        foot: Height of the foot (the base's top face) in the artefact frame, mm.
+    """
+
+    name: str
+    centre: Array
+    radius: float
+    stem_radius: float
+    foot_radius: float
+    foot: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "centre", read_only(self.centre, (3,), f"{self.name}: centre"))
+        if not 0.0 < self.stem_radius < self.radius:
+            raise ShapeMismatch(
+                f"{self.name}: stem radius {self.stem_radius:g} mm, expected between 0 and the "
+                f"ball's radius {self.radius:g} mm"
+            )
+        if not self.foot < self.centre[2] - self.radius:
+            raise ShapeMismatch(
+                f"{self.name}: foot at {self.foot:g} mm, expected below the ball, whose lowest "
+                f"point is at {self.centre[2] - self.radius:g} mm"
+            )
+
+    @property
+    def rim(self) -> float:
+        """Elevation of the circle in which stem and ball meet, rad (negative).
+
+        The cone's radius a depth s below the centre, ``stem + k s``, equals the ball's.
+        """
+        k = (self.foot_radius - self.stem_radius) / (self.centre[2] - self.foot)
+        root = np.sqrt(self.radius**2 * (1.0 + k**2) - self.stem_radius**2)
+        below = (root - k * self.stem_radius) / (1.0 + k**2)
+        return float(-np.arcsin(below / self.radius))
+
+    def point(self, uv: Array) -> Array:
+        """Points of the sphere, (N, 3), mm."""
+        return self.centre + self.radius * self.normal(uv)
+
+    def normal(self, uv: Array) -> Array:
+        """Outward unit normals at (azimuth, elevation), (N, 3)."""
+        azimuth, elevation = rows(uv).T
+        return np.column_stack(
+            [
+                np.cos(elevation) * np.cos(azimuth),
+                np.cos(elevation) * np.sin(azimuth),
+                np.sin(elevation),
+            ]
+        )
+
+    def curvature(self, uv: Array) -> Array:
+        """Principal curvatures, (N, 2), 1/mm: convex everywhere, so ``-1/r``."""
+        return np.full((len(rows(uv)), 2), -1.0 / self.radius)
+
+    def project(self, points: Array) -> Array:
+        """Parameters of the foot points; nan for the centre itself."""
+        out = rows(points) - self.centre
+        length = np.linalg.norm(out, axis=1)
+        azimuth = np.arctan2(out[:, 1], out[:, 0])
+        elevation = np.arctan2(out[:, 2], np.hypot(out[:, 0], out[:, 1]))
+        return np.where((length > 0.0)[:, None], np.column_stack([azimuth, elevation]), np.nan)
+
+    def contains(self, uv: Array) -> Mask:
+        """Whether the point stays `STEM_CLEARANCE` away from the rim of the stem."""
+        free: Mask = rows(uv)[:, 1] >= self.rim + STEM_CLEARANCE
+        return free
+
+    def contact(self, start: Array, direction: Array, radius: float) -> Hit:
+        """First contact of a moving ball, closed form: ``|start + t d - c| = r + radius``."""
+        p = rows(start)
+        d = unit(rows(direction, len(p)))
+        travel = sphere_entry(self.centre, p, d, self.radius + radius)
+        travel = np.where(np.isfinite(travel), travel, np.nan)
+        return Hit(self.project(p + travel[:, None] * d), travel)
+
+
+@dataclass(frozen=True, slots=True)
+class DatumPlane:
+    """The finished top face of the base, normal +z; its parameters are x and y.
+
+    Attributes:
+        name: Feature name, DATUM_A.
+        height: Of the face, artefact frame, mm.
+        half_size: Half sides of its outline, mm.
+        corner_radius: Of its outline, mm.
+    """
+
+    name: str
+    height: float
+    half_size: tuple[float, float]
+    corner_radius: float
+
+    def point(self, uv: Array) -> Array:
+        """Points (N, 3), mm."""
+        uv = rows(uv)
+        return np.column_stack([uv, np.full(len(uv), self.height)])
+
+    def normal(self, uv: Array) -> Array:
+        """Outward unit normals, (N, 3): +z everywhere."""
+        return np.tile([0.0, 0.0, 1.0], (len(rows(uv)), 1))
+
+    def curvature(self, uv: Array) -> Array:
+        """Principal curvatures, (N, 2): zero."""
+        return np.zeros((len(rows(uv)), 2))
+
+    def project(self, points: Array) -> Array:
+        """Parameters (x, y) of the foot points, (N, 2)."""
+        return rows(points)[:, :2].copy()
+
+    def contains(self, uv: Array) -> Mask:
+        """Whether (x, y) lies within the outline; what stands on the face is not looked at."""
+        inside: Mask = outline_distance(rows(uv), self.half_size, self.corner_radius) <= 0.0
+        return inside
+
+    def contact(self, start: Array, direction: Array, radius: float) -> Hit:
+        """First contact of a moving ball: its centre comes down to ``height + radius``."""
+        p = rows(start)
+        d = unit(rows(direction, len(p)))
+        fall = np.where(d[:, 2] < 0.0, d[:, 2], np.nan)
+        travel = (self.height + radius - p[:, 2]) / fall
+        uv = (p + travel[:, None] * d)[:, :2]
+        missed = ~self.contains(uv)
+        return Hit(np.where(missed[:, None], np.nan, uv), np.where(missed, np.nan, travel))
+
+
+@dataclass(frozen=True, slots=True)
+class MountingHole:
+    """A counterbored through hole of the base, for a cylinder-head screw.
+
+    Attributes:
+        name: HOLE1 ...
+        x: Of its axis, artefact frame, mm.
+        y: Of its axis, artefact frame, mm.
+        radius: Of the through hole, mm.
+        bore_radius: Of the counterbore, mm.
+        bore_depth: Of the counterbore below the base's top face, mm.
+    """
+
+    name: str
+    x: float
+    y: float
+    radius: float
+    bore_radius: float
+    bore_depth: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.radius < self.bore_radius:
+            raise ShapeMismatch(
+                f"{self.name}: hole radius {self.radius:g} mm, expected between 0 and the "
+                f"counterbore's {self.bore_radius:g} mm"
+            )
+
+
+def outline_distance(xy: Array, half_size: tuple[float, float], corner_radius: float) -> Array:
+    """Signed distance to a rectangle with rounded corners, negative inside, mm.
+
+    Args:
+        xy: Shape (N, 2), mm.
+        half_size: Half sides, mm.
+        corner_radius: At most the smaller half side (equal: a disc), mm.
+
+    Returns:
+        Shape (N,), mm; exact inside and outside.
+    """
+    beyond = np.abs(xy) - (np.asarray(half_size) - corner_radius)
+    outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
+    distance: Array = outside + np.minimum(beyond.max(axis=1), 0.0) - corner_radius
+    return distance

@@ -1,0 +1,283 @@
+"""A freeform patch: one B-spline height field over its own plane, trimmed to a rectangle."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from artefact.body.newton import ball_contact, foot_points, graph_normal
+from artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry, unit
+from artefact.body.spline import Jet, check_knots, clamped_knots, greville, height, jet
+from twin.errors import ShapeMismatch
+from twin.frames import Array, apply, inverse, turn
+
+OVERHANG = 6.0
+"""How far the spline reaches beyond the trimmed rectangle on every side, mm: room for the trim."""
+
+LEAST_OVERHANG = 1.0
+"""What a patch from elsewhere must have of it at least, mm."""
+
+_GRID_PITCH = 2.0  # of the start grid, mm; finer than half the smallest concave radius allowed
+_BLOCK = 4_000_000  # numbers held at once while a start point is sought
+
+
+class ErrorShare(NamedTuple):
+    """One error parameter that a patch is for, and its share of the patch's signal (0 to 1)."""
+
+    name: str
+    share: float
+
+
+class Derivatives(NamedTuple):
+    """First and second derivatives of the surface point, each (N, 3), artefact frame."""
+
+    du: Array
+    dv: Array
+    duu: Array
+    duv: Array
+    dvv: Array
+
+
+@dataclass(frozen=True, eq=False)
+class FreeformPatch:
+    """A freeform face of the standard, and the column that carries it.
+
+    In the patch frame ``S(u, v) = (u, v, h(u, v))`` with h a tensor B-spline: the poles stand at
+    the Greville abscissae, so the parameters are millimetres of the patch's own x and y. The face
+    is ``|u| <= a, |v| <= b``; its outward side is +z of the patch frame.
+
+    Attributes:
+        name: Feature name, FF1 ...
+        T_artefact_patch: Pose of the patch frame, shape (4, 4).
+        half_size: (a, b), mm.
+        degree: (ku, kv).
+        knots_u: Shape (nu + ku + 1,), mm.
+        knots_v: Shape (nv + kv + 1,), mm.
+        heights: Control heights, shape (nu, nv), mm.
+        depth: How far the column runs back along -z of the patch frame, mm.
+        errors: The error parameters this patch is for.
+    """
+
+    name: str
+    T_artefact_patch: Array
+    half_size: tuple[float, float]
+    degree: tuple[int, int]
+    knots_u: Array
+    knots_v: Array
+    heights: Array
+    depth: float
+    errors: tuple[ErrorShare, ...] = ()
+
+    def __post_init__(self) -> None:
+        for key, what in (("T_artefact_patch", "pose"), ("heights", "control heights")):
+            object.__setattr__(
+                self, key, read_only(getattr(self, key), what=f"{self.name}: {what}")
+            )
+        for key, axis in (("knots_u", 0), ("knots_v", 1)):
+            k = self.degree[axis]
+            what = f"{self.name}: {key}"
+            knots = read_only(getattr(self, key), (self.heights.shape[axis] + k + 1,), what)
+            check_knots(knots, k, self.half_size[axis] + LEAST_OVERHANG, what)
+            object.__setattr__(self, key, knots)
+
+    @cached_property
+    def poles(self) -> Array:
+        """Control net in the artefact frame, shape (nu, nv, 3), mm."""
+        gu, gv = greville(self.knots_u, self.degree[0]), greville(self.knots_v, self.degree[1])
+        x, y = np.meshgrid(gu, gv, indexing="ij")
+        return apply(self.T_artefact_patch, np.stack([x, y, self.heights], axis=-1))
+
+    @property
+    def direction(self) -> Array:
+        """The patch's own direction, +z of its frame, shape (3,)."""
+        return self.T_artefact_patch[:3, 2]
+
+    @cached_property
+    def T_patch_artefact(self) -> Array:
+        """Artefact coordinates to patch coordinates, shape (4, 4)."""
+        return inverse(self.T_artefact_patch)
+
+    def jet(self, uv: Array) -> Jet:
+        """Height over the patch's own plane with its derivatives at uv (N, 2)."""
+        return jet(self.knots_u, self.knots_v, self.degree, self.heights, rows(uv))
+
+    def height(self, uv: Array) -> Array:
+        """Height alone, at uv (N, 2), (N,), mm: three times as fast as `jet`."""
+        return height(self.knots_u, self.knots_v, self.degree, self.heights, rows(uv))
+
+    def point(self, uv: Array) -> Array:
+        """Points of the surface, (N, 3), artefact frame, mm."""
+        uv = rows(uv)
+        return apply(self.T_artefact_patch, np.column_stack([uv, self.height(uv)]))
+
+    def normal(self, uv: Array) -> Array:
+        """Outward unit normals, (N, 3), artefact frame."""
+        return turn(self.T_artefact_patch, graph_normal(self.jet(uv)))
+
+    def derivatives(self, uv: Array) -> Derivatives:
+        """Derivatives of `point` to the second order, each (N, 3), artefact frame."""
+        j = self.jet(uv)
+        one, nil = np.ones_like(j.h), np.zeros_like(j.h)
+        local = (
+            [one, nil, j.hu],
+            [nil, one, j.hv],
+            [nil, nil, j.huu],
+            [nil, nil, j.huv],
+            [nil, nil, j.hvv],
+        )
+        return Derivatives(*(turn(self.T_artefact_patch, np.column_stack(d)) for d in local))
+
+    def curvature(self, uv: Array) -> Array:
+        """Principal curvatures, (N, 2), 1/mm, largest first; positive = concave from outside.
+
+        Eigenvalues of ``I^-1 II`` with ``I = 1 + grad h grad h^T`` and ``II = hess h / w``,
+        ``w^2 = 1 + |grad h|^2``: a ball fits where its radius is below one over the largest.
+        """
+        j = self.jet(uv)
+        w2 = 1.0 + j.hu**2 + j.hv**2
+        mean2 = (1 + j.hv**2) * j.huu - 2 * j.hu * j.hv * j.huv + (1 + j.hu**2) * j.hvv
+        mean = mean2 / (2.0 * w2**1.5)
+        gauss = (j.huu * j.hvv - j.huv**2) / w2**2
+        root = np.sqrt(np.maximum(mean**2 - gauss, 0.0))
+        return np.column_stack([mean + root, mean - root])
+
+    def slope(self, uv: Array) -> Array:
+        """Angle between the normal and the patch's own direction, (N,), rad."""
+        j = self.jet(uv)
+        return np.arctan(np.hypot(j.hu, j.hv))
+
+    def contains(self, uv: Array) -> Mask:
+        """Whether uv (N, 2) lies on the trimmed face; nan does not."""
+        inside: Mask = np.all(np.abs(rows(uv)) <= np.asarray(self.half_size), axis=1)
+        return inside
+
+    def grid(self, pitch: float = _GRID_PITCH) -> Array:
+        """Parameters of a regular grid over the trimmed face, borders included, (N, 2)."""
+        axes = [np.linspace(-a, a, int(np.ceil(2 * a / pitch)) + 1) for a in self.half_size]
+        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+
+    def project(self, points: Array) -> Array:
+        """Foot points on the (untrimmed) spline: ``(S - p) . S_u = (S - p) . S_v = 0``.
+
+        Newton on the squared distance from the nearest node of a grid, with the step of
+        Gauss and Newton where the Hessian is not positive.
+
+        Args:
+            points: Shape (N, 3), artefact frame, mm.
+
+        Returns:
+            uv, shape (N, 2), mm; nan where no foot point lies on the spline.
+        """
+        local = apply(self.T_patch_artefact, rows(points))
+        return foot_points(self.jet, self.domain, local, self._nearest_node(local))
+
+    def contact(self, start: Array, direction: Array, radius: float) -> Hit:
+        """First contact of a moving ball: ``S(u, v) + radius n(u, v) = start + t d``, by Newton.
+
+        The start is the node of a grid over the trimmed face that the ball would meet first, so
+        the first of several contacts is found. The search may end beyond the trimmed face, on
+        the spline's overhang: ask `contains`. Unique where the smallest concave radius exceeds
+        the ball's.
+
+        Args:
+            start: Ball centres, shape (N, 3), artefact frame, mm.
+            direction: Of travel, unit vectors, shape (N, 3) or (3,).
+            radius: Of the ball, mm.
+
+        Returns:
+            uv (N, 2) and travel (N,); nan where the ball misses the face or Newton does not
+            converge; negative travel where the ball starts in the material.
+        """
+        p = apply(self.T_patch_artefact, rows(start))
+        d = turn(self.T_patch_artefact, unit(rows(direction, len(p))))
+        uv, travel = self.contact_start(rows(start), rows(direction, len(p)), radius)
+        hit_uv, hit_travel = np.full((len(p), 2), np.nan), np.full(len(p), np.nan)
+        aimed = np.flatnonzero(np.isfinite(travel))
+        if len(aimed):
+            first = Hit(uv[aimed], travel[aimed])
+            found = ball_contact(self.jet, self.domain, p[aimed], d[aimed], radius, first)
+            hit_uv[aimed], hit_travel[aimed] = found
+        return Hit(hit_uv, hit_travel)
+
+    def contact_start(self, start: Array, direction: Array, radius: float) -> Hit:
+        """Node of the grid that each ball meets first; infinite travel where it meets none."""
+        uv, nodes, centre, reach = self._nodes
+        d = unit(rows(direction, len(start)))
+        best, travel = np.zeros(len(start), dtype=int), np.full(len(start), np.inf)
+        # A ball whose line passes outside the bounding sphere of the face meets no node.
+        near = np.flatnonzero(np.isfinite(sphere_entry(centre, start, d, reach + radius)))
+        # Steep faces leave gaps between nodes: a node counts when the ball nearly touches it.
+        fat = np.hypot(radius, 2.0 * _GRID_PITCH)
+        for some in np.array_split(near, len(near) * len(nodes) * 3 // _BLOCK + 1):
+            entry = sphere_entry(nodes, start[some, None], d[some, None], fat)
+            best[some] = np.argmin(entry, axis=1)
+            travel[some] = np.take_along_axis(entry, best[some, None], axis=1)[:, 0]
+        return Hit(uv[best], travel + fat - radius)
+
+    @property
+    def domain(self) -> tuple[Array, Array]:
+        """Lowest and highest parameters of the spline, overhang included, each (2,), mm."""
+        low = np.array([self.knots_u[0], self.knots_v[0]])
+        return low, np.array([self.knots_u[-1], self.knots_v[-1]])
+
+    @cached_property
+    def _nodes(self) -> tuple[Array, Array, Array, float]:
+        """Start grid: parameters, points, and a sphere round all of them (centre, radius)."""
+        uv = self.grid()
+        points = self.point(uv)
+        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        return uv, points, centre, float(np.linalg.norm(points - centre, axis=1).max())
+
+    def _nearest_node(self, local: Array) -> Array:
+        """Parameters of the node nearest to each point of the patch frame, (N, 2)."""
+        from scipy.spatial import cKDTree
+
+        uv, points, _, _ = self._nodes
+        tree = cKDTree(apply(self.T_patch_artefact, points))
+        nearest: Array = uv[tree.query(local)[1]]
+        return nearest
+
+
+def graph_patch(
+    name: str,
+    T_artefact_patch: Array,
+    half_size: tuple[float, float],
+    heights: ArrayLike,
+    degree: tuple[int, int] = (5, 5),
+    depth: float = 50.0,
+    errors: tuple[ErrorShare, ...] = (),
+) -> FreeformPatch:
+    """Freeform patch from control heights on equally spaced clamped knots.
+
+    Args:
+        name: Feature name.
+        T_artefact_patch: Pose of the patch frame in the artefact, shape (4, 4).
+        half_size: Half sides of the trimmed rectangle, mm.
+        heights: Control heights, shape (nu, nv), mm; at least degree + 1 each way.
+        degree: In u and v.
+        depth: Length of the column behind the patch plane, mm.
+        errors: The error parameters this patch is for.
+
+    Returns:
+        The patch, whose spline reaches `OVERHANG` beyond the rectangle.
+
+    Raises:
+        ShapeMismatch: Heights not a table, too few, or not finite.
+    """
+    net = read_only(heights, what=f"{name}: control heights")
+    if net.ndim != 2:
+        raise ShapeMismatch(f"{name}: control heights have {net.ndim} dimensions, expected 2")
+    a, b = (float(half) + OVERHANG for half in half_size)
+    return FreeformPatch(
+        name=name,
+        T_artefact_patch=T_artefact_patch,
+        half_size=(float(half_size[0]), float(half_size[1])),
+        degree=degree,
+        knots_u=clamped_knots(-a, a, net.shape[0], degree[0]),
+        knots_v=clamped_knots(-b, b, net.shape[1], degree[1]),
+        heights=net,
+        depth=float(depth),
+        errors=tuple(errors),
+    )

@@ -1,0 +1,184 @@
+"""The solid bodies of a standard as signed distances: exact for convex ones, else from below."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from artefact.body.datum import outline_distance
+from artefact.body.freeform import FreeformPatch
+from twin.frames import Array, apply
+
+_STEPS = 60
+_SECANT = 1e-5  # mm
+_SLIVER = 1e-9  # mm: distance at which a ball counts as touching
+
+
+class Body(Protocol):
+    """Something solid in the artefact frame."""
+
+    def distance(self, points: Array) -> Array:
+        """Distance of points (N, 3) from the body, (N,), mm, negative inside; never too large."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """An upright prism over a rectangle with rounded corners: the base.
+
+    Attributes:
+        half_size: Half sides of the outline, mm.
+        corner_radius: Of the outline, mm; equal to both half sides it is a disc.
+        low: Height of the lower face, mm.
+        high: Height of the upper face, mm.
+    """
+
+    half_size: tuple[float, float]
+    corner_radius: float
+    low: float
+    high: float
+
+    def distance(self, points: Array) -> Array:
+        """Exact signed distance, (N,), mm."""
+        sideways = outline_distance(points[:, :2], self.half_size, self.corner_radius)
+        upright = np.abs(points[:, 2] - 0.5 * (self.low + self.high)) - 0.5 * (self.high - self.low)
+        return _corner(sideways, upright)
+
+
+@dataclass(frozen=True, slots=True)
+class Cone:
+    """An upright cone frustum: the core, or the stem of a sphere.
+
+    Attributes:
+        x: Of its axis, mm.
+        y: Of its axis, mm.
+        low: Height of the lower face, mm.
+        high: Height of the upper face, mm.
+        low_radius: Radius below, mm.
+        high_radius: Radius above, mm.
+    """
+
+    x: float
+    y: float
+    low: float
+    high: float
+    low_radius: float
+    high_radius: float
+
+    def distance(self, points: Array) -> Array:
+        """Exact signed distance, (N,), mm, in the half plane of radius and height."""
+        r = np.hypot(points[:, 0] - self.x, points[:, 1] - self.y)
+        z = points[:, 2] - 0.5 * (self.low + self.high)
+        half = 0.5 * (self.high - self.low)
+        rim = np.where(z < 0.0, self.low_radius, self.high_radius)
+        to_cap = np.hypot(np.maximum(r - rim, 0.0), np.abs(z) - half)
+        edge = np.array([self.high_radius - self.low_radius, 2.0 * half])
+        from_low = np.column_stack([r - self.low_radius, z + half])
+        along = np.clip(from_low @ edge / (edge @ edge), 0.0, 1.0)
+        to_side = np.linalg.norm(from_low - along[:, None] * edge, axis=1)
+        beside = from_low @ np.array([edge[1], -edge[0]])
+        inside = (beside < 0.0) & (np.abs(z) < half)
+        return np.where(inside, -1.0, 1.0) * np.minimum(to_cap, to_side)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ball:
+    """A datum sphere as a solid.
+
+    Attributes:
+        centre: Shape (3,), mm.
+        radius: In mm.
+    """
+
+    centre: Array
+    radius: float
+
+    def distance(self, points: Array) -> Array:
+        """Exact signed distance, (N,), mm."""
+        distance: Array = np.linalg.norm(points - self.centre, axis=1) - self.radius
+        return distance
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """The prism that carries a patch, with the freeform face as its lid.
+
+    The distance is the larger of two lower bounds: that of the box around the column, and
+    ``(z - h) cos(steepest slope)`` over the height field continued sideways as a constant.
+
+    Attributes:
+        patch: The lid and its frame.
+        top: Largest height of the lid above the patch plane, mm.
+        steepest: Cosine of the largest slope of the lid.
+    """
+
+    patch: FreeformPatch
+    top: float
+    steepest: float
+
+    def distance(self, points: Array) -> Array:
+        """Signed distance from below, (N,), mm; its sign is exact."""
+        patch = self.patch
+        local = apply(patch.T_patch_artefact, points)
+        half = np.asarray(patch.half_size)
+        sideways = np.abs(local[:, :2]) - half
+        middle, half_height = 0.5 * (self.top - patch.depth), 0.5 * (self.top + patch.depth)
+        beyond = np.column_stack([sideways, np.abs(local[:, 2] - middle) - half_height])
+        box = np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
+        near = np.flatnonzero(box < 2.0 * (self.top + np.abs(half).max()))
+        uv = np.clip(local[near, :2], -half, half)
+        over = (local[near, 2] - patch.height(uv)) * self.steepest
+        box[near] = np.maximum(box[near], over)
+        return box
+
+
+def column(patch: FreeformPatch) -> Column:
+    """The column of a patch with its highest point and steepest slope found on a 1 mm grid."""
+    uv = patch.grid(1.0)
+    # Between the nodes of the grid the lid can be higher by slope times half a pitch at most,
+    # and hardly steeper: a tenth of a millimetre and two degrees cover designs that check().
+    return Column(
+        patch=patch,
+        top=float(patch.height(uv).max()) + 0.1,
+        steepest=float(np.cos(min(patch.slope(uv).max() + 0.035, 1.5))),
+    )
+
+
+def entry(body: Body, start: Array, direction: Array, radius: float) -> Array:
+    """Travel at which a moving ball first touches a convex body.
+
+    ``f(t) = distance(start + t d) - radius`` is convex in t, so Newton's method from the outside
+    runs up to the first root and never over it.
+
+    Args:
+        body: Convex, with an exact distance.
+        start: Ball centres, shape (N, 3), mm.
+        direction: Unit vectors, shape (N, 3).
+        radius: Of the ball, mm.
+
+    Returns:
+        Shape (N,), mm; inf where the ball never touches; zero where it starts on or in the body.
+    """
+    travel = np.zeros(len(start))
+    active = np.arange(len(start))
+    for _ in range(_STEPS):
+        p, d = start[active] + travel[active, None] * direction[active], direction[active]
+        gap = body.distance(p) - radius
+        # Backward secant: on a convex function it is at least as steep as the tangent, so the
+        # step it gives never jumps over the root.
+        rate = (gap + radius - body.distance(p - _SECANT * d)) / _SECANT
+        lost = rate > -1e-6
+        done = gap < _SLIVER
+        travel[active[lost & ~done]] = np.inf
+        go = ~(lost | done)
+        travel[active[go]] += gap[go] / np.minimum(-rate[go], 1.0)
+        active = active[go]
+        if not len(active):
+            break
+    return travel
+
+
+def _corner(a: Array, b: Array) -> Array:
+    """Signed distance to the intersection of two half spaces at right angles."""
+    out = np.hypot(np.maximum(a, 0.0), np.maximum(b, 0.0))
+    distance: Array = out + np.minimum(np.maximum(a, b), 0.0)
+    return distance

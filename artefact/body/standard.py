@@ -1,0 +1,172 @@
+"""The whole standard: one body with freeform patches, datum spheres, datum plane and holes."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from artefact.body.datum import DatumPlane, DatumSphere, MountingHole
+from artefact.body.freeform import FreeformPatch
+from artefact.body.patch import Surface
+from artefact.body.solids import Ball, Body, Column, Cone, Plate, column
+from twin.errors import ShapeMismatch
+from twin.frames import Array
+
+DATUM_PLANE = "DATUM_A"
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """What the standard is made of.
+
+    Attributes:
+        name: Designation.
+        density: In kg/mm^3.
+        expansion: Coefficient of linear thermal expansion, 1/K.
+    """
+
+    name: str
+    density: float
+    expansion: float
+
+
+STEEL = Material(name="X40Cr14 (1.2083), hardened", density=7.8e-6, expansion=10.5e-6)
+
+
+@dataclass(frozen=True, slots=True)
+class Base:
+    """Plate whose lower face (z = 0) sits on the table and whose upper face is the datum plane.
+
+    Attributes:
+        half_size: Half sides of the outline, mm.
+        corner_radius: Mm; equal to both half sides the base is a disc.
+        thickness: Mm.
+    """
+
+    half_size: tuple[float, float] = (140.0, 140.0)
+    corner_radius: float = 25.0
+    thickness: float = 30.0
+
+    @property
+    def body(self) -> Plate:
+        """The plate as a solid, without its holes."""
+        return Plate(self.half_size, self.corner_radius, 0.0, self.thickness)
+
+
+@dataclass(frozen=True, slots=True)
+class Core:
+    """Upright cone frustum in the middle in which the columns of tilted patches meet.
+
+    Attributes:
+        low_radius: In the middle of the base, where it begins, mm.
+        high_radius: At the top, mm.
+        height: Of the top above the base's lower face, mm.
+    """
+
+    low_radius: float
+    high_radius: float
+    height: float
+
+
+@dataclass(frozen=True, eq=False)
+class Standard:
+    """A freeform material standard in its own frame: origin in the middle of the seat, z up.
+
+    Attributes:
+        name: Type.
+        serial: Of this one piece; may be empty.
+        material: What it is made of.
+        base: Plate with the seat and the datum plane.
+        core: Where the columns meet, or None.
+        patches: Freeform patches.
+        spheres: Datum spheres.
+        holes: Mounting holes.
+        blank_height: Of the blank above the seat, mm; its outline is that of the base.
+    """
+
+    name: str
+    serial: str
+    material: Material
+    base: Base
+    core: Core | None
+    patches: tuple[FreeformPatch, ...]
+    spheres: tuple[DatumSphere, ...]
+    holes: tuple[MountingHole, ...]
+    blank_height: float
+
+    def __post_init__(self) -> None:
+        names = [DATUM_PLANE, "BASE", "CORE"]
+        names += [patch.name for patch in self.patches]
+        names += [sphere.name for sphere in self.spheres]
+        names += [hole.name for hole in self.holes]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ShapeMismatch(f"standard '{self.name}': two features are named {twice[0]}")
+
+    @property
+    def plane(self) -> DatumPlane:
+        """The datum plane: the upper face of the base."""
+        base = self.base
+        return DatumPlane(DATUM_PLANE, base.thickness, base.half_size, base.corner_radius)
+
+    @cached_property
+    def features(self) -> dict[str, Surface]:
+        """Every touchable surface by name: patches, spheres, datum plane."""
+        surfaces: tuple[Surface, ...] = (*self.patches, *self.spheres, self.plane)
+        return {surface.name: surface for surface in surfaces}
+
+    @property
+    def face_names(self) -> tuple[str, ...]:
+        """Names that faces of a solid of this standard carry: features, seat, holes, bores."""
+        holes = [name for hole in self.holes for name in (hole.name, f"{hole.name}_BORE")]
+        return (*self.features, "SEAT", *holes)
+
+    @cached_property
+    def columns(self) -> dict[str, Column]:
+        """The column under each patch, by the patch's name."""
+        return {patch.name: column(patch) for patch in self.patches}
+
+    @cached_property
+    def stems(self) -> dict[str, Cone]:
+        """The stem under each sphere, by the sphere's name; it ends in the ball's centre."""
+        return {
+            s.name: Cone(
+                s.centre[0], s.centre[1], s.foot, s.centre[2], s.foot_radius, s.stem_radius
+            )
+            for s in self.spheres
+        }
+
+    @cached_property
+    def bodies(self) -> dict[str, Body]:
+        """Everything solid by the name of its owner; stems are called `SPH1 stem`."""
+        bodies: dict[str, Body] = {"BASE": self.base.body}
+        if self.core is not None:
+            core, low = self.core, 0.5 * self.base.thickness
+            bodies["CORE"] = Cone(0.0, 0.0, low, core.height, core.low_radius, core.high_radius)
+        bodies.update(self.columns)
+        bodies.update({s.name: Ball(s.centre, s.radius) for s in self.spheres})
+        bodies.update({f"{name} stem": stem for name, stem in self.stems.items()})
+        return bodies
+
+    def distance(self, points: Array) -> Array:
+        """Distance of points (N, 3) from the standard, (N,), mm; never too large, holes filled."""
+        distance: Array = np.min([body.distance(points) for body in self.bodies.values()], axis=0)
+        return distance
+
+    def volume(self, step: float = 4.0) -> float:
+        """Estimate of the volume on a grid of cells, mm^3; about 1 % at the default step."""
+        low = [-self.base.half_size[0], -self.base.half_size[1], 0.0]
+        high = [self.base.half_size[0], self.base.half_size[1], self.blank_height]
+        axes = [np.arange(a + 0.5 * step, b + step, step) for a, b in zip(low, high, strict=True)]
+        cells = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+        filled = np.clip(0.5 - self.distance(cells) / step, 0.0, 1.0).sum() * step**3
+        bored = sum(
+            np.pi * (h.radius**2 * (self.base.thickness - h.bore_depth))
+            + np.pi * h.bore_radius**2 * h.bore_depth
+            for h in self.holes
+        )
+        return float(filled - bored)
+
+    def mass(self, step: float = 4.0) -> float:
+        """Estimate of the mass, kg."""
+        return self.material.density * self.volume(step)

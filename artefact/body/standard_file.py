@@ -1,0 +1,277 @@
+"""Border: `standard.toml`, everything that is needed to rebuild a standard, without loss."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from artefact.body.datum import DatumSphere, MountingHole
+from artefact.body.freeform import ErrorShare, FreeformPatch
+from artefact.body.standard import Base, Core, Material, Standard
+from twin.errors import BadFile, ShapeMismatch
+from twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
+
+FORMAT = "standard/1"
+
+Positive = Annotated[float, Field(gt=0.0)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=32)]
+Pair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
+Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
+Degree = Annotated[int, Field(ge=2, le=9)]
+
+_ORTHONORMAL = 1e-9  # deviation of R R^T from 1 that counts as a slip and not as rounding
+
+
+class _Material(Table):
+    name: str
+    density_kg_mm3: Positive
+    expansion: float = Field(alias="expansion_1_K", ge=0.0, lt=1e-3)
+
+
+class _Base(Table):
+    half_size_mm: Pair
+    corner_radius_mm: Positive
+    thickness_mm: Positive
+
+
+class _Core(Table):
+    low_radius_mm: Positive
+    high_radius_mm: Positive
+    height_mm: Positive
+
+
+class _Error(Table):
+    name: str
+    share: Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class _Patch(Table):
+    name: Name
+    origin_mm: Triple
+    rotation: Annotated[list[Triple], Field(min_length=3, max_length=3)]
+    half_size_mm: Pair
+    depth_mm: Positive
+    degree: Annotated[list[Degree], Field(min_length=2, max_length=2)]
+    knots_u_mm: list[float]
+    knots_v_mm: list[float]
+    heights_mm: list[list[float]]
+    errors: list[_Error] = Field(default_factory=list)
+
+
+class _Sphere(Table):
+    name: Name
+    centre_mm: Triple
+    radius_mm: Positive
+    stem_radius_mm: Positive
+    foot_radius_mm: Positive
+    foot_mm: float
+
+
+class _Hole(Table):
+    name: Name
+    x_mm: float
+    y_mm: float
+    radius_mm: Positive
+    bore_radius_mm: Positive
+    bore_depth_mm: Positive
+
+
+class _File(Table):
+    format: str
+    name: str
+    serial: str = ""
+    blank_height_mm: Positive
+    material: _Material
+    base: _Base
+    core: _Core | None = None
+    patch: Annotated[list[_Patch], Field(min_length=1)]
+    sphere: list[_Sphere] = Field(default_factory=list)
+    hole: list[_Hole] = Field(default_factory=list)
+
+
+def read_standard(path: str | Path) -> Standard:
+    """Read `standard.toml`.
+
+    Args:
+        path: The file.
+
+    Returns:
+        The standard, in base units; bit for bit the one that was written.
+
+    Raises:
+        BadFile: Unreadable, not TOML, another format, a key missing, unknown or out of range.
+    """
+    data = parse_toml(read_text(path), path)
+    check_format(data, FORMAT, path)
+    return _standard(Path(path), checked(_File, data, path))
+
+
+def write_standard(path: str | Path, standard: Standard) -> None:
+    """Write `standard.toml` whole or not at all; reading it gives the same numbers.
+
+    Args:
+        path: The file.
+        standard: In base units.
+    """
+    import tomli_w
+
+    write_whole(path, tomli_w.dumps(_table(standard)))
+
+
+def _standard(path: Path, file: _File) -> Standard:
+    try:
+        return Standard(
+            name=file.name,
+            serial=file.serial,
+            material=Material(
+                file.material.name, file.material.density_kg_mm3, file.material.expansion
+            ),
+            base=_base(path, file.base),
+            core=None
+            if file.core is None
+            else Core(file.core.low_radius_mm, file.core.high_radius_mm, file.core.height_mm),
+            patches=tuple(_patch(path, i, patch) for i, patch in enumerate(file.patch)),
+            spheres=tuple(_sphere(path, i, sphere) for i, sphere in enumerate(file.sphere)),
+            holes=tuple(_hole(path, i, hole) for i, hole in enumerate(file.hole)),
+            blank_height=file.blank_height_mm,
+        )
+    except ShapeMismatch as error:
+        raise BadFile(path, "names", str(error), "every feature with a name of its own") from error
+
+
+def _base(path: Path, base: _Base) -> Base:
+    if base.corner_radius_mm > min(base.half_size_mm):
+        raise BadFile(
+            path,
+            "base.corner_radius_mm",
+            base.corner_radius_mm,
+            f"at most the smaller half side {min(base.half_size_mm):g}",
+        )
+    half = (base.half_size_mm[0], base.half_size_mm[1])
+    return Base(half, base.corner_radius_mm, base.thickness_mm)
+
+
+def _patch(path: Path, number: int, patch: _Patch) -> FreeformPatch:
+    where = f"patch.{number}"
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = patch.rotation, patch.origin_mm
+    slip = np.abs(T[:3, :3] @ T[:3, :3].T - np.eye(3)).max()
+    if slip > _ORTHONORMAL or np.linalg.det(T[:3, :3]) < 0.0:
+        raise BadFile(path, f"{where}.rotation", patch.rotation, "a right-handed rotation matrix")
+    lengths = sorted({len(row) for row in patch.heights_mm})
+    if len(lengths) != 1:
+        raise BadFile(
+            path, f"{where}.heights_mm", f"rows of {lengths} numbers", "rows of one length"
+        )
+    try:
+        built = FreeformPatch(
+            name=patch.name,
+            T_artefact_patch=T,
+            half_size=(patch.half_size_mm[0], patch.half_size_mm[1]),
+            degree=(patch.degree[0], patch.degree[1]),
+            knots_u=np.array(patch.knots_u_mm),
+            knots_v=np.array(patch.knots_v_mm),
+            heights=np.array(patch.heights_mm),
+            depth=patch.depth_mm,
+            errors=tuple(ErrorShare(e.name, e.share) for e in patch.errors),
+        )
+    except ShapeMismatch as error:
+        raise BadFile(path, where, str(error), "knots and heights that belong together") from error
+    return built
+
+
+def _sphere(path: Path, number: int, sphere: _Sphere) -> DatumSphere:
+    try:
+        return DatumSphere(
+            name=sphere.name,
+            centre=np.array(sphere.centre_mm),
+            radius=sphere.radius_mm,
+            stem_radius=sphere.stem_radius_mm,
+            foot_radius=sphere.foot_radius_mm,
+            foot=sphere.foot_mm,
+        )
+    except ShapeMismatch as error:
+        raise BadFile(path, f"sphere.{number}", str(error), "a ball on a stem") from error
+
+
+def _hole(path: Path, number: int, hole: _Hole) -> MountingHole:
+    try:
+        return MountingHole(
+            hole.name, hole.x_mm, hole.y_mm, hole.radius_mm, hole.bore_radius_mm, hole.bore_depth_mm
+        )
+    except ShapeMismatch as error:
+        raise BadFile(path, f"hole.{number}", str(error), "a counterbored hole") from error
+
+
+def _table(standard: Standard) -> dict[str, Any]:
+    """The standard as the tables of the file."""
+    base, core, material = standard.base, standard.core, standard.material
+    table: dict[str, Any] = {
+        "format": FORMAT,
+        "name": standard.name,
+        "serial": standard.serial,
+        "blank_height_mm": float(standard.blank_height),
+        "material": {
+            "name": material.name,
+            "density_kg_mm3": float(material.density),
+            "expansion_1_K": float(material.expansion),
+        },
+        "base": {
+            "half_size_mm": _floats(base.half_size),
+            "corner_radius_mm": float(base.corner_radius),
+            "thickness_mm": float(base.thickness),
+        },
+    }
+    if core is not None:
+        table["core"] = {
+            "low_radius_mm": float(core.low_radius),
+            "high_radius_mm": float(core.high_radius),
+            "height_mm": float(core.height),
+        }
+    table["patch"] = [_patch_table(patch) for patch in standard.patches]
+    table["sphere"] = [_sphere_table(sphere) for sphere in standard.spheres]
+    table["hole"] = [_hole_table(hole) for hole in standard.holes]
+    return table
+
+
+def _patch_table(patch: FreeformPatch) -> dict[str, Any]:
+    return {
+        "name": patch.name,
+        "origin_mm": _floats(patch.T_artefact_patch[:3, 3]),
+        "rotation": _floats(patch.T_artefact_patch[:3, :3]),
+        "half_size_mm": _floats(patch.half_size),
+        "depth_mm": float(patch.depth),
+        "degree": [int(k) for k in patch.degree],
+        "knots_u_mm": _floats(patch.knots_u),
+        "knots_v_mm": _floats(patch.knots_v),
+        "heights_mm": _floats(patch.heights),
+        "errors": [{"name": e.name, "share": float(e.share)} for e in patch.errors],
+    }
+
+
+def _sphere_table(sphere: DatumSphere) -> dict[str, Any]:
+    return {
+        "name": sphere.name,
+        "centre_mm": _floats(sphere.centre),
+        "radius_mm": float(sphere.radius),
+        "stem_radius_mm": float(sphere.stem_radius),
+        "foot_radius_mm": float(sphere.foot_radius),
+        "foot_mm": float(sphere.foot),
+    }
+
+
+def _hole_table(hole: MountingHole) -> dict[str, Any]:
+    return {
+        "name": hole.name,
+        "x_mm": float(hole.x),
+        "y_mm": float(hole.y),
+        "radius_mm": float(hole.radius),
+        "bore_radius_mm": float(hole.bore_radius),
+        "bore_depth_mm": float(hole.bore_depth),
+    }
+
+
+def _floats(values: Any) -> Any:
+    """Plain (nested) lists of Python floats, which are written with their shortest exact digits."""
+    return np.asarray(values, dtype=np.float64).tolist()

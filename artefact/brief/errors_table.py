@@ -1,0 +1,167 @@
+"""`[errors]` of a project file: what is expected of errors, their size, shape and relations."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+
+from sensitivity.population import (
+    CLASSES,
+    Dependence,
+    Distributions,
+    Group,
+    Mix,
+    Population,
+    grouped,
+)
+from twin.errors import BadFile, DesignError, UnknownSymbol
+from twin.files import Pair, Table
+from twin.machine import DEFAULT_RANGES, Chain, Ranges, ShapeName
+from twin.units import UM, URAD
+
+
+class MixTable(Table):
+    """`EXX = { shapes = ["linear", "sinusoidal"], weights = [2, 1], periods = [1, 2] }`."""
+
+    shapes: list[ShapeName]
+    weights: list[float] = Field(default_factory=list)
+    periods: list[int] = Field(default_factory=lambda: [1])
+
+
+class GroupTable(Table):
+    """`[[errors.groups]]`: errors of one cause."""
+
+    names: list[str]
+    correlation: float = 1.0
+    same_shape: bool = False
+
+
+class CorrelationTable(Table):
+    """`[errors.correlation]`: a matrix over some errors."""
+
+    names: list[str]
+    matrix: list[list[float]]
+
+
+class ErrorsTable(Table):
+    """`[errors]`: amplitude ranges by class and by parameter, µm or µrad, shapes and relations."""
+
+    classes: dict[str, Pair] = Field(default_factory=dict)
+    parameters: dict[str, Pair] = Field(default_factory=dict)
+    shapes: dict[str, MixTable] = Field(default_factory=dict)
+    groups: list[GroupTable] = Field(default_factory=list)
+    correlation: CorrelationTable | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """Errors that a machine is expected to have, in base units.
+
+    Attributes:
+        ranges: Amplitudes.
+        distributions: Shapes over the readings.
+        dependence: Relations between errors; None for none.
+    """
+
+    ranges: Ranges
+    distributions: Distributions
+    dependence: Dependence | None
+
+
+def expected_errors(table: ErrorsTable, chain: Chain, path: Path) -> Expected:
+    """What a table says, checked against a machine.
+
+    Raises:
+        BadFile: File, key, what stood there, what was expected.
+    """
+    ranges = _ranges(table, chain, path)
+    if all(ranges.of(chain, symbol)[1] == 0.0 for symbol in chain.symbols):
+        raise BadFile(path, "errors", "amplitudes of zero for every error", "one above zero")
+    distributions = _distributions(table, chain, path)
+    expected = Expected(ranges, distributions, _dependence(table, path))
+    try:
+        Population(chain, ranges, distributions, expected.dependence)
+    except DesignError as error:
+        key = "errors.groups" if table.groups else "errors.correlation"
+        raise BadFile(path, key, str(error), "what machines can have") from error
+    return expected
+
+
+def _ranges(table: ErrorsTable, chain: Chain, path: Path) -> Ranges:
+    """Amplitude ranges."""
+    by_class = dict(DEFAULT_RANGES)
+    for name, pair in table.classes.items():
+        if name not in by_class:
+            raise BadFile(
+                path, f"errors.classes.{name}", "an unknown class", f"one of {', '.join(by_class)}"
+            )
+        angular = name.split("_")[-1] in ("rotation", "tilt", "squareness") or name == "rotary_zero"
+        by_class[name] = _amplitudes(pair, URAD if angular else UM, path, f"errors.classes.{name}")
+    by_name = {}
+    for name, pair in table.parameters.items():
+        key = f"errors.parameters.{name}"
+        unit = URAD if _known(name, chain, path, key).is_angular else UM
+        by_name[name] = _amplitudes(pair, unit, path, key)
+    return Ranges(by_class, by_name)
+
+
+def _known(name: str, chain: Chain, path: Path, key: str) -> Any:
+    """The error parameter of a name."""
+    try:
+        return chain.symbol(name)
+    except UnknownSymbol as error:
+        raise BadFile(path, key, "an unknown error name", str(error).split("; ")[-1]) from None
+
+
+def _amplitudes(pair: Pair, unit: float, path: Path, key: str) -> tuple[float, float]:
+    if not 0.0 <= pair[0] <= pair[1]:
+        raise BadFile(path, key, list(pair), "amplitudes from zero up, the smaller first")
+    return pair[0] * unit, pair[1] * unit
+
+
+def _distributions(table: ErrorsTable, chain: Chain, path: Path) -> Distributions:
+    """Shapes by class and by name."""
+    by_class, by_name = {}, {}
+    for name, mix in table.shapes.items():
+        key = f"errors.shapes.{name}"
+        try:
+            made = Mix(tuple(mix.shapes), tuple(mix.periods), tuple(mix.weights))
+        except DesignError as error:
+            found, _, expected = str(error).partition(": expected ")
+            raise BadFile(path, key, found, expected) from error
+        if name in CLASSES:
+            by_class[name] = made
+            continue
+        if name in DEFAULT_RANGES:
+            raise BadFile(path, key, "a class of constants", f"one of {', '.join(CLASSES)}")
+        _known(name, chain, path, key)
+        by_name[name] = made
+    distributions = Distributions(by_class=by_class, by_name=by_name)
+    try:
+        distributions.check(chain)
+    except DesignError as error:
+        raise BadFile(
+            path, "errors.shapes", str(error), "errors that vary with a reading"
+        ) from None
+    return distributions
+
+
+def _dependence(table: ErrorsTable, path: Path) -> Dependence | None:
+    """Relations between errors, from groups or from a matrix."""
+    if table.groups and table.correlation:
+        raise BadFile(path, "errors", "groups and a correlation matrix", "one of the two")
+    try:
+        if table.correlation:
+            if any(len(row) != len(table.correlation.names) for row in table.correlation.matrix):
+                raise DesignError("rows of another length than the names")
+            return Dependence(tuple(table.correlation.names), np.array(table.correlation.matrix))
+        if table.groups:
+            return grouped(
+                [Group(tuple(g.names), g.correlation, g.same_shape) for g in table.groups]
+            )
+    except DesignError as error:
+        key = "errors.groups" if table.groups else "errors.correlation"
+        raise BadFile(path, key, str(error), "what machines can have") from error
+    return None

@@ -1,0 +1,227 @@
+"""Project file (TOML, format "project/1"): all that `matstd design` is told."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+
+from artefact.brief.errors_table import ErrorsTable, Expected, expected_errors
+from artefact.brief.standard_tables import (
+    BlankTable,
+    LimitsTable,
+    StandardTable,
+    check_body,
+    check_standard,
+)
+from sensitivity.montecarlo import MACHINES_A_BATCH
+from sensitivity.population import Population
+from twin.errors import BadFile, UnknownAxis
+from twin.files import Table, Vector, check_format, checked, parse_toml, read_machine, read_text
+from twin.frames import fixed_xyz, pose
+from twin.machine import Chain, Ranges
+from twin.record import Setup
+from twin.units import DEG, UM
+
+
+class ProbeTable(Table):
+    """`[probe]`: ball radius and length from the gauge point to the ball centre, mm."""
+
+    radius_mm: float = Field(gt=0.0, le=25.0)
+    length_mm: float = Field(gt=0.0)
+
+
+class MonteCarloTable(Table):
+    """`[montecarlo]`: number of random machines, and when it is enough of them."""
+
+    draws: int = Field(default=2000, ge=100)
+    digits: int = Field(default=0, ge=0, le=3)
+    tolerance_um: float = Field(default=float("inf"), gt=0.0)
+
+
+class SetupTable(Table):
+    """`[setup.a]`: pose of the standard in the table frame."""
+
+    origin_mm: Vector = (0.0, 0.0, 0.0)
+    rotation_deg: Vector = (0.0, 0.0, 0.0)
+
+
+class SimulationTable(Table):
+    """`[simulation]`: the proof on the twin."""
+
+    noise_um: float = Field(default=1.0, gt=0.0)
+    machines: int = Field(default=3, ge=1, le=50)
+
+
+class ProjectTable(Table):
+    """The whole file."""
+
+    format: str
+    machine: str
+    seed: int = Field(ge=0)
+    probe: ProbeTable
+    workspace: dict[str, object] = Field(default_factory=dict)
+    montecarlo: MonteCarloTable = MonteCarloTable()
+    errors: ErrorsTable = ErrorsTable()
+    standard: StandardTable = StandardTable()
+    blank: BlankTable = BlankTable()
+    limits: LimitsTable = LimitsTable()
+    setup: dict[str, SetupTable] = Field(default_factory=lambda: {"a": SetupTable()})
+    simulation: SimulationTable = SimulationTable()
+
+
+@dataclass(frozen=True)
+class Project:
+    """A design project in base units.
+
+    Attributes:
+        path: The project file.
+        machine_path: The machine file.
+        chain: The machine.
+        seed: Of all random numbers.
+        probe_radius: mm.
+        probe_length: Gauge point to ball centre, mm.
+        workspace: Smallest and largest reading of every programmed axis, mm or rad.
+        poses: Number of poses for the maps.
+        draws: Number of random machines for the maps; at most so many where digits are asked for.
+        digits: Significant digits that have to be stable (JCGM 101); 0 for none.
+        tolerance: Volumetric error that users allow, mm; infinite where they said nothing.
+        expected: Errors that the machine is expected to have.
+        standard: Name, material, expansion, number of patches, touches and table poses, and what
+            they are chosen for.
+        blank: What it is made from.
+        limits: What workshop, probe and table allow.
+        setup: Where the standard stands on the table.
+        noise: Standard deviation of one simulated touch, mm.
+        machines: Number of random machines of the proof.
+    """
+
+    path: Path
+    machine_path: Path
+    chain: Chain
+    seed: int
+    probe_radius: float
+    probe_length: float
+    workspace: dict[str, tuple[float, float]]
+    poses: int
+    draws: int
+    digits: int
+    tolerance: float
+    expected: Expected
+    standard: StandardTable
+    blank: BlankTable
+    limits: LimitsTable
+    setup: Setup
+    noise: float
+    machines: int
+
+    @property
+    def ranges(self) -> Ranges:
+        """Expected amplitudes of the errors."""
+        return self.expected.ranges
+
+    @property
+    def population(self) -> Population:
+        """Machines to draw from."""
+        known = self.expected
+        return Population(self.chain, known.ranges, known.distributions, known.dependence)
+
+
+def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None) -> Project:
+    """Project with its machine.
+
+    Args:
+        path: The file.
+        montecarlo: Keys of `[montecarlo]` that stand in place of those of the file.
+
+    Raises:
+        BadFile: File, key, what stood there, what was expected.
+    """
+    path = Path(path)
+    data = parse_toml(read_text(path), path)
+    check_format(data, "project/1", path)
+    if montecarlo and isinstance(data.setdefault("montecarlo", {}), dict):
+        data["montecarlo"] |= montecarlo
+    table = checked(ProjectTable, data, path)
+    machine_path = path.parent / table.machine
+    chain = read_machine(machine_path)
+    workspace, poses = _workspace(table, chain, path)
+    if len(table.setup) != 1:
+        raise BadFile(path, "setup", f"{len(table.setup)} set-ups", "one set-up")
+    if table.montecarlo.digits and table.montecarlo.draws < 2 * MACHINES_A_BATCH:
+        raise BadFile(
+            path,
+            "montecarlo.draws",
+            f"{table.montecarlo.draws} with digits = {table.montecarlo.digits}",
+            f"{2 * MACHINES_A_BATCH} or more: stable digits need two batches",
+        )
+    check_standard(table.standard, path)
+    check_body(table.blank, table.limits, table.standard, table.probe.radius_mm, path)
+    name, setup = next(iter(table.setup.items()))
+    return Project(
+        path=path,
+        machine_path=machine_path,
+        chain=chain,
+        seed=table.seed,
+        probe_radius=table.probe.radius_mm,
+        probe_length=table.probe.length_mm,
+        workspace=workspace,
+        poses=poses,
+        draws=table.montecarlo.draws,
+        digits=table.montecarlo.digits,
+        tolerance=table.montecarlo.tolerance_um * UM,
+        expected=expected_errors(table.errors, chain, path),
+        standard=table.standard,
+        blank=table.blank,
+        limits=table.limits,
+        setup=Setup(
+            name,
+            pose(fixed_xyz(np.array(setup.rotation_deg) * DEG), np.array(setup.origin_mm)),
+        ),
+        noise=table.simulation.noise_um * UM,
+        machines=table.simulation.machines,
+    )
+
+
+def _workspace(
+    table: ProjectTable, chain: Chain, path: Path
+) -> tuple[dict[str, tuple[float, float]], int]:
+    """Ranges of readings that the user cares about, and the number of poses."""
+    given = dict(table.workspace)
+    poses = given.pop("poses", 2000)
+    if not isinstance(poses, int) or not 100 <= poses <= 100_000:
+        raise BadFile(path, "workspace.poses", repr(poses), "a whole number, 100 to 100000")
+    out = {axis: chain.link(axis).range for axis in chain.programmed_axes}
+    for axis, pair in given.items():
+        if axis not in chain.programmed_axes:
+            raise BadFile(
+                path,
+                f"workspace.{axis}",
+                "an unknown axis",
+                str(UnknownAxis(axis, chain.programmed_axes)).split("; ")[-1],
+            )
+        low, high = _pair(pair, path, f"workspace.{axis}")
+        factor = 1.0 if chain.link(axis).kind == "linear" else DEG
+        travel = chain.link(axis).range
+        if low * factor < travel[0] or high * factor > travel[1]:
+            raise BadFile(
+                path,
+                f"workspace.{axis}",
+                [low, high],
+                f"within the travel {travel[0] / factor:g} to {travel[1] / factor:g}",
+            )
+        out[axis] = (low * factor, high * factor)
+    return out, poses
+
+
+def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
+    """Two finite numbers, the smaller first."""
+    numbers = isinstance(value, list) and len(value) == 2
+    if not numbers or not all(isinstance(v, int | float) and np.isfinite(v) for v in value):
+        raise BadFile(path, key, repr(value), "two numbers")
+    low, high = float(value[0]), float(value[1])
+    if not low <= high:
+        raise BadFile(path, key, [low, high], "the smaller number first")
+    return low, high

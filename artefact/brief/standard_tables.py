@@ -1,0 +1,117 @@
+"""Tables of a project file that say what standard is wanted, from which blank, within which limits.
+
+What contradicts itself is refused before any work is done.
+"""
+
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field
+
+from twin.errors import BadFile
+from twin.files import Pair, Table
+from twin.units import KG_M3
+
+BASE_THICKNESS = 30.0
+"""Of the plate that every standard stands on, mm."""
+
+CORNER_RADIUS = 25.0
+"""Of that plate, mm."""
+
+
+class StandardTable(Table):
+    """`[standard]`: what shall be made."""
+
+    name: str = "FFS-1"
+    serial: str = ""
+    material: str = "X40Cr14 (1.2083), hardened"
+    density_kg_m3: float = Field(default=7800.0, gt=0.0)
+    expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
+    patches: int = Field(default=10, ge=8, le=16)
+    touches: int = Field(default=480, ge=100, le=2000)
+    poses: int = Field(default=30, ge=8, le=100)
+    criterion: Literal["I", "G", "D", "A", "E"] = "I"
+    potential: float = Field(default=0.3, ge=0.0, le=0.95)
+    drawn_machines: int = Field(default=0, ge=0, le=100)
+    worst_share: float = Field(default=1.0, gt=0.0, le=1.0)
+
+
+class BlankTable(Table):
+    """`[blank]`: sides of the base and height of the whole, mm."""
+
+    base_mm: Pair = (280.0, 280.0)
+    height_mm: float = Field(default=220.0, ge=120.0, le=400.0)
+
+
+class LimitsTable(Table):
+    """`[limits]`: what cutter, probe and table allow."""
+
+    min_concave_radius_mm: float = Field(default=12.0, gt=0.0)
+    max_slope_deg: float = Field(default=45.0, gt=0.0, lt=90.0)
+    gap_mm: float = Field(default=1.0, ge=0.0)
+    max_mass_kg: float = Field(default=60.0, gt=0.0)
+    table_radius_mm: float = Field(default=160.0, gt=0.0)
+
+
+def check_standard(wanted: StandardTable, path: Path) -> None:
+    """Refuse keys of `[standard]` that contradict one another.
+
+    Raises:
+        BadFile: The key and what it contradicts.
+    """
+    if wanted.worst_share < 1.0 and not wanted.drawn_machines:
+        raise BadFile(
+            path,
+            "standard.worst_share",
+            f"{wanted.worst_share:g} with drawn_machines = 0",
+            "drawn machines of which that share is the worst, or no such key",
+        )
+    if wanted.poses * 2 > wanted.touches:
+        raise BadFile(
+            path,
+            "standard.poses",
+            f"{wanted.poses} with touches = {wanted.touches}",
+            "two touches or more for every table pose",
+        )
+
+
+def check_body(
+    blank: BlankTable, limits: LimitsTable, wanted: StandardTable, ball_mm: float, path: Path
+) -> None:
+    """Refuse a blank and limits that no standard can meet.
+
+    Args:
+        blank: Of what it is made.
+        limits: What is allowed.
+        wanted: The standard.
+        ball_mm: Radius of the probe's ball.
+        path: The file.
+
+    Raises:
+        BadFile: The key and what it contradicts.
+    """
+    sides, table = blank.base_mm, 2.0 * limits.table_radius_mm
+    if min(sides) < 160.0:
+        raise BadFile(path, "blank.base_mm", list(sides), "160 mm or more either way")
+    if max(sides) > table:
+        raise BadFile(
+            path,
+            "blank.base_mm",
+            list(sides),
+            f"a blank no larger than the table, {table:g} mm (limits.table_radius_mm)",
+        )
+    if ball_mm > limits.min_concave_radius_mm:
+        raise BadFile(
+            path,
+            "limits.min_concave_radius_mm",
+            f"{limits.min_concave_radius_mm:g} with a ball of probe.radius_mm = {ball_mm:g}",
+            "a radius that the ball fits into",
+        )
+    base = sides[0] * sides[1] * BASE_THICKNESS * wanted.density_kg_m3 * KG_M3
+    if base > limits.max_mass_kg:
+        raise BadFile(
+            path,
+            "limits.max_mass_kg",
+            f"{limits.max_mass_kg:g}",
+            f"more than {base:.1f} kg, which the base of the blank weighs by itself",
+        )

@@ -1,0 +1,183 @@
+"""What another stylus length or another set-up of the standard would buy, at equal touches.
+
+Half of the touches stay; the other half is chosen greedily from the same points at the same table
+poses, once as they are and once with the other stylus or in the other place. Every set-up has six
+free numbers of its own, every stylus its own offset, length and tilt, so nothing is won by knowing
+them. Reach and travel are looked at, collisions are not.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from artefact.reach import Probing, Requests
+from artefact.worth import Criterion
+from information.criteria import Posterior, purpose, whitened
+from information.identifiability import seen
+from information.selection import Quota, Selection, fill
+from twin.errors import DesignError
+from twin.frames import Array, fixed_xyz, pose
+from twin.machine import Family
+from twin.record import IntArray, Setup
+from twin.units import DEG
+
+STYLUS = 60.0
+"""By which a second stylus is longer, mm."""
+
+SETUPS = {
+    "a second set-up, turned by 90° about Z": ((0.0, 0.0, 0.0), (0.0, 0.0, 90.0)),
+    "a second set-up, 60 mm aside along X": ((60.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    "a second set-up, 60 mm higher": ((0.0, 0.0, 60.0), (0.0, 0.0, 0.0)),
+    "a second set-up, tilted by 15° about X": ((0.0, 0.0, 0.0), (15.0, 0.0, 0.0)),
+}
+"""Displacements (mm) and rotations (degrees) of the standard for a second set-up."""
+
+_EACH = 6  # table poses tried at every point
+_MOST = 1500  # touches that the second half is chosen from
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Touches that could be made in some way, as rows.
+
+    Attributes:
+        W: Whitened rows, (N, P + own): columns of set-up and tool are repeated for a second
+            set-up, a second stylus, so that each has its own.
+        prior_sd: Shape (P + own,).
+    """
+
+    W: Array
+    prior_sd: Array
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """What another way to measure buys.
+
+    Attributes:
+        name: What it is.
+        is_possible: Whether the machine reaches enough touches.
+        rank_gained: Combinations of machine errors that are seen beyond those seen now.
+        variance_ratio: Mean predicted variance of the tool point, over that of as many touches as
+            now; below one is better.
+        words: The same in words.
+    """
+
+    name: str
+    is_possible: bool
+    rank_gained: int
+    variance_ratio: float
+    words: str
+
+
+def ways(aim: Criterion) -> dict[str, Probing]:
+    """Other ways to measure: another stylus, other set-ups; by name."""
+    probing = aim.probing
+    out = {"a second stylus length": replace(probing, length=probing.length + STYLUS)}
+    for name, (shift, turn) in SETUPS.items():
+        T = probing.setup.T_table_artefact @ pose(fixed_xyz(np.array(turn) * DEG), np.array(shift))
+        out[name] = replace(probing, setup=Setup("second", T))
+    return out
+
+
+def tried_in(way: Probing, requests: Requests, rng: np.random.Generator) -> Requests:
+    """Touches of the same points at the same table poses that a way to measure reaches."""
+    poses = np.unique(np.round(requests.rotary, 9), axis=0)
+    n = len(requests)
+    rows = np.tile(np.arange(n), _EACH)
+    tried = replace(requests[rows], rotary=poses[rng.integers(len(poses), size=len(rows))])
+    return tried[np.flatnonzero(way.is_reachable(tried))[:_MOST]]
+
+
+def both(aim: Criterion, first: Requests, second: Requests, way: Probing) -> Measured:
+    """Rows of touches made as now, and of others made in another way."""
+    model = aim.model
+    W = [whitened(model.columns(aim.probing.touches(first)), aim.prior_sd, aim.noise)]
+    W.append(whitened(model.columns(way.touches(second)), aim.prior_sd, aim.noise))
+    own = _own(aim, way)
+    rows = np.zeros((len(first) + len(second), len(aim.prior_sd) + len(own)))
+    rows[: len(first), : len(aim.prior_sd)] = W[0]
+    rows[len(first) :, : len(aim.prior_sd)] = W[1]
+    rows[len(first) :, own] = 0.0
+    rows[len(first) :, len(aim.prior_sd) :] = W[1][:, own]
+    return Measured(rows, np.concatenate([aim.prior_sd, aim.prior_sd[own]]))
+
+
+def _own(aim: Criterion, way: Probing) -> IntArray:
+    """Parameters that are others in another way to measure: of the set-up, or of the tool."""
+    link = "w" if way.length == aim.probing.length else "t"
+    if way is aim.probing:
+        return np.zeros(0, dtype=np.int64)
+    return set_up(aim, link)
+
+
+def set_up(aim: Criterion, links: str = "wt") -> IntArray:
+    """Parameters of the set-up of the workpiece (w), the tool (t) or both."""
+    symbols = [getattr(effect, "symbol", None) for effect, _ in aim.model.parameters]
+    mine = [s is not None and s.family is Family.SETUP and s.link in links for s in symbols]
+    return np.flatnonzero(mine)
+
+
+def machine_rank(aim: Criterion, W: Array) -> int:
+    """Combinations of machine errors that rows see, set-ups and tools being unknown."""
+    P = len(aim.prior_sd)
+    nuisance = np.concatenate([set_up(aim), np.arange(P, W.shape[1])])
+    return seen(W).rank - seen(W[:, nuisance]).rank
+
+
+def alternatives(
+    aim: Criterion, requests: Requests, rng: np.random.Generator
+) -> tuple[Alternative, ...]:
+    """What every other way to measure buys.
+
+    Args:
+        aim: Criterion.
+        requests: The touches of the design.
+        rng: Draws the touches that are tried.
+    """
+    half = requests[::2]
+    base = _bought(aim, requests, half, aim.probing, rng)
+    out = []
+    for name, way in ways(aim).items():
+        try:
+            found = _bought(aim, requests, half, way, rng)
+        except DesignError as error:
+            out.append(Alternative(name, False, 0, 1.0, f"{name}: {error}"))
+            continue
+        gained, ratio = found[0] - base[0], found[1] / base[1]
+        words = (
+            f"{name}: {gained} more combinations of machine errors seen"
+            if gained
+            else f"{name}: no combination more is seen"
+        )
+        change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
+        words += f"; mean predicted variance of the tool point {change} at equal touches"
+        out.append(Alternative(name, True, gained, ratio, words))
+    return tuple(out)
+
+
+def _bought(
+    aim: Criterion, requests: Requests, half: Requests, way: Probing, rng: np.random.Generator
+) -> tuple[int, float]:
+    """Machine rank and mean predicted variance, mm^2, with the other half made in some way.
+
+    Raises:
+        DesignError: The machine reaches too few touches.
+    """
+    tried = tried_in(way, requests, rng)
+    wanted = len(requests) - len(half)
+    if len(tried) < wanted:
+        raise DesignError(f"the machine reaches {len(tried)} touches, {wanted} are wanted")
+    found = both(aim, half, tried, way)
+    tips = np.concatenate([aim.tip_volume, aim.tip_user])
+    extra = found.W.shape[1] - tips.shape[2]
+    G = np.concatenate([tips, np.zeros((*tips.shape[:2], extra))], axis=2)
+    what_for = purpose(G, found.W, found.prior_sd)
+    start = np.arange(len(found.W)) < len(half)
+    selection = Selection(what_for, what_for.rows(found.W), start)
+    kind = (~start).astype(np.int64)
+    fill(selection, len(requests), (Quota(kind, np.array([len(half), wanted])),))
+    W = found.W[selection.chosen]
+    names = tuple(f"{i}" for i in range(len(found.prior_sd)))
+    variance = float(np.mean(Posterior(W, found.prior_sd, names).predicted_sd(G) ** 2))
+    return machine_rank(aim, W), variance

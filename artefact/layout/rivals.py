@@ -1,0 +1,96 @@
+"""Artefacts that people have, built as bodies that a probe must get round like any other."""
+
+import numpy as np
+
+from artefact.body import DatumSphere, FreeformPatch, Standard, graph_patch
+from artefact.layout.candidates import smooth_heights
+from artefact.layout.sites import Frame
+from artefact.layout.spread import rim
+from sensitivity.first_order import Box
+from twin.frames import Array, pose, rotation
+from twin.units import DEG
+
+_SPHERE = 12.5  # mm, radius of the spheres
+_STEM, _FOOT = 6.0, 9.0  # mm
+_PROUD = 2.0  # mm by which the sides of the block stand out beyond its top
+_TALLEST = 40.0  # mm that the one face may rise above its plane
+_BENEATH = 5.0  # mm above mid-base, where columns end
+
+
+def rivals(volume: Box, frame: Frame, rng: np.random.Generator) -> dict[str, Standard]:
+    """Four calibrated spheres, a five-sided block and one freeform face, all as large as allowed.
+
+    Each fills the volume that the standard fills, on the same base.
+
+    Args:
+        volume: Box of the artefact frame, mm.
+        frame: Base, blank and limits of the standard.
+        rng: Draws the shape of the freeform face.
+    """
+    return {
+        "four calibrated spheres": _standard("SPHERES", frame, (), _four_spheres(volume, frame)),
+        "five-sided block": _standard("BLOCK", frame, _block(volume, frame)),
+        "one freeform face": _standard("FACE", frame, (_one_face(volume, frame, rng),)),
+    }
+
+
+def _standard(
+    name: str,
+    frame: Frame,
+    patches: tuple[FreeformPatch, ...],
+    spheres: tuple[DatumSphere, ...] = (),
+) -> Standard:
+    return Standard(
+        name=name,
+        serial="",
+        material=frame.material,
+        base=frame.base,
+        core=None,
+        patches=patches,
+        spheres=spheres,
+        holes=(),
+        blank_height=frame.blank_height,
+    )
+
+
+def _four_spheres(volume: Box, frame: Frame) -> tuple[DatumSphere, ...]:
+    """At the corners of the base, at heights spread over that of the volume."""
+    heights = np.linspace(volume[0][2] + 25.0, volume[1][2], 4)[[0, 2, 1, 3]]
+    places = rim(frame.base, _FOOT + 3.0)
+    found = []
+    for i, (quarter, height) in enumerate(zip(range(4), heights, strict=True), 1):
+        corner = np.array([np.cos((quarter + 0.5) * 90 * DEG), np.sin((quarter + 0.5) * 90 * DEG)])
+        x, y = places[int(np.argmax(places @ corner))]
+        centre = np.array([x, y, height])
+        top = frame.base.thickness
+        found.append(DatumSphere(f"SPH{i}", centre, _SPHERE, _STEM, _FOOT, top))
+    return tuple(found)
+
+
+def _block(volume: Box, frame: Frame) -> tuple[FreeformPatch, ...]:
+    """Five plane faces: the top, and four sides that stand a little proud of it."""
+    half, low, high = volume[1][0], frame.base.thickness, volume[1][2]
+    depth = high - 0.5 * low
+    faces = [_plane("TOP", pose(t=np.array([0.0, 0.0, high])), (half, half), depth)]
+    tall = 0.5 * (high - low) - _PROUD
+    middle = 0.5 * (low + high)
+    for i in range(4):
+        z, y = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
+        R = rotation(i * 90 * DEG * z) @ rotation(90 * DEG * y)
+        centre = R @ np.array([0.0, 0.0, half + _PROUD]) + np.array([0.0, 0.0, middle])
+        # x of the patch runs downwards, y along the side
+        faces.append(_plane(f"SIDE{i + 1}", pose(R, centre), (tall, half - _PROUD), half))
+    return tuple(faces)
+
+
+def _plane(name: str, T: Array, half_size: tuple[float, float], depth: float) -> FreeformPatch:
+    return graph_patch(name, T, half_size, np.zeros((4, 4)), (3, 3), depth)
+
+
+def _one_face(volume: Box, frame: Frame, rng: np.random.Generator) -> FreeformPatch:
+    """One smooth face over the whole volume, as steep as the limits allow, in mid-height."""
+    (x0, y0, z0), (x1, y1, z1) = volume
+    half, middle = (0.5 * (x1 - x0), 0.5 * (y1 - y0)), 0.5 * (z0 + z1)
+    place = pose(t=np.array([0.5 * (x0 + x1), 0.5 * (y0 + y1), middle]))
+    heights = smooth_heights(half, frame.limits, rng, tallest=_TALLEST)
+    return graph_patch("FACE", place, half, heights, depth=middle - _BENEATH)

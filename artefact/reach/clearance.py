@@ -1,0 +1,231 @@
+"""Room for the probe: how near its stylus and body come to the standard at each touch."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.body import Plate, Standard, rows, unit
+from twin.errors import ShapeMismatch
+from twin.frames import Array, apply, inverse, turn
+
+TABLE_RADIUS = 160.0
+"""Of the rotary table's face where nobody says otherwise, mm."""
+
+TABLE_THICKNESS = 60.0
+"""How much of the table below its face is kept clear, mm."""
+
+_GROWTH = 1.15  # ratio of neighbouring stations along the tool axis
+_THIN = 4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped
+_COARSE = 0.3  # radius of the wrapping balls, in radii of the cylinder
+_BLOCK = 200_000  # balls looked at together
+
+
+@dataclass(frozen=True, slots=True)
+class ProbeShape:
+    """A touch probe as cylinders round the tool axis, from the ball centre upwards.
+
+    Attributes:
+        ball_radius: Of the stylus tip, mm.
+        cylinders: (end, radius) of each, mm from the ball centre, in ascending order; the first
+            begins at the ball.
+    """
+
+    ball_radius: float
+    cylinders: tuple[tuple[float, float], ...]
+
+    def __post_init__(self) -> None:
+        ends = [end for end, _ in self.cylinders]
+        if not ends or ends != sorted(ends) or ends[0] <= self.ball_radius:
+            raise ShapeMismatch(
+                f"probe cylinders end at {ends} mm; expected ascending ends beyond the ball radius"
+                f" {self.ball_radius:g} mm"
+            )
+
+    @property
+    def length(self) -> float:
+        """From the ball centre to the end of the last cylinder, mm."""
+        return self.cylinders[-1][0]
+
+    def stations(self) -> tuple[Array, Array]:
+        """Balls on the tool axis that cover all cylinders, and more before their front faces.
+
+        Returns:
+            Distance of each from the ball centre, and its radius, each (K,), mm.
+        """
+        parts = [_row(low, high, radius, self.ball_radius) for low, high, radius in self._pieces()]
+        return np.concatenate([c for c, _ in parts]), np.concatenate([r for _, r in parts])
+
+    def rough_cover(self) -> tuple[Array, Array]:
+        """The same balls as centres (K, 3) in the frame of the tip, tool axis +z, and radii."""
+        place, radius = self.stations()
+        return _on_axis(place), radius
+
+    def fine_cover(self) -> tuple[Array, Array]:
+        """Balls that cover the surface of all cylinders and stand out by an eighth of a radius.
+
+        Enough for anything that, like the standard, is not small enough to be inside a cylinder.
+
+        Returns:
+            Centres in the frame of the tip, tool axis +z, (K, 3), and radii, (K,), mm.
+        """
+        parts = []
+        for low, high, radius in self._pieces():
+            if radius > _THIN:
+                parts.append(_wrap(low, high, radius))
+            else:
+                place, cover = _row(low, high, radius, self.ball_radius)
+                parts.append((_on_axis(place), cover))
+        return np.concatenate([c for c, _ in parts]), np.concatenate([r for _, r in parts])
+
+    def _pieces(self) -> list[tuple[float, float, float]]:
+        ends = [end for end, _ in self.cylinders]
+        lows = [0.0, *ends[:-1]]
+        return [(low, end, r) for low, (end, r) in zip(lows, self.cylinders, strict=True)]
+
+
+def _row(low: float, high: float, radius: float, ball_radius: float) -> tuple[Array, Array]:
+    """Balls on the axis whose spacing grows with the distance from the tip."""
+    # The stylus inside the ball touches nothing that the ball does not touch.
+    first = max(low, 0.7 * ball_radius)
+    count = max(int(np.ceil(np.log(high / first) / np.log(_GROWTH))), 1)
+    cuts = np.geomspace(first, high, count + 1)
+    return 0.5 * (cuts[1:] + cuts[:-1]), np.hypot(radius, 0.5 * np.diff(cuts))
+
+
+def _on_axis(place: Array) -> Array:
+    """Points (K, 3) on the tool axis at distances (K,) from the tip."""
+    return np.column_stack([np.zeros((len(place), 2)), place])
+
+
+def _wrap(low: float, high: float, radius: float) -> tuple[Array, Array]:
+    """Balls over the front face and the mantle of a cylinder.
+
+    A ball of radius rho that lies ``w = rho / sqrt 3`` below a surface covers a patch of half
+    width w each way: the rings and rows are spaced by 2 w at most.
+    """
+    w = _COARSE * radius / np.sqrt(3.0)
+    rings = [(r, low + w) for r in np.linspace(0.0, radius - w, int(np.ceil(0.5 * radius / w)) + 1)]
+    rows_up = int(np.ceil((high - low) / (2.0 * w)))
+    rings += [(radius - w, low + w + 2.0 * w * k) for k in range(1, rows_up)]
+    balls = []
+    for ring, height in rings:
+        count = max(int(np.ceil(np.pi * min(ring + w, radius) / w)), 1) if ring > 0.0 else 1
+        angle = 2.0 * np.pi * np.arange(count) / count
+        balls.append(
+            np.column_stack([ring * np.cos(angle), ring * np.sin(angle), np.full(count, height)])
+        )
+    centres = np.concatenate(balls)
+    return centres, np.full(len(centres), _COARSE * radius)
+
+
+@dataclass(frozen=True, eq=False)
+class Clearance:
+    """Room at N touches.
+
+    Attributes:
+        distance: Of the probe above its ball from the standard, (N,), mm; never too large,
+            negative where they may collide, and then not a depth.
+        body: Name of the body that is nearest, (N,).
+    """
+
+    distance: Array
+    body: np.ndarray
+
+
+def clearance(
+    standard: Standard, centre: Array, tool_axis: Array, probe: ProbeShape, enough: float = 2.0
+) -> Clearance:
+    """How near the probe comes to the standard with its ball at each centre; from below.
+
+    The cylinders are covered by balls, which are compared with the distance to every body, so
+    the figure errs on the safe side. Where a cover of few balls leaves less than `enough`, a
+    finer one is tried. The tip's ball itself is not looked at: it is meant to touch.
+
+    Args:
+        standard: In the artefact frame.
+        centre: Ball centres, shape (N, 3), artefact frame, mm.
+        tool_axis: From the tip to the spindle, artefact frame, shape (N, 3) or (3,).
+        probe: Stylus, stem and body.
+        enough: Room beyond which the exact figure does not matter, mm.
+
+    Returns:
+        Room and the nearest body.
+    """
+    centre = rows(centre)
+    axis = unit(rows(tool_axis, len(centre)))
+    room, nearest = _room(standard, centre, axis, *probe.rough_cover())
+    tight = np.flatnonzero(room < enough)
+    if len(tight):
+        finer, body = _room(standard, centre[tight], axis[tight], *probe.fine_cover())
+        better = finer > room[tight]
+        room[tight[better]], nearest[tight[better]] = finer[better], body[better]
+    return Clearance(room, nearest)
+
+
+def clearance_on_table(
+    standard: Standard,
+    T_table_artefact: Array,
+    T_table_tool: Array,
+    centre: Array,
+    probe: ProbeShape,
+    table: Plate,
+    enough: float = 2.0,
+) -> Clearance:
+    """How near the probe comes to the standard and to the table under it; from below.
+
+    The ball itself is looked at against the table, which it is not meant to touch.
+
+    Args:
+        standard: In the artefact frame.
+        T_table_artefact: Where it stands.
+        T_table_tool: Of which the rotation tells the tool axis, shape (N, 4, 4).
+        centre: Ball centres, table frame, shape (N, 3), mm.
+        probe: Stylus, stem and body.
+        table: In the table frame.
+        enough: Room beyond which the exact figure does not matter, mm.
+
+    Returns:
+        Room and the nearest body, which may be `the table`.
+    """
+    T_artefact_table = inverse(T_table_artefact)
+    axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
+    near = clearance(standard, apply(T_artefact_table, centre), axis, probe, enough)
+    above = np.full(len(centre), -np.inf)
+    for places, radii in (probe.rough_cover(), probe.fine_cover()):
+        tight = np.flatnonzero(above < enough)
+        balls = centre[tight, None] + turn(T_table_tool[tight, None], places)
+        gap = table.distance(balls.reshape(-1, 3)).reshape(len(tight), len(radii)) - radii
+        above[tight] = np.maximum(above[tight], gap.min(axis=1, initial=np.inf))
+    above = np.minimum(above, table.distance(centre) - probe.ball_radius)
+    on_table = above < near.distance
+    return Clearance(
+        np.where(on_table, above, near.distance),
+        np.where(on_table, "the table", near.body.astype(str)),
+    )
+
+
+def _room(
+    standard: Standard, centre: Array, axis: Array, places: Array, radii: Array
+) -> tuple[Array, np.ndarray]:
+    """Smallest distance of the covering balls from the standard (N,), and the body it is to."""
+    room = np.full(len(centre), np.inf)
+    nearest = np.zeros(len(centre), dtype=int)
+    names = np.array(list(standard.bodies))
+    across = _across(axis)
+    for some in np.array_split(np.arange(len(centre)), len(centre) * len(places) // _BLOCK + 1):
+        points = centre[some, None] + places @ across[some]  # (n, K, 3)
+        flat, shape = points.reshape(-1, 3), points.shape[:2]
+        each = [
+            (body.distance(flat).reshape(shape) - radii).min(axis=1)
+            for body in standard.bodies.values()
+        ]
+        nearest[some] = np.argmin(each, axis=0)
+        room[some] = np.min(each, axis=0)
+    return room, names[nearest]
+
+
+def _across(axis: Array) -> Array:
+    """Right-handed frames whose third row is the axis, (N, 3, 3)."""
+    least = np.eye(3)[np.argmin(np.abs(axis), axis=1)]
+    first = unit(np.cross(least, axis))
+    return np.stack([first, np.cross(axis, first), axis], axis=1)

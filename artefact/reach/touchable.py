@@ -1,0 +1,314 @@
+"""Which touches a machine can make on a standard: angle, travel, room for the probe, free ways.
+
+Whoever chooses touches and whoever plans them asks here; they differ only in the margins they want.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from artefact.body import Meeting, Plate, Standard
+from artefact.reach.clearance import (
+    TABLE_RADIUS,
+    TABLE_THICKNESS,
+    Clearance,
+    ProbeShape,
+    clearance_on_table,
+)
+from artefact.reach.first_contact import contact
+from twin.frames import Array, apply, inverse, turn
+from twin.machine import Chain, inverse_linear, linear_directions, table_to_tool
+from twin.record import IntArray, Labels, Setup, Touches, linear_approach
+from twin.units import DEG
+
+Mask = NDArray[np.bool_]
+
+_WORDS = "U200"  # of a reason
+_LIFT = 400.0  # mm the ball comes down from, far above any standard
+_WIDER = 1.0  # mm added to the ball on its way down
+_ROUNDING = (
+    1e-9  # mm or rad: a reading at the very end of a travel is inside, whatever its last digit
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Requests:
+    """Touches that somebody wants, in any order.
+
+    Attributes:
+        feature: Names of features, (N,).
+        point: Contact points, artefact frame, (N, 3), mm.
+        normal: Outward unit normals there, (N, 3).
+        rotary: Readings of the rotary axes in chain order, (N, R), rad.
+    """
+
+    feature: Labels
+    point: Array
+    normal: Array
+    rotary: Array
+
+    def __len__(self) -> int:
+        return len(self.point)
+
+    def __getitem__(self, rows: Mask | IntArray | slice) -> "Requests":
+        return Requests(*(getattr(self, f.name)[rows] for f in fields(self)))
+
+    @property
+    def pose(self) -> IntArray:
+        """Number of the table pose of every touch, (N,), from 0 in the order of the readings."""
+        return np.unique(np.round(self.rotary, 9), axis=0, return_inverse=True)[1].reshape(-1)
+
+
+def joined(parts: list[Requests]) -> Requests:
+    """Several lots of touches as one."""
+    return Requests(
+        *(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Requests))
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Probing:
+    """Machine, probe and place of the standard, with the room that a touch is given.
+
+    Attributes:
+        chain: The machine.
+        setup: Where the standard stands.
+        shape: The probe from its ball upwards.
+        length: Gauge point to ball centre, mm.
+        steepest: Largest angle between a surface's normal and the tool axis, rad.
+        room: Smallest gap between the probe above its ball and anything solid, mm.
+        standoff: Gap between ball and surface at the start of a touch, mm.
+        search: How far beyond the expected contact the travel must reach, mm.
+        table_radius: Of the table's face, mm.
+        table_thickness: Of what is kept clear below it, mm.
+    """
+
+    chain: Chain
+    setup: Setup
+    shape: ProbeShape
+    length: float
+    steepest: float = 75.0 * DEG
+    room: float = 2.0
+    standoff: float = 5.0
+    search: float = 3.0
+    table_radius: float = TABLE_RADIUS
+    table_thickness: float = TABLE_THICKNESS
+
+    @property
+    def radius(self) -> float:
+        """Of the ball, mm."""
+        return self.shape.ball_radius
+
+    def readings(self, wanted: Requests, gap: float = 0.0) -> Array:
+        """Axis readings with the ball this far off the surface along the normal, (N, A).
+
+        At fixed rotary readings the tip is an affine function of the linear ones, so kinematics is
+        done once a table pose and not once a touch.
+
+        Raises:
+            NotReachable: The machine has not three independent linear axes at some pose.
+        """
+        chain, stands = self.chain, self._stands(wanted)
+        rotary = [chain.axis_index(name) for name in chain.rotary_axes]
+        q = np.zeros((len(wanted), len(chain.axes)))
+        q[:, rotary] = wanted.rotary
+        ball = wanted.point + (self.radius + gap) * wanted.normal
+        target = apply(self.setup.T_table_artefact, ball)
+        i = stands.index
+        way = (target - stands.tip[i])[..., None]
+        linear = [chain.axis_index(name) for name in chain.linear_axes]
+        q[:, linear] = stands.q[i][:, linear] + (stands.inverse[i] @ way)[..., 0]
+        return q
+
+    def _stands(self, wanted: Requests) -> "_Stands":
+        """The table poses of touches, with all that depends on the pose alone."""
+        chain = self.chain
+        poses, index = np.unique(wanted.rotary, axis=0, return_inverse=True)
+        q = np.zeros((len(poses), len(chain.axes)))
+        q[:, [chain.axis_index(name) for name in chain.rotary_axes]] = poses
+        target = np.tile(self.setup.T_table_artefact[:3, 3], (len(poses), 1))
+        q = inverse_linear(chain, target, q, self.length)
+        along = linear_directions(chain, q)
+        unit = np.broadcast_to(np.eye(3), along.shape)
+        return _Stands(
+            index=index.reshape(-1),
+            q=q,
+            tip=target,
+            inverse=np.asarray(np.linalg.solve(along, unit), dtype=np.float64),
+            T_table_tool=table_to_tool(chain, q),
+            along=along,
+        )
+
+    def touches(self, wanted: Requests) -> Touches:
+        """The touches as a record that effects understand."""
+        n, q = len(wanted), self.readings(wanted)
+        normal_table = turn(self.setup.T_table_artefact, wanted.normal)
+        return Touches(
+            chain=self.chain,
+            q=q,
+            length=np.full(n, self.length),
+            radius=np.full(n, self.radius),
+            point=wanted.point,
+            normal=wanted.normal,
+            setups=(self.setup,),
+            setup=np.zeros(n, dtype=np.int64),
+            time=np.zeros(n),
+            approach=linear_approach(self.chain, q, normal_table),
+            feature=wanted.feature,
+            pose=wanted.pose,
+        )
+
+    def is_reachable(self, wanted: Requests) -> Mask:
+        """Touches within the angle to the tool axis and within every travel, (N,)."""
+        good: Mask = self._lean(wanted) >= np.cos(self.steepest)
+        for gap in self._gaps:
+            good &= (self._outside(self.readings(wanted, gap)) == 0.0).all(axis=1)
+        return good
+
+    def is_clear(self, standard: Standard, wanted: Requests) -> Mask:
+        """Touches with room for the probe, a free way down and nothing in front of them, (N,)."""
+        good: Mask = self._obstructions(standard, wanted) == ""
+        return good
+
+    def has_room(self, standard: Standard, wanted: Requests) -> Mask:
+        """Touches at which nothing comes near the probe above its ball, (N,)."""
+        good: Mask = self._room(standard, wanted, 0.0).distance >= self.room
+        return good
+
+    def reasons(self, standard: Standard, wanted: Requests) -> Labels:
+        """The first thing that is against each touch, in words; empty where nothing is, (N,)."""
+        reason = np.full(len(wanted), "", dtype=_WORDS)
+        good = self.is_reachable(wanted)
+        bad = np.flatnonzero(~good)
+        reason[bad] = [self._out_of_reach(wanted[bad[i : i + 1]]) for i in range(len(bad))]
+        rows = np.flatnonzero(good)
+        reason[rows] = self._obstructions(standard, wanted[rows])
+        return reason
+
+    @property
+    def _gaps(self) -> tuple[float, float, float]:
+        """Between ball and surface at the start of a touch, at the contact, at the search's end."""
+        return (self.standoff, 0.0, -self.search)
+
+    def _lean(self, wanted: Requests) -> Array:
+        """Cosine of the angle between normal and tool axis, (N,)."""
+        stands = self._stands(wanted)
+        axis = stands.T_table_tool[stands.index, :3, 2]
+        cosine: Array = np.einsum(
+            "ni,ni->n", axis, turn(self.setup.T_table_artefact, wanted.normal)
+        )
+        return cosine
+
+    def _outside(self, q: Array) -> Array:
+        """How far readings (N, A) are beyond the ends of their travels, (N, A), mm and rad."""
+        low, high = np.array([self.chain.link(name).range for name in self.chain.axes]).T
+        beyond: Array = np.maximum(np.maximum(low - q, q - high) - _ROUNDING, 0.0)
+        return beyond
+
+    def _out_of_reach(self, one: Requests) -> str:
+        """Why one touch is not within angle and travels."""
+        cosine = float(self._lean(one)[0])
+        if cosine < np.cos(self.steepest):
+            angle = np.arccos(np.clip(cosine, -1.0, 1.0)) / DEG
+            return f"the surface leans {angle:.1f} degrees from the tool axis"
+        for gap in self._gaps:
+            q = self.readings(one, gap)
+            for i in np.flatnonzero(self._outside(q)[0]):
+                link = self.chain.link(self.chain.axes[i])
+                unit, word = (1.0, "mm") if link.kind == "linear" else (DEG, "degrees")
+                value, low, high = q[0, i] / unit, link.range[0] / unit, link.range[1] / unit
+                return f"{link.name} would have to go to {value:.1f}, {low:g} to {high:g} {word}"
+        return ""
+
+    def _obstructions(self, standard: Standard, wanted: Requests) -> Labels:
+        """What is in the way of probe and ball, cheapest look first; empty where nothing, (N,)."""
+        reason = np.full(len(wanted), "", dtype=_WORDS)
+        for look in (self._tight, self._tight_at_start, self._way_down, self._way_in):
+            rows = np.flatnonzero(reason == "")
+            reason[rows] = look(standard, wanted[rows])
+        return reason
+
+    def _tight(self, standard: Standard, wanted: Requests, gap: float = 0.0) -> Labels:
+        near = self._room(standard, wanted, gap)
+        words = [
+            f"{g:.2f} mm between probe and {b}" if g < self.room else ""
+            for g, b in zip(near.distance.tolist(), near.body.tolist(), strict=True)
+        ]
+        return np.array(words, dtype=_WORDS)
+
+    def _tight_at_start(self, standard: Standard, wanted: Requests) -> Labels:
+        return self._tight(standard, wanted, self.standoff)
+
+    def _room(self, standard: Standard, wanted: Requests, gap: float) -> Clearance:
+        """How near anything comes to the probe above its ball, and the table to the ball."""
+        stands = self._stands(wanted)
+        place = self.setup.T_table_artefact
+        centre = apply(place, wanted.point + (self.radius + gap) * wanted.normal)
+        r = self.table_radius
+        table = Plate((r, r), r, -self.table_thickness, 0.0)
+        T_table_tool = stands.T_table_tool[stands.index]
+        return clearance_on_table(
+            standard, place, T_table_tool, centre, self.shape, table, enough=self.room
+        )
+
+    def _way_down(self, standard: Standard, wanted: Requests) -> Labels:
+        """What the ball meets on its way down to the start."""
+        up = turn(inverse(self.setup.T_table_artefact), self._retreat(wanted))
+        start = wanted.point + (self.radius + self.standoff) * wanted.normal
+        met = contact(standard, start + _LIFT * up, -up, self.radius + _WIDER, _LIFT)
+        words = [
+            f"on its way down the ball {_met(what, name)}" if what != Meeting.NOTHING else ""
+            for what, name in zip(met.meeting, met.feature, strict=True)
+        ]
+        return np.array(words, dtype=_WORDS)
+
+    def _way_in(self, standard: Standard, wanted: Requests) -> Labels:
+        """What the ball meets on its way in before the wanted feature, or instead of it."""
+        start = wanted.point + (self.radius + self.standoff) * wanted.normal
+        met = contact(standard, start, -wanted.normal, self.radius, self.standoff + self.search)
+        good = met.is_surface & (met.feature == wanted.feature)
+        words = [
+            "" if is_good else f"the ball {_met(what, name)}"
+            for is_good, what, name in zip(good, met.meeting, met.feature, strict=True)
+        ]
+        return np.array(words, dtype=_WORDS)
+
+    def _retreat(self, wanted: Requests) -> Array:
+        """Direction in which the tool withdraws, table frame, (N, 3).
+
+        The linear axis that runs most nearly along the tool with every axis at zero, as programs
+        do: they lift Z, whatever way a tilting head looks.
+        """
+        chain = self.chain
+        zero = np.zeros((1, len(chain.axes)))
+        along = linear_directions(chain, zero)[0].T @ table_to_tool(chain, zero)[0, :3, 2]
+        best = int(np.argmax(np.abs(along)))
+        stands = self._stands(wanted)
+        up: Array = np.sign(along[best]) * stands.along[stands.index, :, best]
+        return up
+
+
+def _met(what: Meeting, name: str) -> str:
+    return f"{what} of {name}" if name else str(what)
+
+
+@dataclass(frozen=True, eq=False)
+class _Stands:
+    """K table poses that N touches are made at.
+
+    Attributes:
+        index: Pose of every touch, (N,).
+        q: Readings that bring the tip to one point, (K, A).
+        tip: That point, table frame, (K, 3), mm.
+        inverse: Linear readings per motion of the tip, (K, 3, 3).
+        T_table_tool: Pose of the tool, of which only the rotation depends on the pose alone.
+        along: Motion of the tip per unit of each linear axis, (K, 3, 3).
+    """
+
+    index: IntArray
+    q: Array
+    tip: Array
+    inverse: Array
+    T_table_tool: Array
+    along: Array

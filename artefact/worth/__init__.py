@@ -1,0 +1,41 @@
+"""What touches on a standard are worth, and which of them to choose."""
+
+from artefact.worth.attribution import error_shares, parameter_symbols
+from artefact.worth.criterion import CRITERIA, Criterion, criterion, random_touches
+from artefact.worth.touch_choice import (
+    PlacementOptions,
+    chosen_poses,
+    chosen_touches_on,
+    each_at,
+    face_grid,
+    pose_quota,
+    some_touches,
+    sphere_grid,
+    table_poses,
+    touches_to_choose_from,
+)
+from artefact.worth.touch_curve import TouchCurve, touch_curve
+from artefact.worth.visibility import Visibility, visibility
+
+__all__ = [
+    "CRITERIA",
+    "Criterion",
+    "PlacementOptions",
+    "TouchCurve",
+    "Visibility",
+    "chosen_poses",
+    "chosen_touches_on",
+    "criterion",
+    "each_at",
+    "error_shares",
+    "face_grid",
+    "parameter_symbols",
+    "pose_quota",
+    "random_touches",
+    "some_touches",
+    "sphere_grid",
+    "table_poses",
+    "touch_curve",
+    "touches_to_choose_from",
+    "visibility",
+]

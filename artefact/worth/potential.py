@@ -1,0 +1,126 @@
+"""Potential terms: effects of the library that a machine may have or not, as columns of a design.
+
+Each effect's signature is brought to size one over free touches, freed of what the geometric model
+can imitate of it, and given a small prior standard deviation: touches are then worth something for
+showing it, and the less the better it is shown already.
+
+Reference:
+    DuMouchel and Jones, Technometrics 36 (1994) 37.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from twin.frames import Array
+from twin.library import proposals
+from twin.model import Effect, Tunable, columns
+from twin.record import Touches
+
+VISIBLE = 0.3
+"""Share of the length of a signature that must survive the geometric model."""
+
+_HOPELESS = 0.1  # share that survives free touches, below which no design helps
+_OF_FEATURES = ("artefact-form",)  # belong to one feature of one artefact: nothing to compare
+_DEPENDENT = 1e-8  # relative singular value below which a direction is rounding
+
+
+def library(touches: Touches) -> list[Effect]:
+    """Effects of the library that some touches could be asked about, their inner parameters set."""
+    return [
+        _tuned(effect, touches)
+        for effect in proposals(touches)
+        if effect.name.split("(")[0] not in _OF_FEATURES
+    ]
+
+
+def _tuned(effect: Effect, touches: Touches) -> Effect:
+    """An effect with its inner parameters in the middle of their grids."""
+    if not isinstance(effect, Tunable):
+        return effect
+    return effect.tuned(*(inner.grid[len(inner.grid) // 2] for inner in effect.inner(touches)))
+
+
+def parts(effects: list[Effect]) -> list[slice]:
+    """Columns of every effect among those of all."""
+    edges = np.cumsum([0, *(len(e.parameters) for e in effects)]).tolist()
+    return [slice(a, b) for a, b in pairwise(edges)]
+
+
+def freed(C: Array, W: Array) -> Array:
+    """Signatures (N, C) without what the rows of a model (N, P) can imitate of them."""
+    length = np.maximum(np.linalg.norm(W, axis=0), 1e-300)
+    U, s, _ = np.linalg.svd(W / length, full_matrices=False)
+    U = U[:, s > _DEPENDENT * s[0]]
+    left: Array = C - U @ (U.T @ C)
+    return left
+
+
+@dataclass(frozen=True, eq=False)
+class Potential:
+    """Potential terms of a design.
+
+    Attributes:
+        effects: That they stand for.
+        names: Effect of every term, (Q,).
+        mix: Terms as combinations of the effects' columns, (C, Q).
+        imitation: What the model's rows imitate of them over free touches, (R, Q).
+    """
+
+    effects: tuple[Effect, ...]
+    names: tuple[str, ...]
+    mix: Array
+    imitation: Array
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def rows(self, touches: Touches, reduced: Array) -> Array:
+        """Columns of the potential terms at some touches, (N, Q).
+
+        Args:
+            touches: The touches.
+            reduced: Rows of the model in the directions that matter, (N, R).
+        """
+        signatures = columns(list(self.effects), touches) @ self.mix
+        out: Array = signatures - reduced @ self.imitation
+        return out
+
+
+def potential(touches: Touches, reduced: Array, count: int) -> Potential:
+    """Potential terms of a machine and a model.
+
+    The prior standard deviation is such that `count` touches in which a share `VISIBLE` of the
+    signature survives take half of its variance away.
+
+    Args:
+        touches: Free touches: points anywhere, any normals.
+        reduced: Rows of the model at them in the directions that matter, whitened, (N, R).
+        count: Number of touches of the design.
+    """
+    tried = library(touches)
+    C = columns(tried, touches)
+    left, n = freed(C, reduced), len(touches)
+    effects, names, mixes = [], [], []
+    for effect, mine in zip(tried, parts(tried), strict=True):
+        whole = float(np.sum(C[:, mine] ** 2))
+        if whole <= 0.0:
+            continue
+        _, s, Vt = np.linalg.svd(left[:, mine] * np.sqrt(n / whole), full_matrices=False)
+        if np.sum(s**2) / n < _HOPELESS**2:
+            continue
+        effects.append(effect)
+        names.append(effect.name)
+        strongest = Vt[:1].T * np.sqrt(n / whole * np.sum(s**2)) / s[0]  # with the size of all
+        mixes.append(strongest)
+    sd = 1.0 / (VISIBLE * np.sqrt(count))
+    mix = np.zeros((sum(len(m) for m in mixes), len(names)))
+    row = column = 0
+    for m in mixes:
+        mix[row : row + len(m), column : column + m.shape[1]] = sd * m
+        row, column = row + len(m), column + m.shape[1]
+    signatures = columns(effects, touches) @ mix
+    length = np.maximum(np.linalg.norm(reduced, axis=0), 1e-300)
+    imitation = np.linalg.lstsq(reduced / length, signatures, rcond=_DEPENDENT)[0]
+    return Potential(tuple(effects), tuple(names), mix, imitation / length[:, None])

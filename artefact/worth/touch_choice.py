@@ -1,0 +1,253 @@
+"""Which table poses, and which touches in them, tell most on a standard that is there."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from artefact.body import Standard, Surface
+from artefact.reach import Mask, Probing, Requests, joined
+from artefact.worth.criterion import Criterion, Wishes
+from information.selection import Certificate, Quota, best_groups, heaviest, relaxed, rounded
+from twin.compute import blocks
+from twin.errors import DesignError, NotReachable
+from twin.frames import Array
+from twin.units import DEG, UM
+
+_PITCHES = (5, 9, 15)  # points each way on a face
+_CHOICE = (
+    2.0  # touches that can be made, for each that is wanted, on the coarsest grid that will do
+)
+_DRAWN = 1000  # touches looked at together
+_CROWDED = 1.6  # even shares of the touches that one table pose may have
+_EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face
+_OVERSHOOT = 6.0 * DEG  # left at the ends of a rotary travel, to approach readings from both sides
+_NEAR = 2e-3  # relative gap to which the relaxed optimum is sought
+_SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
+
+
+@dataclass(frozen=True)
+class PlacementOptions:
+    """How much is tried and how much is measured.
+
+    Attributes:
+        name: Type of the standard.
+        serial: Of the piece.
+        patches: Number of freeform patches.
+        touches: Number of touches.
+        poses: Number of table poses.
+        sites: Number of random sites to choose from.
+        noise: Standard deviation of one touch, mm.
+        criterion: What sites, poses and touches are chosen for
+        (`artefact.worth.criterion.CRITERIA`).
+        sphere_share: Part of the touches that goes to the datum spheres, at least and at most. They
+            would take two thirds if they could, but a standard of spheres is no news, and faces
+            are what a freeform standard calibrates.
+        least_on_patch: Fewest touches on a patch, as a part of its even share.
+        potential: Share of the criterion that goes to showing effects of the library.
+        draws: Drawn machines over whose sizes of errors the criterion is averaged; 0 for none.
+        tail: Share of the drawn machines, the worst, that are averaged.
+    """
+
+    name: str = "FFS"
+    serial: str = ""
+    patches: int = 10
+    touches: int = 480
+    poses: int = 30
+    sites: int = 400
+    noise: float = 1.0 * UM
+    criterion: str = "I"
+    sphere_share: tuple[float, float] = (0.15, 0.45)
+    least_on_patch: float = 0.4
+    potential: float = 0.3
+    draws: int = 0
+    tail: float = 1.0
+
+    @property
+    def wishes(self) -> Wishes:
+        """What the criterion shall be beside its name."""
+        return Wishes(self.potential, self.touches, self.draws, self.tail)
+
+
+def table_poses(aim: Criterion, wanted: int) -> Array:
+    """Table poses to choose from: a grid of rotary readings in whole degrees, (K, R), rad.
+
+    The values of each later axis are shifted from one value of the earlier ones to the next, so
+    that the whole grid holds many different readings of each.
+    """
+    chain, limits = aim.probing.chain, []
+    for name, (low, high) in zip(chain.rotary_axes, aim.rotary, strict=True):
+        travel = chain.link(name).range
+        limits.append((max(low, travel[0] + _OVERSHOOT), min(high, travel[1] - _OVERSHOOT)))
+        if limits[-1][0] > limits[-1][1]:
+            raise NotReachable(f"the limits of {name} leave no room to approach a reading")
+    if not limits:
+        return np.zeros((1, 0))
+    total = 6 * wanted
+    spans = np.array([high - low for low, high in limits])
+    weight = np.sqrt(np.maximum(spans, 1.0 * DEG))
+    counts = np.maximum(np.round(weight * (total / weight.prod()) ** (1.0 / len(spans))), 1)
+    rows: list[list[float]] = [[]]
+    for (low, high), count in zip(limits, counts.astype(int), strict=True):
+        step = (high - low) / max(count - 1, 1)
+        grown = []
+        for i, row in enumerate(rows):
+            shift = ((i * 0.618034) % 1.0 - 0.5) * step if row else 0.0
+            values = np.clip(np.linspace(low, high, count) + shift, low, high)
+            inside = np.clip(np.round(values / DEG), np.ceil(low / DEG), np.floor(high / DEG))
+            grown += [[*row, float(v) * DEG] for v in inside]
+        rows = grown
+    return np.unique(np.array(rows), axis=0)
+
+
+def face_grid(half_size: tuple[float, float], count: int) -> Array:
+    """Parameters of a regular grid over a face, away from its edges, (count^2, 2)."""
+    axes = [np.linspace(-(half - _EDGE), half - _EDGE, count) for half in half_size]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def sphere_grid(count: int) -> Array:
+    """Azimuth and elevation of directions spread evenly over the upper part of a sphere."""
+    i = np.arange(count) + 0.5
+    sine = np.sin(_SPHERE_LOWEST) + (1.0 - np.sin(_SPHERE_LOWEST)) * i / count
+    return np.stack([(i * np.pi * (3.0 - np.sqrt(5.0))) % (2.0 * np.pi), np.arcsin(sine)], axis=-1)
+
+
+def each_at(surface: Surface, uv: Array, poses: Array) -> Requests:
+    """Touches at parameters of a surface, each at every pose."""
+    n, k = len(uv), len(poses)
+    return Requests(
+        np.full(n * k, surface.name),
+        np.repeat(surface.point(uv), k, axis=0),
+        np.repeat(surface.normal(uv), k, axis=0),
+        np.tile(poses, (n, 1)),
+    )
+
+
+def touches_at(standard: Standard, poses: Array, pitch: int) -> Requests:
+    """Candidate touches on every face and sphere, `pitch` each way, at every pose."""
+    parts = [each_at(p, face_grid(p.half_size, pitch), poses) for p in standard.patches]
+    parts += [each_at(s, sphere_grid(pitch * pitch), poses) for s in standard.spheres]
+    return joined(parts)
+
+
+def clear_touches(probing: Probing, standard: Standard, wanted: Requests) -> Requests:
+    """Those of the touches that machine and probe can make."""
+    wanted = wanted[probing.is_reachable(wanted)]
+    return wanted[probing.is_clear(standard, wanted)]
+
+
+def chosen_poses(
+    aim: Criterion, standard: Standard, poses: Array, options: PlacementOptions
+) -> Array:
+    """Table poses whose touches tell most, (K, R)."""
+    tried = touches_at(standard, poses, pitch=3)
+    tried = tried[aim.probing.is_reachable(tried)]
+    tried = tried[aim.probing.has_room(standard, tried)]  # the way there is looked at later
+    if not len(tried):
+        raise NotReachable("the machine reaches no touch on the standard at any table pose")
+    seen, group = np.unique(np.round(tried.rotary, 9), axis=0, return_inverse=True)
+    take = max(4, options.touches // options.poses)
+    chosen = best_groups(aim.purpose, aim.rows(tried), group.reshape(-1), options.poses, take)
+    picked: Array = seen[sorted(chosen)]
+    return picked
+
+
+def touches_to_choose_from(
+    aim: Criterion, standard: Standard, poses: Array, options: PlacementOptions
+) -> Requests:
+    """Touches that can be made at some poses, on grids as fine as a choice among them needs."""
+    tried = clear_touches(aim.probing, standard, touches_at(standard, poses, _PITCHES[0]))
+    for pitch in _PITCHES[1:]:
+        if len(tried) >= _CHOICE * options.touches:
+            break
+        tried = clear_touches(aim.probing, standard, touches_at(standard, poses, pitch))
+    return tried
+
+
+def some_touches(
+    aim: Criterion,
+    standard: Standard,
+    poses: Array,
+    options: PlacementOptions,
+    rng: np.random.Generator,
+) -> Requests:
+    """Touches that can be made, drawn from the finest grid until a choice has enough."""
+    tried = touches_at(standard, poses, _PITCHES[-1])
+    tried = tried[aim.probing.is_reachable(tried)]
+    tried = tried[rng.permutation(len(tried))]
+    found: list[Requests] = []
+    for rows in blocks(len(tried), _DRAWN):
+        found.append(tried[rows][aim.probing.is_clear(standard, tried[rows])])
+        if sum(map(len, found)) >= _CHOICE * options.touches:
+            break
+    if sum(map(len, found)) < options.touches:
+        raise NotReachable(
+            f"{sum(map(len, found))} touches can be made on '{standard.name}', "
+            f"{options.touches} are wanted"
+        )
+    return joined(found)
+
+
+def pose_quota(tried: Requests, count: int) -> Quota:
+    """No table pose may have much more than its even share of the touches, if all can be had."""
+    pose = tried.pose
+    there = np.bincount(pose)
+    most = int(np.ceil(_CROWDED * count / len(there)))
+    while np.minimum(there, most).sum() < min(count, len(tried)):
+        most += 1
+    return Quota(pose, np.full(len(there), most))
+
+
+def shares(standard: Standard, tried: Requests, options: PlacementOptions) -> tuple[Quota, ...]:
+    """What every choice of touches keeps: of a table pose, of the spheres, of each patch.
+
+    Where fewer touches can be made than a share asks for, all of them will do; where poses are too
+    uneven for theirs, they may be more crowded.
+
+    Raises:
+        NotReachable: Too few touches can be made, whatever the shares.
+    """
+    n, patches = options.touches, len(standard.patches)
+    if len(tried) < n:
+        raise NotReachable(f"{len(tried)} touches can be made on the standard, {n} are wanted")
+    names = [*(p.name for p in standard.patches), *(s.name for s in standard.spheres)]
+    feature = np.array([names.index(f) for f in tried.feature.tolist()])
+    there = np.bincount(feature, minlength=len(names))
+    least = np.minimum(round(options.least_on_patch * n / len(names)), there)
+    least[patches:] = 0
+    on_spheres = int(there[patches:].sum())
+    low, high = (round(share * n) for share in options.sphere_share)
+    high = max(high, n - int(there[:patches].sum()))
+    low = min(low, high, on_spheres, n - int(least.sum()))
+    of_features = (
+        Quota((feature >= patches).astype(np.int64), np.array([n, high]), np.array([0, low])),
+        Quota(feature, np.full(len(names), n), least),
+    )
+    per_pose = pose_quota(tried, n)
+    while True:
+        quotas = (per_pose, *of_features)
+        try:
+            heaviest(np.zeros(len(tried)), n, quotas)
+        except DesignError:
+            if per_pose.most.min() >= n:
+                raise
+            per_pose = replace(per_pose, most=np.minimum(2 * per_pose.most, n))
+        else:
+            return quotas
+
+
+def chosen_touches_on(
+    aim: Criterion, standard: Standard, tried: Requests, options: PlacementOptions
+) -> tuple[Mask, Certificate]:
+    """Single touches, and how near they are to the best that keep the same shares.
+
+    The relaxed optimum comes first; its heaviest touches are exchanged until nothing is gained.
+
+    Returns:
+        The choice, (N,), and its certificate.
+    """
+    quotas, W, n = shares(standard, tried, options), aim.rows(tried), options.touches
+    start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
+    best = relaxed(aim.purpose, W, n, start, _NEAR, quotas)
+    choice = rounded(aim.purpose, W, best.weight, n, most=n // 2, quotas=quotas)
+    return choice.chosen, Certificate(len(W), n, choice.value, best.bound, shares=True)

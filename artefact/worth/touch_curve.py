@@ -1,0 +1,96 @@
+"""How the error that is left falls with the number of touches, on every artefact by one rule.
+
+The touches of an artefact are put into the order in which each helps most after those before it;
+beyond their number every touch is made again, in the same way. So a curve passes through the
+figures of the comparison at the designed number, and says what fewer touches, or more time on the
+machine, would buy.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.reach import Requests
+from artefact.worth.criterion import Criterion
+from information.criteria import purpose
+from information.selection import Selection, fill
+from twin.errors import DesignError
+from twin.frames import Array
+
+COUNTS = (50, 70, 100, 140, 200, 300, 400, 550, 750, 1000)
+"""Numbers of touches."""
+
+
+@dataclass(frozen=True, eq=False)
+class TouchCurve:
+    """Error left on one artefact against the number of touches.
+
+    Attributes:
+        name: Of the artefact.
+        designed: Number of touches that it was designed with.
+        counts: Numbers of touches, (K,), the designed one among them.
+        rms: Predicted root mean square of the unknown tool point deviation over the probed volume,
+            (K,), mm.
+        rms_user: The same over the user's workspace.
+    """
+
+    name: str
+    designed: int
+    counts: tuple[int, ...]
+    rms: Array
+    rms_user: Array
+
+    @property
+    def at_design(self) -> tuple[float, float]:
+        """Error left at the designed number: probed volume, user's workspace, mm."""
+        k = self.counts.index(self.designed)
+        return float(self.rms[k]), float(self.rms_user[k])
+
+
+def touch_curve(
+    aim: Criterion, name: str, touches: Requests, counts: Sequence[int] = COUNTS
+) -> TouchCurve:
+    """Error left after the best few of some touches, all of them, and each more than once.
+
+    Args:
+        aim: Machine, noise, poses that are predicted.
+        name: Of the artefact.
+        touches: That it was designed with.
+        counts: Numbers of touches to look at; the designed one is added.
+
+    Raises:
+        DesignError: No touches, or a number below one.
+    """
+    if not len(touches) or min(counts, default=1) < 1:
+        raise DesignError(f"{len(touches)} touches looked at by {list(counts)}, expected some")
+    designed = len(touches)
+    numbers = tuple(sorted({*counts, designed}))
+    areas = (aim.tip_volume, aim.tip_user)
+    rows = aim.whitened(touches)
+    predict = purpose(np.concatenate(areas), rows, aim.prior_sd)
+    W = predict.rows(rows)
+    forms = [_form(aim, tip, predict.directions) for tip in areas]
+    left = np.empty((2, len(numbers)))
+    rounds, part = np.zeros_like(forms[0]), np.empty(0)
+    selection = Selection(predict, W)
+    complete = 0  # times that all touches have been made
+    for k, count in enumerate(numbers):
+        while count > (complete + 1) * designed:
+            complete += 1
+            rounds = complete * (W.T @ W)
+            selection = Selection(predict, W)
+        fill(selection, count - complete * designed)
+        part = W[selection.chosen]
+        M = np.eye(W.shape[1]) + rounds + part.T @ part
+        inverse = np.linalg.solve(M, np.concatenate(forms, axis=1))
+        R = W.shape[1]
+        left[:, k] = [np.sqrt(np.trace(inverse[:, i * R : (i + 1) * R])) for i in range(2)]
+    return TouchCurve(name, designed, numbers, left[0], left[1])
+
+
+def _form(aim: Criterion, tip: Array, directions: Array) -> Array:
+    """Mean square of the tool point's deviation in the directions that matter, (R, R), mm^2."""
+    scaled = (tip * aim.prior_sd).reshape(-1, len(aim.prior_sd)) @ directions
+    mean: Array = scaled.T @ scaled / len(tip)
+    return mean

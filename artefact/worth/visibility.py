@@ -1,0 +1,78 @@
+"""Which effects of the library some touches could show, if the machine had them.
+
+A signature is what an effect does to the deviations along the normals. What the geometric model
+can imitate of it is taken out, by projection with every parameter of the model free; the share of
+the length that survives is all that a diagnosis can go by.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.reach import Requests
+from artefact.worth.criterion import Criterion
+from artefact.worth.potential import VISIBLE, freed, library, parts
+from twin.frames import Array
+from twin.model import Effect, columns
+
+__all__ = ["VISIBLE", "Visibility", "survival", "visibility"]
+
+
+@dataclass(frozen=True, eq=False)
+class Visibility:
+    """Effects that touches with any points and normals could show.
+
+    Attributes:
+        effects: With a survival above `VISIBLE` in the free touches.
+        hidden: Effects that no touches could tell from the geometric model.
+    """
+
+    effects: tuple[Effect, ...]
+    hidden: tuple[Effect, ...]
+
+    def shown(self, aim: Criterion, chosen: Requests) -> int:
+        """How many of the effects some touches show."""
+        return int(np.sum(self.survival_in(aim, chosen) > VISIBLE))
+
+    def survival_in(self, aim: Criterion, chosen: Requests) -> Array:
+        """Share of the length of every effect's signature that survives in some touches, (E,)."""
+        return survival(aim, list(self.effects), chosen)
+
+
+def visibility(aim: Criterion, free: Requests) -> Visibility:
+    """Effects of the library that could be seen by touches without any artefact in the way.
+
+    Args:
+        aim: Machine and geometric model.
+        free: As many random points and normals as an artefact has touches, or more.
+    """
+    touches = aim.probing.touches(free)
+    tried = library(touches)
+    left = survival(aim, tried, free)
+    return Visibility(
+        tuple(e for e, s in zip(tried, left, strict=True) if s > VISIBLE),
+        tuple(e for e, s in zip(tried, left, strict=True) if s <= VISIBLE),
+    )
+
+
+def survival(aim: Criterion, effects: list[Effect], chosen: Requests) -> Array:
+    """Share of the length of every effect's signature that the geometric model cannot imitate.
+
+    Args:
+        aim: Machine and geometric model.
+        effects: E effects of any numbers of parameters; the shares of their columns are averaged by
+            their squares.
+        chosen: The touches.
+
+    Returns:
+        Shape (E,), 0 to 1; 0 for an effect that moves nothing here.
+    """
+    touches = aim.probing.touches(chosen)
+    C = columns(effects, touches)
+    left = freed(C, aim.whitened(chosen))
+    out = np.zeros(len(effects))
+    for i, mine in enumerate(parts(effects)):
+        whole = float(np.sum(C[:, mine] ** 2))
+        if whole > 0.0:
+            out[i] = np.sqrt(np.sum(left[:, mine] ** 2) / whole)
+    return out

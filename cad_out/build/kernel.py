@@ -1,0 +1,27 @@
+"""The CAD kernel as another process: its crash becomes one clear error."""
+
+from pathlib import Path
+
+from cad_out.build.process import run_apart
+from twin.errors import NotBuildable
+
+
+def run_kernel(task: str, folder: Path, *arguments: float, timeout: float = 150.0) -> None:
+    """Run one task of `cad_out.build.worker` in a process of its own.
+
+    Args:
+        task: Name of the function.
+        folder: Through which the two processes speak.
+        arguments: Further numbers for the function.
+        timeout: After which the process is stopped, s.
+
+    Raises:
+        NotBuildable: The task refuses; or the kernel crashes, fails or takes too long.
+    """
+    ending = run_apart("cad_out.build.worker", task, folder, *arguments, timeout=timeout)
+    if ending.refusal:
+        raise NotBuildable(ending.refusal)
+    if not ending.is_good:
+        raise NotBuildable(
+            f"the CAD kernel {ending} (task '{task}'); nothing was written", exit_code=ending.code
+        )

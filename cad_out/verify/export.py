@@ -1,0 +1,69 @@
+"""From a standard to its STEP and STL files, measured before they get their names."""
+
+import json
+import shutil
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from artefact.body import Standard, write_standard
+from cad_out.build import FACTS, MESH, STANDARD, STEP, Mesh, run_kernel, write_stl
+from cad_out.verify.conformity import Conformity, measure, refuse_faults
+from twin.errors import DesignError
+
+STL = "standard.stl"
+
+
+def export_standard(standard: Standard, out_dir: str | Path, chord: float = 0.01) -> Conformity:
+    """Build the standard, write standard.step and standard.stl, and prove both against the design.
+
+    Both files are built and measured in a folder of their own beside the goal and moved there
+    together, so a refusal or a crash leaves what was there before.
+
+    Args:
+        standard: To be built; its limits are the caller's to check.
+        out_dir: Folder for the two files.
+        chord: Largest distance of the mesh from the exact faces, mm.
+
+    Returns:
+        All measured figures.
+
+    Raises:
+        NotBuildable: The kernel refuses or crashes, or a figure misses its limit.
+        DesignError: The folder cannot be written to.
+    """
+    out_dir = Path(out_dir)
+    try:
+        out_dir.mkdir(parents=True, exist_ok=True)
+        place = Path(tempfile.mkdtemp(prefix=".cad-", dir=out_dir))
+    except OSError as error:
+        raise DesignError(f"{out_dir}: cannot be written ({error.strerror})") from error
+    try:
+        conformity, _ = build_and_measure(standard, place, chord)
+        refuse_faults(standard.name, conformity)
+        for name in (STEP, STL):
+            (place / name).replace(out_dir / name)
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+    return conformity
+
+
+def build_and_measure(standard: Standard, place: Path, chord: float) -> tuple[Conformity, Mesh]:
+    """Build into an empty folder and measure; figures out of their limits are not refused here.
+
+    Args:
+        standard: To be built.
+        place: Empty folder.
+        chord: Largest distance of the mesh from the exact faces, mm.
+
+    Returns:
+        The figures, and the mesh in float64 with the feature of every triangle.
+    """
+    write_standard(place / STANDARD, standard)
+    run_kernel("build", place, chord)
+    built = json.loads((place / FACTS).read_text(encoding="utf-8"))["volume"]
+    with np.load(place / MESH) as arrays:
+        mesh = Mesh(arrays["corners"], arrays["triangles"], arrays["owner"])
+    write_stl(place / STL, mesh)
+    return measure(standard, place, place / STL, mesh.owner, built, chord), mesh

@@ -1,0 +1,158 @@
+"""What cannot be told apart: effects that explain the same touches equally well."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.evidence import EffectSet, Signatures, Sized, addition, projected, score_all
+from diagnosis.search import refined
+from twin.frames import Array
+from twin.model import Effect
+from twin.record import Touches
+
+CONFUSED = float(np.log(100.0))
+"""Log odds below which two effects count as not told apart."""
+
+WINDOW = 15.0
+"""Rivals whose evidence on the grid is this far behind are not refined."""
+
+MOST_RIVALS = 40
+
+OWN_SENSOR = 2.0
+"""Log odds in favour of a sensor that bears the letter of the axis on which it acts."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rival:
+    """An effect that explains what another one explains.
+
+    Attributes:
+        sized: With its inner parameters refined.
+        log_odds: Evidence for the named effect against this one, in natural logarithms; small or
+            negative where the run cannot tell them apart.
+        overlap: Correlation of what the two explain, 1 where the signatures coincide.
+    """
+
+    sized: Sized
+    log_odds: float
+    overlap: float
+
+    @property
+    def effect(self) -> Effect:
+        """The effect itself."""
+        return self.sized.effect
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ConfusionClass:
+    """A found effect with everything that the run cannot tell it from.
+
+    Attributes:
+        sized: The named one: most evidence, ties broken by what is usual.
+        rivals: Not told apart, most likely first.
+        told_apart: Next in line, but clearly behind.
+    """
+
+    sized: Sized
+    rivals: tuple[Rival, ...]
+    told_apart: tuple[Rival, ...]
+
+    @property
+    def effect(self) -> Effect:
+        """The named effect itself."""
+        return self.sized.effect
+
+
+def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float]:
+    """Log prior odds of effects by name, for ties alone.
+
+    Every family - a kind, and apart from it the same kind after a sensor - is as likely as every
+    other, and shares its weight among its members; a sensor is likely to tell of the axis whose
+    letter it bears.
+    """
+    family = {e.name: _family(e, touches) for e in effects}
+    labels = list(family.values())
+    return {
+        e.name: _own_sensor(e, touches) - float(np.log(labels.count(family[e.name])))
+        for e in effects
+    }
+
+
+def _arguments(effect: Effect) -> list[str]:
+    inside = effect.name.partition("(")[2].removesuffix(")")
+    return [a for a in inside.split(",") if a]
+
+
+def _family(effect: Effect, touches: Touches) -> tuple[str, bool]:
+    return effect.kind, any(a in touches.temperature for a in _arguments(effect))
+
+
+def _own_sensor(effect: Effect, touches: Touches) -> float:
+    """Bonus of a sensor that is named after the axis that it explains."""
+    words = _arguments(effect)
+    sensors = [w for w in words if w in touches.temperature]
+    axes = {w if w in touches.chain.axes else w[-1:] for w in words if w not in sensors}
+    own = any(sensor.endswith(axis) for sensor in sensors for axis in axes if axis)
+    return OWN_SENSOR if own else 0.0
+
+
+def confusion_class(
+    pool: Signatures,
+    found: Sized,
+    others: Sequence[Sized],
+    fixed: Array | None = None,
+) -> ConfusionClass:
+    """Everything that explains what a found effect explains, with the other effects in place.
+
+    Args:
+        pool: Signatures of all candidates.
+        found: The found one, refined.
+        others: The other found ones.
+        fixed: Columns that are in the model besides, (N + P, K).
+    """
+    complement = pool.complement
+    A = projected(complement, others)
+    base = EffectSet(complement, A if fixed is None else np.hstack([fixed, A]))
+    scores = score_all(base, pool)
+    top, _ = addition(base, projected(complement, [Sized(found.effect)]))
+    names = {found.effect.name} | {o.effect.name for o in others}
+    rivals = [Rival(found, 0.0, 1.0)]
+    explained = _explained(base, found)
+    for variant in _ranked(pool, scores.evidence, top - WINDOW):
+        candidate = pool.variants[variant]
+        if candidate.name in names:
+            continue
+        sized, evidence = refined(base, candidate, levels=2)
+        overlap = float(abs(explained @ _explained(base, sized)))
+        rivals.append(Rival(sized, float(top - evidence), overlap))
+    return _ordered(rivals, plausibility([r.effect for r in rivals], complement.touches))
+
+
+def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
+    """Best variant of every candidate with at least some evidence, most first."""
+    order = np.argsort(-evidence, kind="stable")
+    _, first = np.unique(pool.owner[order], return_index=True)
+    ranked = order[np.sort(first)]
+    return [int(v) for v in ranked if evidence[v] > least][:MOST_RIVALS]
+
+
+def _explained(without: EffectSet, sized: Sized) -> Array:
+    """Direction of what an effect explains beyond a set, (N + P,), of length 1."""
+    C = projected(without.complement, [sized])
+    whole = EffectSet(without.complement, np.hstack([without.A, C]))
+    difference = without.residual - whole.residual
+    return np.asarray(difference / max(float(np.linalg.norm(difference)), 1e-300))
+
+
+def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:
+    """Class headed by the likeliest, odds told against it."""
+
+    def rank(r: Rival) -> float:
+        return r.log_odds - prior[r.effect.name]
+
+    head = min(found, key=rank)
+    rest = sorted((r for r in found if r is not head), key=rank)
+    shifted = [Rival(r.sized, r.log_odds - head.log_odds, r.overlap) for r in rest]
+    close = tuple(r for r in shifted if r.log_odds < CONFUSED)
+    return ConfusionClass(head.sized, close, tuple(r for r in shifted if r.log_odds >= CONFUSED))

@@ -1,0 +1,100 @@
+"""What a run could have shown: the smallest size of every effect that would have been found."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import chdtri
+
+from diagnosis.evidence import EffectSet, Signatures
+from diagnosis.search import CHANCE
+from twin.frames import Array
+from twin.model import Effect
+
+POWER = 0.84
+"""Standard deviations of the statistic above its threshold: found in four of five runs."""
+
+INVISIBLE = 30.0
+"""Beyond so many times its expected size an effect is called invisible in these touches."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Detectable:
+    """Smallest size of one effect that these touches would have shown.
+
+    Attributes:
+        effect: The effect.
+        size: In the base unit of its first parameter, at the median of its inner parameters; None
+            where the model in use imitates the effect.
+        unit: That unit.
+        largest: Largest deviation of a touch that an effect of this size causes, mm; None as size.
+        survives: Share of its signature (as squares) that the model cannot imitate.
+    """
+
+    effect: Effect
+    size: float | None
+    unit: str
+    largest: float | None
+    survives: float
+
+
+def detectable(
+    effects: EffectSet, pool: Signatures, touches: int | None = None
+) -> tuple[Detectable, ...]:
+    """Smallest detectable size of every candidate, with the found effects in the model.
+
+    The non-centrality that passes the corrected threshold in four of five runs, over the squared
+    signature per unit of prior, averaged over the directions of the effect's parameters.
+
+    Args:
+        effects: The final set.
+        pool: Signatures of all candidates.
+        touches: Number of touches of the run, where set and pool are an even choice of them.
+    """
+    share = 1.0 if touches is None else len(pool.complement.u) / touches
+    E = effects.whiten(pool.C)
+    n_variants = len(pool.variants)
+    mean, whole = np.zeros(n_variants), np.zeros(n_variants)
+    for k, (which, cols) in pool.by_width.items():
+        own = np.einsum("kvi,kvi->vi", E[:, cols], E[:, cols])
+        diagonal = np.einsum("vii->vi", pool.gram[k])
+        mean[which] = (diagonal - own).sum(axis=1) / k
+        whole[which] = (pool.size[cols] ** 2).sum(axis=1) / k
+    needed = _needed(pool)
+    scale = share * effects.objective / max(effects.dof, 1.0)
+    with np.errstate(divide="ignore"):
+        length = np.sqrt(needed * scale / np.maximum(mean, 1e-300))
+    out = []
+    for index in range(len(pool.names)):
+        own_variants = np.flatnonzero(pool.owner == index)
+        order = own_variants[np.argsort(length[own_variants])]
+        middle = int(order[len(order) // 2])
+        survives = mean[middle] / whole[middle] if whole[middle] > 0.0 else 0.0
+        out.append(_one(pool, middle, float(length[middle]), max(float(survives), 0.0)))
+    return tuple(out)
+
+
+def _needed(pool: Signatures) -> Array:
+    """Non-centrality that every variant needs, (V,)."""
+    k = pool.width.astype(float)
+    threshold = chdtri(k, CHANCE / (pool.tries[pool.owner] * pool.tried))
+    # k + L - POWER sqrt(2 k + 4 L) = threshold, a quadratic in sqrt(2 k + 4 L)
+    root = 2.0 * POWER + np.sqrt(4.0 * POWER**2 + 4.0 * threshold - 2.0 * k)
+    return np.asarray((root**2 - 2.0 * k) / 4.0)
+
+
+def _one(pool: Signatures, variant: int, length: float, survives: float) -> Detectable:
+    """Smallest size of one candidate at one point of its grid.
+
+    Args:
+        pool: Signatures of all candidates.
+        variant: Which one.
+        length: Of its parameters, in units of their prior standard deviations.
+        survives: Share of its signature that the model cannot imitate.
+    """
+    effect = pool.variants[variant]
+    first = effect.parameters[0]
+    if not length < INVISIBLE:
+        return Detectable(effect, None, first.unit, None, survives)
+    C = pool.complement.columns([effect]) * pool.complement.u[:, None]
+    largest = length * float(np.sqrt((C**2).sum(axis=1).max()))
+    return Detectable(effect, length * first.sd, first.unit, largest, survives)

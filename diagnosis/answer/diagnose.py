@@ -1,0 +1,273 @@
+"""The diagnosis of a run: which effect the model lacks, how sure that is, what stays open."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
+from diagnosis.answer.detectable import detectable
+from diagnosis.answer.next_measurement import Plan, plan
+from diagnosis.answer.sizes import sizes
+from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
+from diagnosis.evidence import Complement, EffectSet, Progress, Sized, projected, quiet
+from diagnosis.fit import Fit, GrossErrors, Prior
+from diagnosis.residual import Region, Structure, find_structure, regions, remarks
+from diagnosis.search import (
+    LISTED,
+    MOST_SETS,
+    Round,
+    Search,
+    Task,
+    Verified,
+    rounds,
+    strongest,
+    tuned,
+)
+from twin.compute import one_blas_thread
+from twin.library import ordinary_model, proposals
+from twin.model import Effect, Model
+from twin.record import Run, counted_once
+
+DEPENDENCES = 2
+"""Patterns, one after the other, of which `depends_on` tells."""
+
+
+@one_blas_thread()
+def diagnose(
+    run: Run,
+    model: Model | None = None,
+    prior: Prior | None = None,
+    named: Sequence[Effect] = (),
+    candidates: Sequence[Effect] | None = None,
+    progress: Progress = quiet,
+    rng: np.random.Generator | None = None,
+) -> Diagnosis:
+    """Find what a model lacks.
+
+    Args:
+        run: The measurements.
+        model: To begin with; None for the ordinary geometric one.
+        prior: Of its parameters, as from a model file; None for what its effects state.
+        named: Effects that the user adds, whatever they are worth.
+        candidates: Effects that may be found; None for all of the library that make sense here.
+        progress: Called with the share done and what is being done.
+        rng: Draws the offers of a plan for the next measurement; None makes no plan.
+
+    Raises:
+        NotEnoughData: So few touches that nothing can be said.
+
+    Example:
+        ``diagnose(read_run("run.csv")).verdict`` is one of three phrases.
+    """
+    run = counted_once(run)
+    start = model or ordinary_model(run.touches.chain)
+    task = Task(run, start, prior or Prior.of_effects(start.effects), prior is not None)
+    library = proposals(run.touches) if candidates is None else list(candidates)
+    added = tuned(task, named, progress)
+    known = {e.name for e in (*start.effects, *(a.effect for a in added))}
+    library = [e for e in library if e.name not in known]
+    final = rounds(task, added, library, progress)
+    return _result(task, added, final, progress, rng)
+
+
+def _result(
+    task: Task,
+    added: tuple[Sized, ...],
+    final: Round,
+    progress: Progress,
+    rng: np.random.Generator | None,
+) -> Diagnosis:
+    """Everything that is told of the last round."""
+    classes, verified = _classes(final), {v.member.effect.name: v for v in final_tests(final)}
+    gross = final.base.gross
+    progress(0.5, "what cannot be told apart")
+    steps = _steps(task, added, final, classes, verified, gross)
+    unexplained = bool(final.nameless or final.left)
+    verdict = (
+        Verdict.UNEXPLAINED
+        if unexplained
+        else Verdict.MISSING
+        if len(steps) > 1 + len(added)
+        else Verdict.NONE
+    )
+    start = _structures(final, progress)
+    left = (*final.nameless, *final.left)
+    progress(0.8, "what the run could have shown")
+    seen = final.library.sample
+    effects = EffectSet(seen.complement, projected(seen.complement, final.effects))
+    return Diagnosis(
+        task.run,
+        verdict,
+        steps,
+        _candidates(final),
+        start,
+        left,
+        _dependences(left if unexplained else start),
+        _where(steps, verdict),
+        detectable(effects, seen, len(final.library.complement.u)),
+        _plans(task, added, classes, gross, rng),
+        _remarks(steps[-1].fit, final),
+    )
+
+
+def _remarks(fit: Fit, final: Round) -> tuple[str, ...]:
+    """What else a user should know, the search's own limit included."""
+    out = remarks(fit)
+    if not final.search.budget.is_spent:
+        return out
+    cut = (
+        f"the search was ended after {MOST_SETS:.0f} sets of effects: what is named passed every "
+        "test, but another set may explain more"
+    )
+    return (*out, cut)
+
+
+def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
+    """Where the model to begin with fails; where what is left is unexplained, the last one."""
+    first, last = steps[0].fit, steps[-1].fit
+    if verdict is Verdict.UNEXPLAINED:
+        return regions(last)
+    return regions(first, last if len(steps) > 1 else None)
+
+
+def final_tests(final: Round) -> list[Verified]:
+    """Tests of the chosen members with one another in place."""
+    return final.search.verify(final.chosen)
+
+
+def _classes(final: Round) -> list[ConfusionClass]:
+    """Confusion class of every found effect, in the order found."""
+    out = []
+    for i, effect in enumerate(final.effects):
+        others = final.effects[:i] + final.effects[i + 1 :]
+        out.append(confusion_class(final.pool, effect, others, final.fixed))
+    return out
+
+
+def _steps(
+    task: Task,
+    added: tuple[Sized, ...],
+    final: Round,
+    classes: Sequence[ConfusionClass],
+    verified: dict[str, Verified],
+    gross: GrossErrors,
+) -> tuple[Step, ...]:
+    """The error falling: the model to begin with, named effects, found effects by their worth."""
+    p_values = [verified[m.effect.name].p_value for m in final.chosen.members]
+    order = _by_worth(final)
+    heads = [classes[i].sized for i in order]
+    effects = [*added, *heads]
+    last = task.fit(effects, gross, free_inner=True)
+    first = task.fit((), gross)
+    told = sizes(task, effects, gross, Complement.of(first))
+    out = [Step(None, first, 1.0, (), None)]
+    for k, sized in enumerate(effects):
+        fit = last if k + 1 == len(effects) else task.fit(effects[: k + 1], gross)
+        i = order[k - len(added)] if k >= len(added) else -1
+        p = p_values[i] if i >= 0 else _named_probability(out[-1].fit, fit)
+        confusion = classes[i] if i >= 0 else None
+        out.append(Step(sized.effect, fit, p, told[k], confusion))
+    return tuple(out)
+
+
+def _named_probability(before: Fit, after: Fit) -> float:
+    """Probability by chance of the fall that an effect named by the user brings: no scan paid."""
+    from diagnosis.evidence import f_probability
+
+    k = max(after.solution.effective_parameters - before.solution.effective_parameters, 0.5)
+    scale = (before.noise.factor / after.noise.factor) ** 2
+    drop = before.solution.objective * scale - after.solution.objective
+    return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
+
+
+def _by_worth(final: Round) -> list[int]:
+    """Order in which the found effects explain most, one after the other."""
+    complement = final.pool.complement
+    left = list(range(len(final.effects)))
+    order: list[int] = []
+    while left:
+
+        def worth(i: int) -> float:
+            A = projected(complement, [final.effects[j] for j in (*order, i)])
+            return EffectSet(complement, A).evidence
+
+        best = max(left, key=worth)
+        order.append(best)
+        left.remove(best)
+    return order
+
+
+def _candidates(final: Round) -> tuple[Candidate, ...]:
+    """Library effects by themselves, best first, with their held-out errors."""
+    search = Search(final.pool)
+    nothing = search.chosen(())
+    scores = search.scores(nothing)
+    n = len(final.pool.complement.u)
+    out = []
+    for variant in search.ranking(nothing)[:LISTED]:
+        member = search.member(nothing, variant)
+        effects = search.chosen((member,)).effects
+        u = final.pool.complement.u
+        out.append(
+            Candidate(
+                member.effect.name,
+                member.effect.kind,
+                search.corrected(member.candidate, float(scores.p[variant])),
+                float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
+                effects.held_out.rms * float(np.sqrt(np.mean(u**2))),
+                float(effects.evidence - nothing.effects.evidence),
+            )
+        )
+    return tuple(out)
+
+
+def _structures(final: Round, progress: Progress) -> tuple[Structure, ...]:
+    """What the residual varies with at the start, each pattern freed of those before."""
+    complement = final.library.complement
+    out: list[Structure] = []
+    A = np.zeros((len(complement.residual), 0))
+    found: Sequence[Structure] = final.at_start
+    while found:
+        if not any(s.columns is not None for s in found):
+            return (*out, found[0])
+        best = strongest(found)
+        out.append(best)
+        if len(out) == DEPENDENCES or best.columns is None:
+            break
+        A = np.hstack([A, best.columns])
+        found = find_structure(EffectSet(complement, A), progress)
+    return tuple(out)
+
+
+def _dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
+    """Variables of some structures, each once, with the smallest probability."""
+    out: dict[str, Dependence] = {}
+    for structure in found:
+        for variable in structure.variables:
+            known = out.get(variable)
+            if known is None or structure.p_value < known.p_value:
+                out[variable] = Dependence(variable, structure.p_value, structure.words)
+    return tuple(out.values())
+
+
+def _plans(
+    task: Task,
+    added: tuple[Sized, ...],
+    classes: Sequence[ConfusionClass],
+    gross: GrossErrors,
+    rng: np.random.Generator | None,
+) -> tuple[Plan, ...]:
+    """For every found effect the touches that would tell it from its likeliest distinct rival."""
+    if rng is None:
+        return ()
+    heads = [c.sized for c in classes]
+    out = []
+    for i, confusion in enumerate(classes):
+        for rival in confusion.rivals:
+            instead = [*heads[:i], rival.sized, *heads[i + 1 :]]
+            fits = [task.fit((*added, *effects), gross) for effects in (heads, instead)]
+            found = plan(fits[0], fits[1], (heads[i].effect.name, rival.effect.name), rng)
+            if found is not None:
+                out.append(found)
+                break
+    return tuple(out)

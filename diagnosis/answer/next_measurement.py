@@ -1,0 +1,204 @@
+"""What to measure next: the touches that would tell two effects apart, as a run plan."""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from diagnosis.fit import BoolArray, Fit
+from twin.frames import Array
+from twin.machine import inverse_linear
+from twin.model import columns
+from twin.record import Run, Touches, linear_approach
+from twin.units import DEG
+
+WANTED = 24
+"""Touches of a plan."""
+
+OFFERED = 600
+"""Touches among which a plan is chosen."""
+
+PACE = 15.0
+"""Time from touch to touch where the run does not tell it, s."""
+
+LEAST = 1.0
+"""A plan that separates by fewer standard deviations than this is none."""
+
+DRAWN = 8
+"""Combinations drawn for every touch offered; most are out of reach."""
+
+CONE = 15.0 * DEG
+"""A feature is approached within this angle of a direction in which the run has touched it: what
+stands in the way from elsewhere only the standard's own model knows."""
+
+STEEPEST = 0.2
+"""A plan touches no surface steeper to the stylus than the run did, and none beyond this cosine."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """Touches that tell effects apart.
+
+    Attributes:
+        tells_apart: Names of the effects.
+        touches: What to touch, in the order of probing.
+        separation: Expected difference of the two explanations after these touches, in standard
+            deviations; before them it was nearly none.
+    """
+
+    tells_apart: tuple[str, str]
+    touches: Touches
+    separation: float
+
+
+def offered(run: Run, rng: np.random.Generator) -> Touches:
+    """Touches that could be made: known points of the standard, in poses and set-ups of the run.
+
+    Every offer joins a touched point with rotary readings that the run has used, in the same or in
+    another set-up, from either side of each rotary axis, at a later time; the linear axes follow.
+    Offers beyond a travel, steeper to the stylus than the run's own touches, or from where the run
+    has not touched that feature are left out.
+
+    Args:
+        run: The measurements.
+        rng: Draws the combinations.
+    """
+    t = run.touches
+    n = len(t)
+    count = DRAWN * OFFERED
+    point, pose = rng.integers(n, size=count), rng.integers(n, size=count)
+    q = t.q[pose].copy()
+    picked = replace(t[point], q=q, setup=t.setup[pose], pose=t.pose[pose])
+    target = picked.point_table + t.radius[point][:, None] * picked.normal_table
+    q = _with_linear(picked, target, q)
+    approach = linear_approach(t.chain, q, picked.normal_table)
+    for axis in t.chain.rotary_axes:
+        approach[:, t.chain.axis_index(axis)] = rng.choice([-1.0, 1.0], size=count)
+    picked = replace(picked, q=q, approach=approach)
+    keep = _within(picked) & (_facing(picked) >= max(float(_facing(t).min()), STEEPEST))
+    keep &= _known_side(t, picked)
+    return picked[np.flatnonzero(keep)[:OFFERED]]
+
+
+def _with_linear(touches: Touches, target: Array, q: Array) -> Array:
+    """Readings whose linear axes bring the ball to its target; as they are on other machines."""
+    if len(touches.chain.linear_axes) != 3:
+        return q
+    return inverse_linear(touches.chain, target, q, touches.length)
+
+
+def _within(touches: Touches) -> BoolArray:
+    """Which touches lie within the travels of all axes."""
+    limits = np.array([touches.chain.link(axis).range for axis in touches.chain.axes])
+    inside = (touches.q >= limits[:, 0]) & (touches.q <= limits[:, 1])
+    return np.asarray(inside.all(axis=1))
+
+
+def _facing(touches: Touches) -> Array:
+    """Cosine between the outward normal and the direction from the tip to the spindle, (N,)."""
+    tool = touches.chain.link_index("t")
+    return np.einsum("ni,ni->n", touches.reach.twist[:, tool, 2], touches.normal_table)
+
+
+def _from_side(touches: Touches) -> Array:
+    """Direction from the tip to the spindle as the standard sees it, (N, 3)."""
+    tool = touches.chain.link_index("t")
+    turns = np.array([s.T_table_artefact[:3, :3] for s in touches.setups])
+    return np.einsum("nij,ni->nj", turns[touches.setup], touches.reach.twist[:, tool, 2])
+
+
+def _known_side(known: Touches, offers: Touches) -> BoolArray:
+    """Offers that come to their feature from about where it was touched before, (M,)."""
+    before, now = _from_side(known), _from_side(offers)
+    out = np.zeros(len(offers), dtype=bool)
+    for feature in np.unique(offers.feature):
+        rows = np.flatnonzero(offers.feature == feature)
+        sides = np.unique(np.round(before[known.feature == feature], 6), axis=0)
+        out[rows] = (now[rows] @ sides.T).max(axis=1) >= np.cos(CONE)
+    return out
+
+
+def plan(first: Fit, second: Fit, names: tuple[str, str], rng: np.random.Generator) -> Plan | None:
+    """The touches that would separate two explanations of a run best.
+
+    Greedy: the next touch is the one at which the two fitted models differ most, measured against
+    noise and against what the uncertainty of the first could make up for; it then learns from it.
+
+    Args:
+        first: The model with one of the effects.
+        second: The model with the other one instead.
+        names: Of the two effects.
+        rng: Draws the offers.
+
+    Returns:
+        None where the run gives no touches to choose from, or they all agree.
+    """
+    run = first.run
+    offers = offered(run, rng)
+    if len(offers) < WANTED:
+        return None
+    offers = _later(run.touches, offers)
+    whole = _joined(run.touches, offers)
+    u = float(np.median(first.u))
+    own = columns(first.effects, whole)[len(run) :]
+    other = columns(second.effects, whole)[len(run) :]
+    difference = (own @ first.theta - other @ second.theta) / u
+    chosen, gained = _greedy(difference, own @ first.spread / u)
+    if gained <= LEAST**2:
+        return None
+    ordered = np.array(sorted(chosen, key=lambda i: (offers.setup[i], offers.pose[i])))
+    picked = offers[ordered]
+    pace = _pace(run.touches)
+    start = float(run.touches.time.max()) + pace
+    time = np.asarray(start + pace * np.arange(len(picked)), dtype=float)
+    return Plan(names, replace(picked, time=time), float(np.sqrt(gained)))
+
+
+def _greedy(difference: Array, spread: Array) -> tuple[list[int], float]:
+    """Choice of touches with the largest ``d^T (1 + S S^T)^-1 d``, and that value."""
+    d, S = difference.copy(), spread.copy()
+    chosen: list[int] = []
+    gained = 0.0
+    free = np.ones(len(d), dtype=bool)
+    for _ in range(min(WANTED, len(d))):
+        variance = 1.0 + np.einsum("np,np->n", S, S)
+        gain = np.where(free, d**2 / variance, -1.0)
+        i = int(np.argmax(gain))
+        gained += float(gain[i])
+        chosen.append(i)
+        free[i] = False
+        # what the touch teaches: covariance and expected difference of all others given this one
+        along = S @ S[i] / variance[i]
+        d = d - along * d[i]
+        root = 1.0 / (1.0 + np.sqrt(1.0 / variance[i]))
+        S = S - np.outer(along, S[i]) * root
+    return chosen, gained
+
+
+def _pace(touches: Touches) -> float:
+    """Usual time between touches, s."""
+    steps = np.diff(np.sort(touches.time))
+    return float(np.median(steps)) if np.any(steps > 0.0) else PACE
+
+
+def _later(touches: Touches, offers: Touches) -> Touches:
+    """Offers after the run, one after the other; sensors and spindle as at its end."""
+    pace = _pace(touches)
+    last = int(np.argmax(touches.time))
+    time = np.asarray(touches.time.max() + pace * np.arange(1, len(offers) + 1), dtype=float)
+    temperature = {k: np.full(len(offers), v[last]) for k, v in touches.temperature.items()}
+    rpm = None if touches.spindle_rpm is None else np.full(len(offers), touches.spindle_rpm[last])
+    return replace(offers, time=time, temperature=temperature, spindle_rpm=rpm)
+
+
+def _joined(first: Touches, second: Touches) -> Touches:
+    """Two records one after the other: effects that remember need what went before."""
+    merged = {}
+    for field in fields(Touches):
+        a, b = getattr(first, field.name), getattr(second, field.name)
+        if field.name in ("chain", "setups") or a is None:
+            merged[field.name] = a
+        elif field.name == "temperature":
+            merged[field.name] = {k: np.concatenate([a[k], b[k]]) for k in a}
+        else:
+            merged[field.name] = np.concatenate([a, b])
+    return Touches(**merged)

@@ -1,0 +1,160 @@
+"""Sizes of found effects as they are told: from the touches alone, inner parameters included.
+
+The fit that predicts leans on the distributions that a machine's ordinary errors are expected to
+have, and an effect that the machine can partly imitate is drawn by them. A size that is told shall
+rest on the touches: here the machine is left nearly free, every inner parameter is moved to where
+the whole model fits best, and its uncertainty is in that of the size.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from diagnosis.evidence import Complement, EffectSet, Sized, addition, projected
+from diagnosis.fit import (
+    PRIOR_DOF,
+    Fit,
+    GrossErrors,
+    Reported,
+    Settled,
+    continuous_inner,
+    fit_run,
+    reported,
+    shifted,
+    spacing,
+)
+from diagnosis.search import Task
+from twin.frames import Array
+from twin.model import Effect, Inner, Model, Tunable
+
+FREE = 10.0
+"""Factor on the stated distributions of the machine's ordinary errors: at the tenth of the stated
+weight no error of a machine within them, or a few times beyond, draws a size noticeably."""
+
+STEPS = 4
+"""Most steps of Gauss and Newton; the inner parameters come refined."""
+
+SETTLED = 0.02
+"""Step over standard uncertainty from which an inner parameter is settled."""
+
+LONGEST_STEP = 0.5
+"""In distances of the grid's points: the tangent holds no farther."""
+
+INSTANTS = 60
+"""Instants to either side that are weighed for an effect that begins at one."""
+
+
+def sizes(
+    task: Task, effects: Sequence[Sized], gross: GrossErrors, complement: Complement
+) -> tuple[tuple[Reported, ...], ...]:
+    """Parameters of every effect as a user reads them, with their uncertainties.
+
+    Args:
+        task: What is diagnosed.
+        effects: Everything that was added to the model.
+        gross: Gross errors, as they were found.
+        complement: What the model to begin with leaves.
+    """
+    if not effects:
+        return ()
+    fit, at = _settled(task, effects, gross)
+    dof = fit.solution.dof + PRIOR_DOF
+    # the scale of the noise is itself found: Student's distribution is a little wider
+    wider = float(np.sqrt(dof / max(dof - 2.0, 0.5)))
+    out = []
+    for i, effect in enumerate(at):
+        moved = [Sized(e, s.scale) for e, s in zip(at, effects, strict=True)]
+        out.append(reported(fit, effect, wider, _instants(complement, moved, i)))
+    return tuple(out)
+
+
+def _settled(
+    task: Task, effects: Sequence[Sized], gross: GrossErrors
+) -> tuple[Fit, tuple[Effect, ...]]:
+    """The fit with tangents at the inner parameters that suit it best, and the effects there."""
+    at = [s.effect for s in effects]
+    prior = task.prior if task.is_known else task.prior.widened(FREE)
+    for sized in effects:
+        prior = prior.joined(task.found_prior(sized))
+    for remaining in reversed(range(STEPS)):
+        model = Model(task.model.chain, (*task.model.effects, *at))
+        theta = fit_run(task.run, model, prior, gross=gross).theta[: len(model.parameters)]
+        fit = fit_run(task.run, model, prior, free_inner=theta, gross=gross)
+        moved = _stepped(fit, at)
+        if moved is None or not remaining:
+            break
+        at = moved
+    return fit, tuple(at)
+
+
+def _stepped(fit: Fit, effects: Sequence[Effect]) -> list[Effect] | None:
+    """Effects with their inner parameters a step further, or None where they are settled."""
+    out = list(effects)
+    names = [e.name for e in effects]
+    farthest = 0.0
+    for tangent in fit.tangents:
+        if tangent.effect.name not in names:
+            continue
+        place, i = fit.of_effect(tangent.name), names.index(tangent.effect.name)
+        effect = out[i]
+        assert isinstance(effect, Tunable)
+        inner = effect.inner(fit.run.touches)[tangent.index]
+        value = list(effect.tuning.values())[tangent.index]
+        step = float(fit.theta[place][0])
+        farthest = max(farthest, abs(step) / float(np.sqrt(fit.covariance[place, place][0, 0])))
+        longest = LONGEST_STEP * spacing(inner, value)
+        target = value + float(np.clip(step, -longest, longest))
+        target = float(np.clip(target, np.min(inner.grid), np.max(inner.grid)))
+        out[i] = shifted(effect, tangent.index, target - value)
+    return out if farthest > SETTLED else None
+
+
+def _instants(
+    complement: Complement, effects: Sequence[Sized], which: int
+) -> Mapping[int, Settled]:
+    """Mean and standard deviation of inner parameters that act by jumps, by their index.
+
+    Between two touches every instant is as good as every other; each such interval is weighed by
+    its evidence and its length.
+    """
+    effect = effects[which].effect
+    out: dict[int, Settled] = {}
+    if not isinstance(effect, Tunable):
+        return out
+    others = [s for k, s in enumerate(effects) if k != which]
+    base: EffectSet | None = None
+    for index, inner, value in continuous_inner(effect, complement.touches):
+        if inner.unit != "s" or inner.name.startswith("tau"):
+            continue
+        base = base or EffectSet(complement, projected(complement, others))
+        out[index] = _weighed(base, effect, index, _jumps(complement, inner, value))
+    return out
+
+
+def _jumps(complement: Complement, inner: Inner, value: float) -> Array:
+    """Times of touches around an instant, ascending, within the grid."""
+    times = np.unique(complement.touches.time[complement.used])
+    first = int(np.searchsorted(times, value)) - INSTANTS
+    near = times[max(first, 0) : first + 2 * INSTANTS]
+    low, high = float(np.min(inner.grid)), float(np.max(inner.grid))
+    inside = near[(near >= low) & (near <= high)]
+    return np.concatenate([[low], inside, [high]]) if len(inside) < len(near) else inside
+
+
+def _weighed(base: EffectSet, effect: Tunable, index: int, edges: Array) -> Settled:
+    """Mean and deviation of an instant over the intervals between some edges."""
+    middle, length = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    value = list(effect.tuning.values())[index]
+    evidence = np.array(
+        [
+            addition(base, projected(base.complement, [Sized(shifted(effect, index, t - value))]))[
+                0
+            ]
+            for t in middle
+        ]
+    )
+    weight = length * np.exp(evidence - evidence.max())
+    weight /= weight.sum()
+    mean = float(weight @ middle)
+    variance = float(weight @ ((middle - mean) ** 2 + length**2 / 12.0))
+    return Settled(mean, float(np.sqrt(variance)))

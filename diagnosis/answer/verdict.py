@@ -1,0 +1,118 @@
+"""Result of a diagnosis: verdict, steps in which the error falls, and what stays open."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from diagnosis.answer.ambiguity import ConfusionClass
+from diagnosis.answer.detectable import Detectable
+from diagnosis.answer.next_measurement import Plan
+from diagnosis.fit import Fit, Reported
+from diagnosis.residual import Region, Structure
+from twin.model import Effect
+from twin.record import Run
+
+
+class Verdict(Enum):
+    """What a diagnosis ends in; the values are the words of the file."""
+
+    NONE = "no missing effect"
+    MISSING = "missing effect"
+    UNEXPLAINED = "unexplained"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """The model with one effect more than the step before; the first has none.
+
+    Attributes:
+        effect: What was added, with its inner parameters; None for the model to begin with.
+        fit: The model fitted with it.
+        p_value: Probability by chance, grid and number of candidates paid for; 1 for the first.
+        reported: Its parameters as a user reads them, from the last fit.
+        confusion: What it cannot be told from; None for the first, and for effects that were named
+            by the user.
+    """
+
+    effect: Effect | None
+    fit: Fit
+    p_value: float
+    reported: tuple[Reported, ...]
+    confusion: ConfusionClass | None
+
+    @property
+    def is_named(self) -> bool:
+        """Whether the user named the effect; else the diagnosis found it."""
+        return self.effect is not None and self.confusion is None
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """What one effect of the library by itself would do for the model to begin with; mm."""
+
+    effect: str
+    kind: str
+    p_value: float
+    rms: float
+    test_rms: float
+    log_odds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Dependence:
+    """A variable on which a residual depends.
+
+    Attributes:
+        variable: Column of the run file.
+        p_value: Probability by chance.
+        words: How, in words.
+    """
+
+    variable: str
+    p_value: float
+    words: str
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """All that a run tells about what its model lacks.
+
+    Attributes:
+        run: The measurements.
+        verdict: In one of three phrases.
+        steps: The error falling, effect by effect.
+        candidates: Library effects by themselves, best first.
+        structure: What the residual of the model to begin with varies with.
+        left: What the residual of the last step varies with; empty unless unexplained.
+        depends_on: Variables of `structure`, or of `left` where the verdict is unexplained.
+        where: Regions where the same residual fails, drawn by what the found effects explain.
+        detectable: Smallest size of every effect that these touches would have shown.
+        plans: Touches that would tell confused effects apart.
+        remarks: What else a user should know, one line each.
+    """
+
+    run: Run
+    verdict: Verdict
+    steps: tuple[Step, ...]
+    candidates: tuple[Candidate, ...]
+    structure: tuple[Structure, ...]
+    left: tuple[Structure, ...]
+    depends_on: tuple[Dependence, ...]
+    where: tuple[Region, ...]
+    detectable: tuple[Detectable, ...]
+    plans: tuple[Plan, ...]
+    remarks: tuple[str, ...]
+
+    @property
+    def start(self) -> Fit:
+        """The model to begin with."""
+        return self.steps[0].fit
+
+    @property
+    def fit(self) -> Fit:
+        """The model with everything that was added."""
+        return self.steps[-1].fit
+
+    @property
+    def found(self) -> tuple[Effect, ...]:
+        """Effects that were added."""
+        return tuple(step.effect for step in self.steps if step.effect is not None)

@@ -1,0 +1,274 @@
+"""How much a set of further effects explains: objective, evidence, tests, all in one projection."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
+from scipy.special import betainc
+
+from diagnosis.evidence.signatures import Complement, IntArray, Signatures
+from diagnosis.fit import PRIOR_DOF, LeftOut, left_out
+from twin.frames import Array
+
+VISIBLE = 0.25
+"""Squared signature per unit of prior, over the noise, below which a direction of an effect's
+parameters could not be seen even at its expected size; it is not counted as a degree of freedom."""
+
+SCALES = (1.0, 4.0, 16.0)
+"""How many times larger than usual an effect may be; the likeliest factor is taken."""
+
+SMALLEST = 1e-300
+"""Probabilities are not told smaller than this."""
+
+
+def f_probability(
+    drop: Array | float, k: Array | float, rest: Array | float, dof: Array | float
+) -> Array:
+    """Probability of an F statistic at least as large: drop over k against rest over dof.
+
+    Args:
+        drop: Fall of the squared residual by k further columns.
+        k: Their number.
+        rest: Squared residual with them.
+        dof: Degrees of freedom with them.
+    """
+    rest = np.maximum(rest, 1e-300)
+    k = np.maximum(k, 1e-9)
+    x = rest / (rest + np.maximum(drop, 0.0))
+    p = betainc(0.5 * np.maximum(dof, 1.0), 0.5 * np.asarray(k), x)
+    return np.maximum(p, SMALLEST)
+
+
+@dataclass(frozen=True, eq=False)
+class EffectSet:
+    """A model with a set of further effects in it.
+
+    Attributes:
+        complement: What the model without them leaves.
+        A: Their projected columns, (N + P, K); K may be 0.
+    """
+
+    complement: Complement
+    A: Array
+
+    @cached_property
+    def _factor(self) -> Array:
+        """Lower triangle of ``A^T A + 1``, the unit matrix being the prior of the effects."""
+        G = self.A.T @ self.A + np.eye(self.A.shape[1])
+        return np.tril(cho_factor(G, lower=True)[0])
+
+    def whiten(self, B: Array) -> Array:
+        """``L^-1 A^T B``: (K, M) from columns (N + P, M)."""
+        return self.lower_solve(self.A.T @ B)
+
+    def lower_solve(self, inside: Array) -> Array:
+        """``L^-1`` times inner products with the columns, (K, M)."""
+        if len(inside) == 0:
+            return inside
+        return np.asarray(solve_triangular(self._factor, inside, lower=True, check_finite=False))
+
+    def coefficients(self, b: Array) -> Array:
+        """Parameters of the effects that fit a direction b (N + P,) best, (K,)."""
+        if self.A.shape[1] == 0:
+            return np.zeros(0)
+        return np.asarray(cho_solve((self._factor, True), self.A.T @ b, check_finite=False))
+
+    @cached_property
+    def along(self) -> Array:
+        """``L^-1 A^T r``, (K,)."""
+        return self.whiten(self.complement.residual[:, None])[:, 0]
+
+    @cached_property
+    def objective(self) -> float:
+        """Squared residual with the effects in, prior rows included."""
+        r = self.complement.residual
+        return float(r @ r - self.along @ self.along)
+
+    @cached_property
+    def log_det(self) -> float:
+        """Half of it is what the freedom of the effects costs."""
+        return float(2.0 * np.log(np.diag(self._factor)).sum()) if self.A.shape[1] else 0.0
+
+    @cached_property
+    def evidence(self) -> float:
+        """Logarithm of the evidence up to a constant; the size of the noise is integrated out."""
+        return float(log_evidence(self.complement, self.objective, self.log_det))
+
+    @cached_property
+    def dof(self) -> float:
+        """Degrees of freedom left with the effects in."""
+        return self.complement.dof - self.A.shape[1]
+
+    @cached_property
+    def phi(self) -> Array:
+        """Parameters of the effects in units of their prior, (K,)."""
+        if self.A.shape[1] == 0:
+            return np.zeros(0)
+        L = self._factor
+        return np.asarray(solve_triangular(L, self.along, lower=True, trans=1, check_finite=False))
+
+    @cached_property
+    def residual(self) -> Array:
+        """Residual with the effects in, data and prior rows, (N + P,)."""
+        return np.asarray(self.complement.residual - self.A @ self.phi)
+
+    @cached_property
+    def held_out(self) -> LeftOut:
+        """Every table pose predicted by the others, with the effects in; whitened."""
+        n = len(self.complement.u)
+        Q = self.complement.Q[:n]
+        if self.A.shape[1]:
+            # columns of the augmented basis: A L^-T is orthonormal together with its prior rows
+            extra = solve_triangular(self._factor, self.A[:n].T, lower=True, check_finite=False).T
+            Q = np.hstack([Q, extra])
+        return left_out(Q, self.residual[:n], self.complement.groups)
+
+    @cached_property
+    def held_out_log_density(self) -> float:
+        """Logarithm of the predictive density of the held-out poses up to a constant.
+
+        As in `evidence` the size of the noise is integrated out: a second effect is judged beside
+        the noise that the first one leaves, not beside that of the model without either.
+        """
+        left = self.held_out
+        return float(log_evidence(self.complement, left.squared, left.log_det))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reduced:
+    """Features freed of the model and of the effects, by inner products alone.
+
+    Attributes:
+        gram: With each other, (K, K).
+        along: With the residual, (K,).
+    """
+
+    gram: Array
+    along: Array
+
+
+def reduced(effects: EffectSet, F: Array, rows: IntArray) -> Reduced:
+    """Inner products of whitened features, with the model and the effects removed.
+
+    Args:
+        effects: Model and effects in it.
+        F: Features at some of the touches in use, zero at the others, (R, K).
+        rows: Which of the touches in use, (R,).
+    """
+    complement = effects.complement
+    B = complement.Q[rows].T @ F
+    E = effects.lower_solve(effects.A[rows].T @ F)
+    gram = F.T @ F - B.T @ B - E.T @ E
+    return Reduced(gram, F.T @ complement.residual[rows] - E.T @ effects.along)
+
+
+def log_evidence(complement: Complement, objective: Array | float, log_det: Array | float) -> Array:
+    """Logarithm of the evidence up to a constant, with a scale-free noise.
+
+    ``-(n + nu)/2 log(objective + nu) - log_det/2``: the marginal likelihood of a normal linear
+    model whose noise has an inverse chi-squared prior of nu degrees of freedom.
+    """
+    n = len(complement.u)
+    objective = np.maximum(objective, 1e-9)
+    return -0.5 * (n + PRIOR_DOF) * np.log(objective + PRIOR_DOF) - 0.5 * np.asarray(log_det)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scores:
+    """What every variant would do if it came into a set of effects.
+
+    Attributes:
+        free_drop: Fall of the squared residual over visible directions, prior aside, (V,).
+        freedom: Number of those directions, (V,).
+        evidence: Log evidence of the set with the variant, (V,).
+        scale: Factor on its usual size that gives most evidence, (V,).
+        p: Probability of such a fall by chance, one variant, no correction, (V,).
+    """
+
+    free_drop: Array
+    freedom: Array
+    evidence: Array
+    scale: Array
+    p: Array
+
+
+def score_all(effects: EffectSet, pool: Signatures, inside: Array | None = None) -> Scores:
+    """Score every variant of a pool as an addition to a set of effects.
+
+    One product of the set's columns with all signatures, then small eigenproblems of the width of
+    each variant.
+
+    Args:
+        effects: The set.
+        pool: Signatures of all candidates.
+        inside: That product, (K, M), where it is known; the touches are then not gone through.
+    """
+    E = effects.whiten(pool.C) if inside is None else effects.lower_solve(inside)
+    return _scores(effects, pool, E, pool.along - E.T @ effects.along, 1.0)
+
+
+def screen(effects: EffectSet, sample: EffectSet, pool: Signatures, along: Array) -> Scores:
+    """Score variants against a long run, with their own lengths from an even choice of touches.
+
+    What a variant has in common with the residual is counted over all touches; its length after
+    the projection, which is much more work, over the choice, and scaled up.
+
+    Args:
+        effects: The set over all touches.
+        sample: The same set over the choice.
+        pool: Signatures over the choice.
+        along: Inner product of every column with the residual of the set, all touches, (M,).
+    """
+    share = len(effects.complement.u) / len(sample.complement.u)
+    return _scores(effects, pool, sample.whiten(pool.C), along, share)
+
+
+def _scores(effects: EffectSet, pool: Signatures, E: Array, g: Array, share: float) -> Scores:
+    """Scores from inner products: E (K, M) with the set, g (M,) with its residual."""
+    count = len(pool.variants)
+    free, freedom, evidence = np.zeros(count), np.zeros(count), np.zeros(count)
+    scale = np.ones(count)
+    for k, (which, cols) in pool.by_width.items():
+        own = np.moveaxis(E[:, cols], 0, 1)  # (V_k, K, k)
+        S = share * (pool.gram[k] - np.einsum("vai,vaj->vij", own, own))
+        values, along = _principal(S, g[cols])
+        evidence[which], scale[which] = _scaled_evidence(effects, values, along)
+        seen = values > VISIBLE
+        free[which] = np.where(seen, along / np.where(seen, values, 1.0), 0.0).sum(axis=1)
+        freedom[which] = seen.sum(axis=1)
+    rest = np.maximum(effects.objective - free, 1e-9)
+    p = f_probability(free, freedom, rest, effects.dof - freedom)
+    return Scores(free, freedom, evidence, scale, np.where(freedom > 0, p, 1.0))
+
+
+def _principal(S: Array, g: Array) -> tuple[Array, Array]:
+    """Eigenvalues of S (V, k, k) and squared parts of g (V, k) along its eigenvectors."""
+    values, vectors = np.linalg.eigh(S)
+    return np.maximum(values, 0.0), np.einsum("vij,vi->vj", vectors, g) ** 2
+
+
+def _scaled_evidence(effects: EffectSet, values: Array, along: Array) -> tuple[Array, Array]:
+    """Log evidence (V,) at the likeliest scale (V,)."""
+    tried = []
+    for scale in SCALES:
+        wide = scale * scale * values
+        drop = (scale * scale * along / (1.0 + wide)).sum(axis=1)
+        log_det = effects.log_det + np.log1p(wide).sum(axis=1)
+        tried.append(log_evidence(effects.complement, effects.objective - drop, log_det))
+    best = np.argmax(tried, axis=0)
+    return np.max(tried, axis=0), np.array(SCALES)[best]
+
+
+def addition(effects: EffectSet, C: Array) -> tuple[float, float]:
+    """Log evidence of a set with one effect more, and the likeliest scale of the effect.
+
+    Args:
+        effects: The set without it.
+        C: Its projected columns at scale 1, (N + P, k).
+    """
+    E = effects.whiten(C)
+    S = C.T @ C - E.T @ E
+    g = C.T @ effects.complement.residual - E.T @ effects.along
+    evidence, scale = _scaled_evidence(effects, *_principal(S[None], g[None]))
+    return float(evidence[0]), float(scale[0])

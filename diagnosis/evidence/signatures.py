@@ -1,0 +1,259 @@
+"""Signatures of effects that are not in the model, free of all that the model can imitate."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.fit import BoolArray, Fit
+from twin.frames import Array
+from twin.model import Effect, Tunable, columns
+from twin.record import Touches
+
+IntArray = NDArray[np.int64]
+Progress = Callable[[float, str], None]
+"""Called with the share done and what is being done; only the command line shows it."""
+
+BLOCK = 256
+"""Columns that are projected at a time."""
+
+GRID_MOST = 1000
+"""Most points of the grid of one effect's inner parameters."""
+
+
+def quiet(share: float, doing: str) -> None:
+    """Progress that nobody watches."""
+
+
+@dataclass(frozen=True, eq=False)
+class Complement:
+    """What a fit leaves: the projection on it, and the residual, data and prior rows together.
+
+    Attributes:
+        touches: All of the run, since some effects remember what went before.
+        used: Which of them the fit uses, N of them.
+        u: Their standard uncertainty as found, (N,), mm.
+        Q: Basis of the model, data and prior rows, (N + P, P).
+        residual: Data and prior rows, (N + P,).
+        dof: Degrees of freedom left.
+        groups: Rows of every table pose.
+        gross: Which of all touches were left out as gross errors.
+    """
+
+    touches: Touches
+    used: BoolArray
+    u: Array
+    Q: Array
+    residual: Array
+    dof: float
+    groups: tuple[IntArray, ...]
+    gross: BoolArray
+
+    @classmethod
+    def of(cls, fit: Fit) -> "Complement":
+        """The complement of a fit."""
+        solution = fit.solution
+        Q = np.vstack([solution.Q, solution.root])
+        residual = np.concatenate([solution.residual, -solution.phi])
+        u = fit.u[fit.used]
+        gross = fit.gross.rows
+        return cls(fit.run.touches, fit.used, u, Q, residual, solution.dof, fit.groups, gross)
+
+    def thinned(self, count: int) -> "Complement":
+        """The same model fitted to an even choice of so many of the touches."""
+        n = len(self.u)
+        rows = np.unique(np.linspace(0, n - 1, min(count, n)).astype(np.int64))
+        picked = np.concatenate([rows, np.arange(n, len(self.residual))])
+        Q = np.linalg.qr(self.Q[picked])[0]
+        residual = self.residual[picked]
+        residual = residual - Q @ (Q.T @ residual)
+        used = np.zeros_like(self.used)
+        used[np.flatnonzero(self.used)[rows]] = True
+        kept = len(rows)
+        dof = kept - float((Q[:kept] ** 2).sum())
+        place = np.full(n, -1)
+        place[rows] = np.arange(kept)
+        groups = tuple(g for g in (place[k][place[k] >= 0] for k in self.groups) if len(g))
+        return replace(
+            self, used=used, u=self.u[rows], Q=Q, residual=residual, dof=dof, groups=groups
+        )
+
+    def columns(self, effects: Sequence[Effect]) -> Array:
+        """Whitened columns of effects, scaled by their prior, (N, K)."""
+        sd = np.array([p.sd for e in effects for p in e.parameters])
+        C = columns(effects, self.touches)
+        return (C if self.used.all() else C[self.used]) * sd / self.u[:, None]
+
+    def project(self, C: Array) -> Array:
+        """Columns (N, K) freed of what the model can imitate, (N + P, K)."""
+        n = len(C)
+        out = -self.Q @ (self.Q[:n].T @ C)
+        out[:n] += C
+        return out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sized:
+    """An effect, and how many times larger than usual it is taken to be.
+
+    Attributes:
+        effect: With its inner parameters.
+        scale: Factor on the prior standard deviations of its parameters.
+    """
+
+    effect: Effect
+    scale: float = 1.0
+
+
+def projected(complement: Complement, sized: Sequence[Sized]) -> Array:
+    """Projected, whitened, scaled columns of effects at their present tuning, (N + P, K)."""
+    if not sized:
+        return np.zeros((len(complement.residual), 0))
+    C = complement.columns([s.effect for s in sized])
+    scale = np.repeat([s.scale for s in sized], [len(s.effect.parameters) for s in sized])
+    return complement.project(C * scale)
+
+
+def tuned_variants(effect: Effect, touches: Touches) -> list[Effect]:
+    """The effect at every point of the grid of its inner parameters."""
+    if not isinstance(effect, Tunable):
+        return [effect]
+    grids = [np.asarray(inner.grid, dtype=float) for inner in effect.inner(touches)]
+    points = list(product(*grids))
+    step = max(1, -(-len(points) // GRID_MOST))
+    return [effect.tuned(*(float(v) for v in point)) for point in points[::step]] or [effect]
+
+
+@dataclass(frozen=True, eq=False)
+class Signatures:
+    """Projected columns of many variants, side by side.
+
+    Attributes:
+        complement: What they are projected on.
+        variants: Effects, one for every point of every grid.
+        owner: Index of the candidate that a variant belongs to, (V,).
+        names: Names of the candidates.
+        C: Projected, whitened, scaled columns, (N + P, M).
+        start: First column of every variant, (V + 1,).
+        size: Norm of every column before the projection, (M,).
+        tries: Points of its grid that every candidate was tried at, here or in a screening.
+        tried: Number of candidates that were tried altogether.
+    """
+
+    complement: Complement
+    variants: tuple[Effect, ...]
+    owner: IntArray
+    names: tuple[str, ...]
+    C: Array
+    start: IntArray
+    size: Array
+    tries: IntArray
+    tried: int
+
+    @cached_property
+    def width(self) -> IntArray:
+        """Number of columns of every variant, (V,)."""
+        return np.diff(self.start)
+
+    @cached_property
+    def by_width(self) -> dict[int, tuple[IntArray, IntArray]]:
+        """For every width k the variants (V_k,) and their columns (V_k, k)."""
+        out = {}
+        for k in np.unique(self.width):
+            which = np.flatnonzero(self.width == k)
+            out[int(k)] = (which, self.start[which][:, None] + np.arange(k))
+        return out
+
+    @cached_property
+    def gram(self) -> dict[int, Array]:
+        """For every width k the inner products (V_k, k, k) of each variant's columns."""
+        out = {}
+        for k, (which, cols) in self.by_width.items():
+            S = np.empty((len(which), k, k))
+            for i in range(k):
+                for j in range(i, k):
+                    S[:, i, j] = S[:, j, i] = _inner(self.C, cols[:, i], cols[:, j])
+            out[k] = S
+        return out
+
+    @cached_property
+    def along(self) -> Array:
+        """Inner product of every column with the residual, (M,)."""
+        return np.asarray(self.C.T @ self.complement.residual)
+
+    def columns_of(self, variant: int) -> Array:
+        """Projected columns of one variant, (N + P, k)."""
+        return self.C[:, self.start[variant] : self.start[variant + 1]]
+
+
+def _inner(C: Array, left: IntArray, right: IntArray) -> Array:
+    """Inner products of pairs of columns, in blocks."""
+    out = np.empty(len(left))
+    for start in range(0, len(left), BLOCK):
+        a, b = C[:, left[start : start + BLOCK]], C[:, right[start : start + BLOCK]]
+        out[start : start + BLOCK] = np.einsum("nv,nv->v", a, b)
+    return out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """A candidate at the points of its grid.
+
+    Attributes:
+        effect: The candidate.
+        variants: At every point that is kept.
+        tries: Points that were tried, kept or not.
+    """
+
+    effect: Effect
+    variants: tuple[Effect, ...]
+    tries: int
+
+
+def whole_grids(candidates: Sequence[Effect], touches: Touches) -> list[Grid]:
+    """Candidates at every point of their grids."""
+    variants = [tuple(tuned_variants(effect, touches)) for effect in candidates]
+    return [Grid(e, v, len(v)) for e, v in zip(candidates, variants, strict=True)]
+
+
+def blocks(variants: Sequence[Effect]) -> list[tuple[int, int]]:
+    """First and last variant of blocks of about `BLOCK` columns."""
+    width = np.cumsum([len(e.parameters) for e in variants])
+    out = []
+    first = 0
+    while first < len(variants):
+        before = int(width[first - 1]) if first else 0
+        last = max(int(np.searchsorted(width, before + BLOCK, side="right")), first + 1)
+        out.append((first, last))
+        first = last
+    return out
+
+
+def signatures(
+    complement: Complement, grids: Sequence[Grid], tried: int, progress: Progress = quiet
+) -> Signatures:
+    """Signatures of candidates at the points of their grids.
+
+    Args:
+        complement: What the fitted model leaves.
+        grids: Candidates that are not in the model.
+        tried: Number of candidates that were tried altogether, those of a screening included.
+        progress: Told after every block.
+    """
+    variants = [v for grid in grids for v in grid.variants]
+    owner = np.repeat(np.arange(len(grids)), [len(grid.variants) for grid in grids])
+    widths = [len(e.parameters) for e in variants]
+    start = np.concatenate([[0], np.cumsum(widths)]).astype(np.int64)
+    C = np.empty((len(complement.residual), int(start[-1])), order="F")
+    size = np.empty(int(start[-1]))
+    for first, last in blocks(variants):
+        raw = complement.columns(variants[first:last])
+        size[start[first] : start[last]] = np.linalg.norm(raw, axis=0)
+        C[:, start[first] : start[last]] = complement.project(raw)
+        progress(last / len(variants), "signatures of effects")
+    names = tuple(grid.effect.name for grid in grids)
+    tries = np.array([grid.tries for grid in grids], dtype=np.int64)
+    return Signatures(complement, tuple(variants), owner, names, C, start, size, tries, tried)

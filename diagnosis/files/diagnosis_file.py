@@ -1,0 +1,212 @@
+"""diagnosis.json ("diagnosis/1") and comparison.json: results for other programs."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.answer import Detectable, Diagnosis, Plan, Step
+from diagnosis.fit import file_unit
+from diagnosis.residual import Comparison, GroupResidual
+from twin.files import reading_columns, write_whole
+from twin.record import Touches
+from twin.units import UM
+
+FORMAT = "diagnosis/1"
+COMPARISON = "comparison/1"
+
+
+def diagnosis_table(result: Diagnosis) -> dict[str, Any]:
+    """Everything of `diagnosis.json`, in the units that stand in its names."""
+    return {
+        "format": FORMAT,
+        "touches": len(result.run),
+        "u_um": _um(float(np.median(result.run.u))),
+        "verdict": result.verdict.value,
+        "steps": [_step(step) for step in result.steps],
+        "candidates": [
+            {
+                "effect": c.effect,
+                "kind": c.kind,
+                "p_value": c.p_value,
+                "rms_um": _um(c.rms),
+                "test_rms_um": _um(c.test_rms),
+            }
+            for c in result.candidates
+        ],
+        "where": _where(result.where),
+        "depends_on": [{"variable": d.variable, "p_value": d.p_value} for d in result.depends_on],
+        "detectable": [_detectable(d) for d in result.detectable],
+        "next_measurement": [_plan(p) for p in result.plans],
+        "remarks": list(result.remarks),
+    }
+
+
+def write_diagnosis(path: str | Path, result: Diagnosis) -> None:
+    """Write `diagnosis.json`, whole or not at all."""
+    write_whole(path, _text(diagnosis_table(result)))
+
+
+def comparison_table(found: Comparison) -> dict[str, Any]:
+    """Everything of `comparison.json`, in the units that stand in its names."""
+    worst = found.worst
+    noise = found.fit.noise
+    return {
+        "format": COMPARISON,
+        "touches": len(found.run),
+        "u_um": _um(float(np.median(found.run.u))),
+        "measured_rms_um": _um(found.rms_measured),
+        "rms_um": _um(found.rms),
+        "chi2_ratio": _digits(found.chi2_ratio),
+        "worst": {
+            "line": int(found.run.line[worst]),
+            "residual_um": _um(float(found.residual[worst])),
+            "normalised": _digits(float(found.normalised[worst])),
+        },
+        "replicates": None
+        if noise.replicates is None
+        else {
+            "scatter_um": _um(noise.replicates * float(np.median(found.run.u))),
+            "degrees_of_freedom": noise.replicates_dof,
+        },
+        "gross_errors": [int(line) for line in found.run.line[found.fit.gross.rows]],
+        "where": _where(found.where),
+        "depends_on": [
+            {"variables": list(s.variables), "p_value": s.p_value, "words": s.words}
+            for s in found.structure
+        ],
+        "poses": [_group(g) for g in found.poses],
+        "features": [_group(g) for g in found.features],
+        "remarks": list(found.remarks),
+    }
+
+
+def write_comparison(path: str | Path, found: Comparison) -> None:
+    """Write `comparison.json`, whole or not at all."""
+    write_whole(path, _text(comparison_table(found)))
+
+
+def write_residuals(path: str | Path, found: Comparison) -> None:
+    """Write a table of every touch: measured, predicted, residual, in µm and normalised."""
+    t = found.run.touches
+    gross = found.fit.gross.rows | found.fit.gross_test_rows
+    lines = ["line,feature,setup,pose,measured_um,predicted_um,residual_um,normalised,gross_error"]
+    for i in range(len(found.run)):
+        numbers = (found.run.deviation[i], found.predicted[i], found.residual[i])
+        cells = [
+            str(found.run.line[i]),
+            str(t.feature[i]),
+            t.setups[t.setup[i]].name,
+            str(t.pose[i]),
+            *(f"{v / UM:.4f}" for v in numbers),
+            f"{found.normalised[i]:.4f}",
+            str(int(gross[i])),
+        ]
+        lines.append(",".join(cells))
+    write_whole(path, "\n".join(lines) + "\n")
+
+
+def _text(table: dict[str, Any]) -> str:
+    return json.dumps(table, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _digits(value: float) -> float:
+    """Six significant digits: more would be rounding."""
+    return float(f"{value:.6g}")
+
+
+def _um(value: float) -> float:
+    return _digits(value / UM)
+
+
+def _step(step: Step) -> dict[str, Any]:
+    """One step in which the error falls."""
+    errors = {
+        "rms_um": _um(step.fit.rms),
+        "test_rms_um": _um(step.fit.test_rms),
+        "chi2_ratio": _digits(step.fit.noise.chi2_ratio),
+    }
+    if step.effect is None:
+        return {"effect": None, **errors}
+    rivals = step.confusion.rivals if step.confusion else ()
+    return {
+        "effect": step.effect.name,
+        "kind": step.effect.kind,
+        "parameters": {r.name: _digits(r.value) for r in step.reported},
+        "uncertainty": {r.name: _digits(r.u) for r in step.reported if r.u is not None},
+        "p_value": step.p_value,
+        **errors,
+        "cannot_be_told_from": list(dict.fromkeys(r.effect.name for r in rivals)),
+    }
+
+
+def _where(found: Any) -> list[dict[str, Any]]:
+    return [
+        {
+            "region": region.conditions,
+            "mean_um": _um(region.mean),
+            "mean_u_um": _um(region.u),
+            "rms_um": _um(region.rms),
+            "touches": int(region.rows.sum()),
+        }
+        for region in found
+    ]
+
+
+def _detectable(found: Detectable) -> dict[str, Any]:
+    """Smallest detectable size of one effect.
+
+    A length has its size in `smallest_um`; any other parameter has its size in a key of its own
+    unit, and in `smallest_um` the largest deviation of a touch that it then causes. Null where the
+    model in use imitates the effect.
+    """
+    suffix, factor = file_unit(found.unit)
+    own = None if found.size is None else _digits(found.size / factor)
+    if suffix == "um":
+        return {"effect": found.effect.name, "smallest_um": own}
+    largest = None if found.largest is None else _um(found.largest)
+    return {"effect": found.effect.name, "smallest_um": largest, f"smallest_{suffix}": own}
+
+
+def _plan(plan: Plan) -> dict[str, Any]:
+    """A plan of touches, each with the columns of a run file."""
+    return {"tells_apart": list(plan.tells_apart), "touches": planned(plan.touches)}
+
+
+def planned(touches: Touches) -> list[dict[str, Any]]:
+    """Touches to be made, with the columns of a run file."""
+    names = reading_columns(touches.chain)
+    out = []
+    for i in range(len(touches)):
+        row: dict[str, Any] = {
+            "feature": str(touches.feature[i]),
+            "setup": touches.setups[touches.setup[i]].name,
+            "pose": int(touches.pose[i]),
+            "time_s": round(float(touches.time[i]), 1),
+        }
+        for axis in touches.chain.programmed_axes:
+            column, factor = names[axis]
+            row[column] = round(float(touches.reading(axis)[i]) / factor, 6)
+        row |= {f"p{c}_mm": round(float(touches.point[i, k]), 6) for k, c in enumerate("xyz")}
+        row |= {f"n{c}": round(float(touches.normal[i, k]), 9) for k, c in enumerate("xyz")}
+        row |= {f"dir{axis}": int(touches.last_move(axis)[i]) for axis in touches.chain.rotary_axes}
+        out.append(row)
+    return out
+
+
+def _group(group: GroupResidual) -> dict[str, Any]:
+    return {
+        "name": group.name,
+        "touches": group.touches,
+        "mean_um": _um(group.mean),
+        "rms_um": _um(group.rms),
+        "normalised_rms": _digits(group.normalised),
+    }
+
+
+def plan_text(plan: Plan) -> str:
+    """A plan as a table with the columns of a run file, for whoever writes the program."""
+    rows = planned(plan.touches)
+    lines = [f"# to tell {plan.tells_apart[0]} from {plan.tells_apart[1]}", ",".join(rows[0])]
+    return "\n".join([*lines, *(",".join(str(v) for v in row.values()) for row in rows)]) + "\n"

@@ -1,0 +1,67 @@
+"""identification.json: what was estimated, how sure it is, and what can never be known."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from diagnosis.answer import Proof
+from diagnosis.fit import Estimable, Fit, estimable
+from twin.files import write_whole
+from twin.units import UM, shown
+
+FORMAT = "identification/1"
+
+
+def identification(fit: Fit, known: Estimable, proofs: Sequence[Proof] = ()) -> dict[str, Any]:
+    """Everything of `identification.json` in the units that stand in its names.
+
+    Args:
+        fit: The identified model.
+        known: What it determines.
+        proofs: Comparison with simulated machines whose truth is known, if any.
+    """
+    out: dict[str, Any] = {
+        "format": FORMAT,
+        "touches": int(fit.used.sum()),
+        "gross_errors": [int(line) for line in fit.run.line[fit.gross.rows]],
+        "rms_um": fit.rms / UM,
+        "test_rms_um": fit.test_rms / UM,
+        "noise_over_stated": fit.noise.factor,
+        "parameters": known.found.parameters,
+        "rank": known.found.rank,
+        "effective_parameters": known.effective,
+        "condition_number": known.found.condition_prior,
+        "determined": [_value(d.name, d.value, d.u, d.unit) for d in known.determined],
+        "combinations": [
+            _value(c.words, c.value, c.u, c.unit) | {"prior_over_posterior": c.gain}
+            for c in known.combinations
+        ],
+        "never_seen": [f.words for f in known.freedoms],
+    }
+    if proofs:
+        out["volumetric_error"] = [
+            {
+                "before_rms_um": p.rms_before / UM,
+                "after_rms_um": p.rms_after / UM,
+                "times_smaller": p.factor,
+                "stated_u_rms_um": p.rms_u / UM,
+                "within_2u": p.covered,
+                "poses": len(p.before),
+            }
+            for p in proofs
+        ]
+    return out
+
+
+def _value(name: str, value: float, u: float, unit: str) -> dict[str, Any]:
+    label, factor = shown(unit)
+    return {"name": name, "value": value / factor, "u": u / factor, "unit": label}
+
+
+def write_identification(path: str | Path, fit: Fit, proofs: Sequence[Proof] = ()) -> Estimable:
+    """Write identification.json, whole or not at all; returns what the fit determines."""
+    known = estimable(fit)
+    text = json.dumps(identification(fit, known, proofs), indent=1, ensure_ascii=False)
+    write_whole(path, text + "\n")
+    return known

@@ -1,0 +1,201 @@
+"""Model file (TOML, "model/1"): a machine, its effects, and what was learnt of their parameters."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from pydantic import Field
+
+from diagnosis.fit import Prior, file_unit, inner_unit
+from twin.errors import BadFile, DesignError
+from twin.files import (
+    AxisTable,
+    Table,
+    WorkpieceTable,
+    check_format,
+    checked,
+    parse_toml,
+    read_text,
+)
+from twin.frames import Array
+from twin.library import parse_effect
+from twin.machine import Axis, Chain, difference, make_chain
+from twin.model import Effect, Model, Tunable
+from twin.units import DEG
+
+FORMAT = "model/1"
+
+
+class MachineEntry(Table):
+    """`[machine]`: as in a machine file."""
+
+    name: str
+    chain: str
+    axis: dict[str, AxisTable]
+    workpiece: WorkpieceTable = WorkpieceTable()
+
+
+class EffectEntry(Table):
+    """`[[effect]]`: its name, its inner parameters, and the estimates of the others."""
+
+    name: str
+    inner: dict[str, float] = Field(default_factory=dict)
+    estimate: dict[str, float]
+
+
+class SourceEntry(Table):
+    """`[source]`: what the estimates rest upon.
+
+    `revision` counts the runs that the model has learnt from, one after the other; `learnt_from`
+    has their fingerprints, so that no touch is counted twice.
+    """
+
+    run: str
+    touches: int
+    noise_um: float
+    gross_errors: list[int] = Field(default_factory=list)
+    revision: int = 1
+    learnt_from: list[str] = Field(default_factory=list)
+    made_with: str = ""
+
+
+class ModelTable(Table):
+    """The whole file."""
+
+    format: str
+    machine: MachineEntry
+    source: SourceEntry
+    effect: list[EffectEntry]
+    covariance: list[list[float]]
+
+
+@dataclass(frozen=True, eq=False)
+class SavedModel:
+    """A model with what is known of its parameters.
+
+    Attributes:
+        model: Machine and effects.
+        estimates: Of the parameters, with their covariance.
+        source: The run that they were learnt from.
+    """
+
+    model: Model
+    estimates: Prior
+    source: SourceEntry
+
+
+def parameter_keys(effect: Effect) -> list[tuple[str, float]]:
+    """Key of every linear parameter in files, and one of its unit in the base unit."""
+    out = []
+    for parameter in effect.parameters:
+        suffix, factor = file_unit(parameter.unit)
+        out.append((f"{parameter.name.replace(' ', '_')}_{suffix}", factor))
+    return out
+
+
+def inner_keys(effect: Effect, units: dict[str, str]) -> list[tuple[str, float]]:
+    """Key of every inner parameter in files, and one of its unit in the base unit."""
+    if not isinstance(effect, Tunable):
+        return []
+    out = []
+    for name in effect.tuning:
+        suffix, factor = inner_unit(name, units.get(name, "1"))
+        out.append((f"{name}{suffix}", factor))
+    return out
+
+
+def check_machine(saved: SavedModel, chain: Chain, path: str | Path) -> None:
+    """Refuse a model of another machine than the one that was measured.
+
+    Raises:
+        BadFile: Key, what the model has, what the machine of the run has.
+    """
+    found = difference(saved.model.chain, chain)
+    if found is not None:
+        key, here, there = found
+        raise BadFile(path, f"machine.{key}", here, f"{there}, as of the machine of the run")
+
+
+def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
+    """Model with its estimates.
+
+    Args:
+        path: The file.
+        known: Effects whose names the library cannot read back, such as those with a prior of a
+            project's own; others are made from their names.
+
+    Raises:
+        BadFile: File, key, what stood there, what was expected.
+    """
+    data = parse_toml(read_text(path), path)
+    check_format(data, FORMAT, path)
+    table = checked(ModelTable, data, path)
+    chain = _chain(table.machine, path)
+    by_name = {e.name: e for e in known}
+    effects, mean, factors = [], [], []
+    for i, entry in enumerate(table.effect):
+        effect = _effect(entry, chain, by_name, path, f"effect[{i}]")
+        keys = parameter_keys(effect)
+        expected = [key for key, _ in keys]
+        if list(entry.estimate) != expected:
+            found = ", ".join(entry.estimate)
+            raise BadFile(path, f"effect[{i}].estimate", found, ", ".join(expected))
+        effects.append(effect)
+        mean += [entry.estimate[key] * factor for key, factor in keys]
+        factors += [factor for _, factor in keys]
+    covariance = _covariance(table.covariance, np.array(factors), path)
+    model = Model(chain, tuple(effects))
+    return SavedModel(model, Prior.of_estimates(np.array(mean), covariance), table.source)
+
+
+def _chain(entry: MachineEntry, path: str | Path) -> Chain:
+    axes = {}
+    for name, axis in entry.axis.items():
+        factor = DEG if name[:1] in "ABC" else 1.0
+        reach = None if axis.range is None else (axis.range[0] * factor, axis.range[1] * factor)
+        axes[name] = Axis(reach, axis.point, axis.direction)
+    try:
+        return make_chain(entry.name, entry.chain, axes, entry.workpiece.origin)
+    except DesignError as error:
+        raise BadFile(path, "machine", str(error), "a machine that fits together") from error
+
+
+def _effect(
+    entry: EffectEntry, chain: Chain, known: dict[str, Effect], path: str | Path, key: str
+) -> Effect:
+    """Effect of one entry at its inner parameters."""
+    try:
+        effect = known.get(entry.name) or parse_effect(entry.name, chain)
+    except DesignError as error:
+        expected = f"a known effect ({error}); effects of your own are loaded by --effects"
+        raise BadFile(path, f"{key}.name", entry.name, expected) from error
+    if not entry.inner:
+        return effect
+    if not isinstance(effect, Tunable) or len(entry.inner) != len(effect.tuning):
+        expected = ", ".join(effect.tuning) if isinstance(effect, Tunable) else "none"
+        raise BadFile(path, f"{key}.inner", ", ".join(entry.inner), expected)
+    values = []
+    for (stored, value), name in zip(entry.inner.items(), effect.tuning, strict=True):
+        suffix = stored.removeprefix(name)
+        if suffix == stored or suffix not in _INNER_FACTORS:
+            raise BadFile(path, f"{key}.inner", stored, f"{name} with its unit")
+        values.append(value * _INNER_FACTORS[suffix])
+    return effect.tuned(*values)
+
+
+_INNER_FACTORS = {"": 1.0, "_min": 60.0, "_s": 1.0, "_mm": 1.0, "_deg": DEG}
+
+
+def _covariance(rows: list[list[float]], factors: Array, path: str | Path) -> Array:
+    """Covariance in base units from its lower triangle."""
+    n = len(factors)
+    if [len(row) for row in rows] != list(range(1, n + 1)):
+        raise BadFile(
+            path, "covariance", f"{len(rows)} rows", f"the lower triangle of {n} parameters"
+        )
+    out = np.zeros((n, n))
+    for i, row in enumerate(rows):
+        out[i, : i + 1] = row
+        out[: i + 1, i] = row
+    return np.asarray(out * np.outer(factors, factors))

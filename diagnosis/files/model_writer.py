@@ -1,0 +1,119 @@
+"""Writer of model files ("model/1"): what a fit has learnt, for another day and another run."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.files.model_file import FORMAT, SavedModel, inner_keys, parameter_keys
+from diagnosis.fit import Fit
+from twin.files import write_whole
+from twin.frames import Array
+from twin.machine import Chain
+from twin.model import Effect, Tunable
+from twin.units import DEG, UM
+
+
+def write_model(
+    path: str | Path,
+    fit: Fit,
+    run_name: str,
+    before: SavedModel | None = None,
+    made_with: str = "",
+) -> None:
+    """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
+
+    Args:
+        path: The file.
+        fit: What was learnt.
+        run_name: Name of the run file, for whoever reads the model later.
+        before: Model whose estimates the fit began with; None if it began with none.
+        made_with: Name and version of the program, for the same reader.
+    """
+    write_whole(path, model_text(fit, run_name, before, made_with))
+
+
+def model_text(
+    fit: Fit, run_name: str, before: SavedModel | None = None, made_with: str = ""
+) -> str:
+    """Text of a model file; arguments as of `write_model`."""
+    import tomli_w
+
+    theta, covariance = fit.theta, fit.covariance
+    count = len(fit.model.parameters)
+    factors: list[float] = []
+    entries = []
+    for effect in fit.model.effects:
+        keys = parameter_keys(effect)
+        start = len(factors)
+        entry: dict[str, Any] = {"name": effect.name}
+        inner = _inner_values(fit, effect)
+        if inner:
+            entry["inner"] = inner
+        values = theta[start : start + len(keys)]
+        entry["estimate"] = {key: float(v) / f for (key, f), v in zip(keys, values, strict=True)}
+        factors += [factor for _, factor in keys]
+        entries.append(entry)
+    scale = np.array(factors)
+    shown = covariance[:count, :count] / np.outer(scale, scale)
+    tables = {
+        "machine": _machine(fit.model.chain),
+        "source": _source(fit, run_name, before, made_with),
+        "effect": entries,
+    }
+    # top-level keys stand before tables in TOML, so the covariance goes before what it is about
+    return f'format = "{FORMAT}"\n' + _triangle(shown) + tomli_w.dumps(tables)
+
+
+def _source(fit: Fit, run_name: str, before: SavedModel | None, made_with: str) -> dict[str, Any]:
+    """What the estimates rest upon."""
+    earlier = before.source.learnt_from if before else []
+    return {
+        "run": run_name,
+        "touches": int(fit.used.sum()),
+        "noise_um": float(np.median(fit.u)) / UM,
+        "gross_errors": [int(line) for line in fit.run.line[fit.gross.rows]],
+        "revision": before.source.revision + 1 if before else 1,
+        "learnt_from": [*earlier, fit.run.fingerprint],
+        "made_with": made_with,
+    }
+
+
+def _inner_values(fit: Fit, effect: Effect) -> dict[str, float]:
+    """Inner parameters in the units of files."""
+    if not isinstance(effect, Tunable):
+        return {}
+    units = {p.name: p.unit for p in effect.inner(fit.run.touches)}
+    keys = inner_keys(effect, units)
+    return {k: v / f for (k, f), v in zip(keys, effect.tuning.values(), strict=True)}
+
+
+def _triangle(covariance: Array) -> str:
+    """Lower triangle of a covariance as a TOML array, a line a row."""
+    rows = (
+        "  [" + ", ".join(repr(float(v)) for v in row[: i + 1]) + "],"
+        for i, row in enumerate(covariance)
+    )
+    note = "# covariance of the estimates below: lower triangle, a row a parameter, their units\n"
+    return note + "covariance = [\n" + "\n".join(rows) + "\n]\n"
+
+
+def _machine(chain: Chain) -> dict[str, Any]:
+    """A machine as in a machine file."""
+    axes = {}
+    for link in chain.links:
+        if link.kind == "fixed":
+            continue
+        factor = DEG if link.kind == "rotary" else 1.0
+        axes[link.name] = {
+            "range": [float(v) / factor for v in link.range],
+            "point": [float(v) for v in link.point],
+            "direction": [float(v) for v in link.direction],
+        }
+    origin = [float(v) for v in chain.table_origin]
+    return {
+        "name": chain.name,
+        "chain": chain.notation,
+        "axis": axes,
+        "workpiece": {"origin": origin},
+    }

@@ -1,0 +1,36 @@
+"""Identification: the parameters of a model from a run, whatever the noise."""
+
+from diagnosis.fit.describe import Reported, Settled, file_unit, inner_unit, reported
+from diagnosis.fit.estimable import Estimable, estimable
+from diagnosis.fit.gross import GrossErrors
+from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
+from diagnosis.fit.inner import continuous_inner, shifted, spacing
+from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
+from diagnosis.fit.mixed_units import mixed_units
+from diagnosis.fit.noise import PRIOR_DOF
+from diagnosis.fit.prior import Prior
+
+__all__ = [
+    "MIN_POSES",
+    "MIN_TOUCHES",
+    "PRIOR_DOF",
+    "BoolArray",
+    "Estimable",
+    "Fit",
+    "GrossErrors",
+    "LeftOut",
+    "Prior",
+    "Reported",
+    "Settled",
+    "continuous_inner",
+    "estimable",
+    "file_unit",
+    "fit_run",
+    "inner_unit",
+    "left_out",
+    "mixed_units",
+    "reported",
+    "shifted",
+    "solve",
+    "spacing",
+]

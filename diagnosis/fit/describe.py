@@ -1,0 +1,139 @@
+"""Parameters of fitted effects as a user reads them: names with units, sizes, uncertainties."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from diagnosis.fit.identification import Fit
+from twin.frames import Array
+from twin.model import Effect, Tunable
+from twin.units import DEG, MINUTE, UM, URAD
+
+_HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
+_TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
+
+
+@dataclass(frozen=True, slots=True)
+class Reported:
+    """One number of an effect as it stands in a file.
+
+    Attributes:
+        name: With its unit: `amplitude_um`, `tau_min`.
+        value: In that unit.
+        u: Standard uncertainty, or None where the run gives none.
+        factor: One of that unit in the base unit.
+    """
+
+    name: str
+    value: float
+    u: float | None
+    factor: float
+
+
+class Settled(NamedTuple):
+    """An inner parameter with its standard uncertainty, base unit."""
+
+    value: float
+    u: float
+
+
+def file_unit(unit: str) -> tuple[str, float]:
+    """Suffix of a linear parameter in files, and one of it in the base unit.
+
+    Example:
+        >>> file_unit("mm/K")
+        ('um_per_K', 0.001)
+    """
+    if unit == "1/K":
+        return "um_per_m_K", 1e-6
+    head, _, tail = unit.partition("/")
+    label, factor = _HEADS.get(head, (head, 1.0))
+    return label + (_TAILS.get(tail, f"_per_{tail}") if tail else ""), factor
+
+
+def inner_unit(name: str, unit: str) -> tuple[str, float]:
+    """Suffix of an inner parameter in files, and one of it in the base unit.
+
+    Example:
+        >>> inner_unit("tau", "s")
+        ('_min', 60.0)
+    """
+    if unit == "s":
+        return ("_min", MINUTE) if name.startswith("tau") else ("_s", 1.0)
+    return {"mm": ("_mm", 1.0), "rad": ("_deg", DEG)}.get(unit, ("", 1.0))
+
+
+def reported(
+    fit: Fit, effect: Effect, wider: float = 1.0, settled: Mapping[int, Settled] | None = None
+) -> tuple[Reported, ...]:
+    """Inner parameters, the size, and every linear parameter of a fitted effect.
+
+    Args:
+        fit: A fit with the effect, and with the tangents of its inner parameters where their
+            uncertainty is wanted.
+        effect: As it stands in the fit.
+        wider: Factor on the uncertainties of the fit.
+        settled: Inner parameters that have no tangent, by index.
+    """
+    place = fit.of_effect(effect.name)
+    theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
+    out = list(_inner(fit, effect, wider, settled or {}))
+    if len(theta) > 1:
+        out.append(size(effect, theta, covariance))
+    for i, parameter in enumerate(effect.parameters):
+        suffix, factor = file_unit(parameter.unit)
+        name = f"{parameter.name.replace(' ', '_')}_{suffix}"
+        u = float(np.sqrt(covariance[i, i]))
+        out.append(Reported(name, float(theta[i]) / factor, u / factor, factor))
+    return tuple(out)
+
+
+def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
+    """Length of those parameters that share the unit of the first, with its uncertainty.
+
+    Of a sine and a cosine it is the amplitude; of a displacement its length. Noise across a vector
+    makes it longer, ``E|v|^2 = |v_true|^2 + tr C_across``: that is taken off, three quarters of the
+    square at most, and its own scatter ``tr C_across^2 / (2 |v|^2)`` is in the uncertainty.
+
+    Reference:
+        Gudbjartsson and Patz, Magnetic Resonance in Medicine 34 (1995) 910 (Rician bias).
+    """
+    units = [p.unit for p in effect.parameters]
+    same = np.array([unit == units[0] for unit in units])
+    part, C = theta[same], covariance[np.ix_(same, same)]
+    squared = max(float(part @ part), 1e-300)
+    direction = part / np.sqrt(squared)
+    away = np.eye(len(part)) - np.outer(direction, direction)
+    across = away @ C @ away
+    length = np.sqrt(max(squared - float(np.trace(across)), 0.25 * squared))
+    variance = direction @ C @ direction + float((across**2).sum()) / (2.0 * squared)
+    u = float(np.sqrt(max(variance, 0.0)))
+    suffix, factor = file_unit(units[0])
+    return Reported(f"amplitude_{suffix}", float(length) / factor, u / factor, factor)
+
+
+def _inner(
+    fit: Fit, effect: Effect, wider: float, settled: Mapping[int, Settled]
+) -> Sequence[Reported]:
+    """Inner parameters with the uncertainty that their tangents give."""
+    if not isinstance(effect, Tunable):
+        return []
+    described = {p.name: p.unit for p in effect.inner(fit.run.touches)}
+    u = {
+        tangent.index: float(np.sqrt(fit.covariance[place, place][0, 0])) * wider
+        for tangent in fit.tangents
+        if tangent.effect.name == effect.name
+        for place in [fit.of_effect(tangent.name)]
+    }
+    out = []
+    for i, (name, value) in enumerate(effect.tuning.items()):
+        suffix, factor = inner_unit(name, described.get(name, "1"))
+        value, own = settled.get(i, (value, u.get(i)))
+        out.append(
+            Reported(
+                f"{name}{suffix}", value / factor, None if own is None else own / factor, factor
+            )
+        )
+    return out

@@ -1,0 +1,127 @@
+"""What a run determines: combinations of parameters, single parameters, and what it never shows."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from diagnosis.fit.identification import Fit
+from information.identifiability import Freedom, Identifiability, combinations, identifiability
+from twin.frames import Array
+from twin.model import columns
+
+DETERMINED = 10.0
+"""A parameter counts as determined when the run cuts its standard deviation by this factor."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Combination:
+    """A combination of parameters that the run determines by itself.
+
+    ``value = sum_k weight_k theta_k``, scaled so that the leading parameter has weight 1, in whose
+    unit the value is.
+
+    Attributes:
+        words: Its dominant parameters, the leading one first.
+        value: Estimate, base unit of the leading parameter.
+        u: Standard uncertainty of the value.
+        gain: Prior over posterior standard deviation.
+        unit: Base unit of the leading parameter.
+        weights: Weight of every parameter, (P,).
+    """
+
+    words: str
+    value: float
+    u: float
+    gain: float
+    unit: str
+    weights: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Determined:
+    """A parameter that the run determines alone; base units."""
+
+    name: str
+    value: float
+    u: float
+    prior_sd: float
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Estimable:
+    """What a fit can and cannot say.
+
+    Attributes:
+        fit: The fit.
+        rows: Columns of the touches in use over their noise, times the prior's standard deviations.
+        effective: Number of parameters that the data rather than the prior decide.
+        combinations: Of the machine's parameters, best determined first.
+        determined: Parameters that are determined by themselves, best first.
+    """
+
+    fit: Fit
+    rows: Array
+    effective: float
+    combinations: tuple[Combination, ...]
+    determined: tuple[Determined, ...]
+
+    @cached_property
+    def found(self) -> Identifiability:
+        """Rank, condition and gauge freedoms of the touches in use, without any prior."""
+        fit = self.fit
+        return identifiability(self.rows, fit.prior.sd, fit.names, fit.parameters, fit.model.chain)
+
+    @property
+    def freedoms(self) -> tuple[Freedom, ...]:
+        """What no touch of this run shows; the prior keeps it near its mean."""
+        return self.found.freedoms
+
+
+def estimable(fit: Fit) -> Estimable:
+    """Eigen-directions of posterior against prior, single parameters, and gauge freedoms.
+
+    The combinations are those of the machine, with the set-ups of the standard free: rows are first
+    freed of what a set-up can imitate.
+
+    Args:
+        fit: Any fit; its rows in use count, and of its prior the standard deviations.
+    """
+    W = columns(fit.effects, fit.run.touches)[fit.used] * fit.prior.sd / fit.u[fit.used, None]
+    return Estimable(
+        fit,
+        W,
+        fit.solution.effective_parameters,
+        _combinations(fit, W),
+        _determined(fit),
+    )
+
+
+def _combinations(fit: Fit, W: Array) -> tuple[Combination, ...]:
+    """Combinations of the machine's parameters with their values in this fit."""
+    free = range(len(fit.model.parameters), len(fit.prior))
+    units = [p.unit for _, p in fit.parameters]
+    return tuple(
+        Combination(
+            c.words,
+            float(c.weights @ fit.theta),
+            float(np.linalg.norm(fit.spread.T @ c.weights)),
+            c.gain,
+            c.unit,
+            c.weights,
+        )
+        for c in combinations(W, fit.prior.sd, fit.names, units, free)
+    )
+
+
+def _determined(fit: Fit) -> tuple[Determined, ...]:
+    """Single parameters whose uncertainty the run cuts tenfold, the most certain first."""
+    sd, u, theta = fit.prior.sd, np.sqrt(np.diag(fit.covariance)), fit.theta
+    order = [k for k in np.argsort(u / sd) if u[k] * DETERMINED < sd[k]]
+    return tuple(
+        Determined(
+            fit.names[k], float(theta[k]), float(u[k]), float(sd[k]), fit.parameters[k][1].unit
+        )
+        for k in order
+    )

@@ -1,0 +1,241 @@
+"""Identification: the parameters of a model from a run, with a prior, whatever the noise."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from diagnosis.fit.gross import GrossErrors, find_gross
+from diagnosis.fit.inner import Tangent, tangents
+from diagnosis.fit.linear import BoolArray, LeftOut, Solution, left_out, solve
+from diagnosis.fit.noise import Noise, noise_factor, replicate_factor
+from diagnosis.fit.prior import Prior
+from twin.effects import setup_errors
+from twin.errors import NotEnoughData
+from twin.frames import Array
+from twin.model import Effect, Model, Parameter, columns
+from twin.record import Run
+
+PRIOR_EXCEEDED = 2.0
+"""Mean squared parameter over its prior variance from which the machine is called worse than its
+stated distributions, and the prior is widened."""
+
+PASSES = 5
+SETTLED = 0.005
+"""Passes of a fit, until the noise that it finds is the noise that it weights with."""
+
+MIN_POSES = 4
+BLOCKS = 10
+"""With fewer table poses than that, held out are so many blocks of touches one after the other."""
+
+PASSES = 5
+"""Most passes until the gross errors stay what they are."""
+
+MIN_TOUCHES = 8
+"""Fewer touches than this do not even place a standard and leave something to judge it by."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A model fitted to a run.
+
+    Parameters stand in the order: effects of the model, set-ups, tangents of inner parameters.
+
+    Attributes:
+        run: The measurements.
+        model: Machine and effects.
+        setups: The free set-ups of the standard.
+        tangents: Displacements of inner parameters that were left free.
+        prior: Of all parameters, as it was used.
+        X: Columns of all rows times the root of the prior over the noise, (N, P).
+        y: Deviations over the noise, less what the prior's mean predicts, all rows, (N,).
+        used: Rows that the estimates rest upon, (N,): not held out, no gross error.
+        solution: The fit to those rows.
+        gross: Test of every touch for gross errors.
+        noise: What the noise is, against what is stated.
+        widened: Factor by which the prior of the machine was widened, 1 unless it was exceeded.
+    """
+
+    run: Run
+    model: Model
+    setups: tuple[Effect, ...]
+    tangents: tuple[Tangent, ...]
+    prior: Prior
+    X: Array
+    y: Array
+    used: BoolArray
+    solution: Solution
+    gross: GrossErrors
+    noise: Noise
+    widened: float = 1.0
+
+    @cached_property
+    def effects(self) -> tuple[Effect, ...]:
+        """Everything with parameters in this fit."""
+        return (*self.model.effects, *self.setups, *self.tangents)
+
+    @cached_property
+    def parameters(self) -> tuple[tuple[Effect, Parameter], ...]:
+        """Every parameter with its effect."""
+        return tuple((e, p) for e in self.effects for p in e.parameters)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """`effect: parameter`, or the effect alone where it has one parameter."""
+        return Model(self.model.chain, self.effects).names
+
+    @property
+    def theta(self) -> Array:
+        """Estimates, (P,), base units."""
+        return self.prior.mean + self.prior.root @ self.solution.phi
+
+    @cached_property
+    def spread(self) -> Array:
+        """Root of the covariance of the estimates, (P, P), base units."""
+        return self.prior.root @ self.solution.root
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Covariance of the estimates, (P, P), base units."""
+        return self.spread @ self.spread.T
+
+    @property
+    def u(self) -> Array:
+        """Standard uncertainty of every touch as found, (N,), mm."""
+        return self.run.u * self.noise.factor
+
+    @cached_property
+    def residual(self) -> Array:
+        """Measured minus predicted, all rows, (N,), mm."""
+        return (self.y - self.X @ self.solution.phi) * self.u
+
+    @property
+    def rms(self) -> float:
+        """Root mean square residual of the rows used, mm."""
+        return float(np.sqrt(np.mean(self.residual[self.used] ** 2)))
+
+    @cached_property
+    def test_rows(self) -> BoolArray:
+        """Rows that the file marks as held out, without gross errors, (N,)."""
+        return (self.run.split == "test") & ~self.gross_test_rows
+
+    @cached_property
+    def gross_test_rows(self) -> BoolArray:
+        """Held-out rows that no fit of this run predicts, as gross errors are, (N,)."""
+        return (self.run.split == "test") & (np.abs(self.gross.score) > self.gross.limit)
+
+    @cached_property
+    def groups(self) -> tuple[NDArray[np.int64], ...]:
+        """Rows of the fit, by numbers within it, of every table pose in every set-up.
+
+        With fewer than `MIN_POSES` poses blocks of touches in the order of probing instead.
+        """
+        t = self.run.touches
+        key = np.column_stack([t.setup, t.pose])[self.used]
+        label = np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
+        if label.max() + 1 < MIN_POSES:
+            return tuple(np.array_split(np.arange(len(label)), min(BLOCKS, len(label))))
+        return tuple(np.flatnonzero(label == k) for k in range(label.max() + 1))
+
+    @cached_property
+    def held_out(self) -> LeftOut:
+        """Every pose predicted by a fit to the other poses; whitened."""
+        return left_out(self.solution.Q, self.solution.residual, self.groups)
+
+    @cached_property
+    def test_rms(self) -> float:
+        """Root mean square error of held-out touches, mm, freed of the prediction's own uncertainty.
+
+        The errors are weighted by how much larger than the noise they must be, since the parameters
+        are uncertain where a pose is missing; a right model gives the noise itself. Held out are
+        the rows that the file marks `test`, each by itself, else one pose after the other.
+        """  # noqa: E501
+        if self.test_rows.any():
+            spread = (self.solution.spread(self.X[self.test_rows]) ** 2).sum(axis=1)
+            error = self.residual[self.test_rows] / np.sqrt(1.0 + spread)
+            return float(np.sqrt(np.mean(error**2)))
+        return self.held_out.rms * float(np.sqrt(np.mean(self.u[self.used] ** 2)))
+
+    def of_effect(self, name: str) -> slice:
+        """Places of one effect's parameters; raises KeyError."""
+        start = 0
+        for effect in self.effects:
+            count = len(effect.parameters)
+            if effect.name == name:
+                return slice(start, start + count)
+            start += count
+        raise KeyError(name)
+
+
+def fit_run(
+    run: Run,
+    model: Model,
+    prior: Prior | None = None,
+    free_inner: Array | None = None,
+    gross: GrossErrors | None = None,
+) -> Fit:
+    """Fit a model and the set-ups of the standard to the rows of a run that are not held out.
+
+    The first pass finds the gross errors, the size of the noise and whether the machine exceeds its
+    prior; the second weights with what was found, and more follow while the gross errors change.
+
+    Args:
+        run: The measurements.
+        model: Machine and effects.
+        prior: Of the model's parameters; None for what its effects state.
+        free_inner: Linear parameters of the model, at which tangents of its inner parameters are
+            added to the fit; None leaves the inner parameters where they are.
+        gross: Gross errors found before, to keep; None looks for them.
+
+    Raises:
+        NotEnoughData: So few touches that nothing can be said.
+    """
+    train = run.split != "test"
+    if int(train.sum()) < MIN_TOUCHES:
+        raise NotEnoughData(
+            f"{int(train.sum())} touches, expected at least {MIN_TOUCHES}: fewer cannot even place "
+            "the standard; add touches"
+        )
+    machine = prior or Prior.of_effects(model.effects)
+    setups = setup_errors(run.touches)
+    moved = () if free_inner is None else tuple(tangents(model, run.touches, free_inner))
+    A = columns((*model.effects, *setups, *moved), run.touches) / run.u[:, None]
+    y = run.deviation / run.u
+    free = Prior.of_effects((*setups, *moved))
+    factor, widened = 1.0, 1.0
+    for remaining in reversed(range(PASSES)):
+        belief = machine.widened(widened).joined(free)
+        X, rest = A @ belief.root / factor, (y - A @ belief.mean) / factor
+        solution, found = _solved(X, rest, train, gross)
+        chi2 = float(solution.residual @ solution.residual) * factor**2
+        better = noise_factor(chi2, solution.dof)
+        if abs(better / factor - 1.0) < SETTLED or not remaining:
+            break
+        factor, widened = better, max(widened, _widened(solution, len(machine)) * widened)
+    used = train & ~found.rows
+    noise = _noise(run, solution, (rest - X @ solution.phi) * factor, used, factor)
+    return Fit(run, model, setups, moved, belief, X, rest, used, solution, found, noise, widened)
+
+
+def _noise(run: Run, solution: Solution, z: Array, used: BoolArray, factor: float) -> Noise:
+    """Noise of a fit; z are its residuals over the stated uncertainty, all rows, (N,)."""
+    ratio = float(z[used] @ z[used]) / max(solution.dof, 1e-9)
+    return Noise(factor, solution.dof, ratio, *replicate_factor(run, z, used))
+
+
+def _solved(
+    X: Array, y: Array, train: BoolArray, gross: GrossErrors | None
+) -> tuple[Solution, GrossErrors]:
+    """Fit with gross errors looked for, or kept as they were found before."""
+    if gross is None:
+        return find_gross(X, y, train)
+    used = train & ~gross.rows
+    return solve(X[used], y[used]), gross
+
+
+def _widened(solution: Solution, machine: int) -> float:
+    """How much wider the prior of the machine must be for its own parameters to be likely."""
+    decided = 1.0 - (solution.root[:machine] ** 2).sum(axis=1)
+    ratio = float(solution.phi[:machine] @ solution.phi[:machine]) / max(float(decided.sum()), 1.0)
+    return float(np.sqrt(ratio)) if ratio > PRIOR_EXCEEDED else 1.0

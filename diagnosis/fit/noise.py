@@ -1,0 +1,78 @@
+"""How large the noise really is, against what the run file states."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.fit.linear import BoolArray
+from twin.frames import Array
+from twin.record import Run
+
+PRIOR_DOF = 4.0
+"""Weight of the stated uncertainty, in degrees of freedom: it decides where touches are few."""
+
+SAME_PLACE = 0.05
+"""Touches whose calibrated points lie within this (mm) in one pose are replicates."""
+
+WRONG_BY = 1.96
+"""Standard deviations between stated and found noise from which the statement is called wrong."""
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Noise of a fit in units of the stated uncertainty.
+
+    Attributes:
+        factor: Standard deviation of the noise over the stated one.
+        dof: Degrees of freedom that it rests upon.
+        chi2_ratio: Weighted squared residual per degree of freedom, stated uncertainty.
+        replicates: The factor from replicates alone, or None where there are none.
+        replicates_dof: Degrees of freedom of the replicates.
+    """
+
+    factor: float
+    dof: float
+    chi2_ratio: float
+    replicates: float | None = None
+    replicates_dof: int = 0
+
+    @property
+    def is_wrongly_stated(self) -> bool:
+        """Whether the noise differs from the stated one by more than chance."""
+        spread = (0.5 / max(self.dof, 1.0)) ** 0.5
+        return abs(self.factor - 1.0) > max(WRONG_BY * spread * self.factor, 0.05)
+
+
+def noise_factor(chi2: float, dof: float) -> float:
+    """Noise over stated noise from a residual, with the statement as `PRIOR_DOF` observations."""
+    return float(np.sqrt((chi2 + PRIOR_DOF) / (max(dof, 0.0) + PRIOR_DOF)))
+
+
+def replicate_groups(run: Run, rows: BoolArray) -> np.ndarray:
+    """Number of the group of replicates of every row, (N,): same place, pose and last motions.
+
+    Rows outside `rows` get -1.
+    """
+    t = run.touches
+    cells = np.round(t.point / SAME_PLACE).astype(np.int64)
+    key = np.column_stack([cells, t.setup, t.pose, t.approach.astype(np.int64)])
+    group = np.full(len(run), -1)
+    group[rows] = np.unique(key[rows], axis=0, return_inverse=True)[1].reshape(-1)
+    return group
+
+
+def replicate_factor(run: Run, z: Array, rows: BoolArray) -> tuple[float | None, int]:
+    """Noise over stated noise from replicates alone, with its degrees of freedom.
+
+    Args:
+        run: The measurements.
+        z: Residuals over the stated uncertainty, (N,); the model removes the little that replicates
+            differ in.
+        rows: Rows to use, (N,).
+    """
+    group = replicate_groups(run, rows)[rows]
+    count = np.bincount(group)
+    mean = np.bincount(group, z[rows]) / np.maximum(count, 1)
+    squares = float(((z[rows] - mean[group]) ** 2).sum())
+    dof = int((count[count > 1] - 1).sum())
+    return (float(np.sqrt(squares / dof)), dof) if dof > 0 else (None, 0)

@@ -1,0 +1,54 @@
+"""What is believed of a model's parameters before a run: distributions, or an earlier fit."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from twin.frames import Array
+from twin.model import Effect
+
+
+@dataclass(frozen=True, eq=False)
+class Prior:
+    """Normal distribution of P parameters, ``theta = mean + root phi`` with unit normal phi.
+
+    Attributes:
+        mean: Shape (P,), base units.
+        root: Shape (P, P), any root of the covariance: ``covariance = root root^T``.
+    """
+
+    mean: Array
+    root: Array
+
+    @classmethod
+    def of_effects(cls, effects: Sequence[Effect]) -> "Prior":
+        """Zero on average, independent, with the standard deviations that the effects state."""
+        sd = np.array([p.sd for e in effects for p in e.parameters])
+        return cls(np.zeros(len(sd)), np.diag(sd))
+
+    @classmethod
+    def of_estimates(cls, mean: Array, covariance: Array) -> "Prior":
+        """An earlier fit; a covariance that rounding has left slightly indefinite is mended."""
+        sd = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+        values, vectors = np.linalg.eigh(covariance / np.outer(sd, sd))
+        root = vectors * np.sqrt(np.maximum(values, 1e-14))
+        return cls(np.array(mean, dtype=float), sd[:, None] * root)
+
+    def __len__(self) -> int:
+        return len(self.mean)
+
+    @property
+    def sd(self) -> Array:
+        """Standard deviation of every parameter, (P,)."""
+        return np.sqrt(np.einsum("pk,pk->p", self.root, self.root))
+
+    def widened(self, factor: float) -> "Prior":
+        """The same belief, held with less confidence."""
+        return Prior(self.mean, factor * self.root)
+
+    def joined(self, other: "Prior") -> "Prior":
+        """Both sets of parameters, independent of one another."""
+        root = block_diag(self.root, other.root)
+        return Prior(np.concatenate([self.mean, other.mean]), root)

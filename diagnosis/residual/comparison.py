@@ -1,0 +1,181 @@
+"""Measurements against a model: residuals, what they vary with, and where the model fails."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from diagnosis.evidence import Complement, EffectSet, Progress, quiet
+from diagnosis.fit import BoolArray, Fit, GrossErrors, Prior, fit_run, solve
+from diagnosis.residual.regions import Region, regions
+from diagnosis.residual.remarks import remarks
+from diagnosis.residual.structure import Structure, find_structure
+from twin.compute import one_blas_thread
+from twin.frames import Array
+from twin.model import Model
+from twin.record import Run, counted_once
+
+
+@dataclass(frozen=True, slots=True)
+class GroupResidual:
+    """Residuals of the touches of one table pose, or on one feature.
+
+    Attributes:
+        name: `setup a, pose 3`, or the feature.
+        touches: Their number.
+        mean: Mean residual, mm.
+        rms: Root mean square residual, mm.
+        normalised: Root mean square over the standard uncertainty.
+    """
+
+    name: str
+    touches: int
+    mean: float
+    rms: float
+    normalised: float
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """A run against a model.
+
+    Attributes:
+        fit: The model on this run: with a model from a file its machine is as it was estimated
+            before, and only the set-ups of the standard are fitted; else all is.
+        is_prediction: Whether the machine was known before this run.
+        u: Standard uncertainty of the difference of every touch, (N,), mm: of the touch as stated,
+            and of the prediction where it was made without this run.
+        structure: What the residual varies with, the most certain first.
+        where: Regions where the model fails.
+        remarks: What else a user should know, one line each.
+    """
+
+    fit: Fit
+    is_prediction: bool
+    u: Array
+    structure: tuple[Structure, ...]
+    where: tuple[Region, ...]
+    remarks: tuple[str, ...]
+
+    @property
+    def run(self) -> Run:
+        """The measurements."""
+        return self.fit.run
+
+    @property
+    def residual(self) -> Array:
+        """Measured minus predicted, (N,), mm; gross errors included."""
+        return self.fit.residual
+
+    @property
+    def normalised(self) -> Array:
+        """Residuals over their standard uncertainty, (N,)."""
+        return self.residual / self.u
+
+    @property
+    def predicted(self) -> Array:
+        """Deviation that the model predicts, (N,), mm."""
+        return self.run.deviation - self.residual
+
+    @property
+    def counted(self) -> BoolArray:
+        """Rows that figures are told of: all but gross errors, (N,)."""
+        return ~(self.fit.gross.rows | self.fit.gross_test_rows)
+
+    @cached_property
+    def rms(self) -> float:
+        """Root mean square residual, mm."""
+        return float(np.sqrt(np.mean(self.residual[self.counted] ** 2)))
+
+    @property
+    def rms_measured(self) -> float:
+        """Root mean square of the measured deviations, mm: what there was to predict."""
+        return float(np.sqrt(np.mean(self.run.deviation[self.counted] ** 2)))
+
+    @property
+    def worst(self) -> int:
+        """Row of the largest normalised residual among those counted."""
+        return int(np.argmax(np.abs(self.normalised) * self.counted))
+
+    @property
+    def chi2_ratio(self) -> float:
+        """Weighted squared residual per degree of freedom."""
+        z = self.normalised[self.counted]
+        return float(z @ z) / max(float(len(z)) - self.fit.solution.effective_parameters, 1e-9)
+
+    @property
+    def poses(self) -> tuple[GroupResidual, ...]:
+        """Residuals by table pose, in the order of probing."""
+        t = self.run.touches
+        names = np.array([s.name for s in t.setups])[t.setup]
+        labels = np.char.add(np.char.add(names, ", pose "), t.pose.astype(str))
+        return self._grouped(np.char.add("setup ", labels))
+
+    @property
+    def features(self) -> tuple[GroupResidual, ...]:
+        """Residuals by feature of the standard."""
+        return self._grouped(self.run.touches.feature)
+
+    def _grouped(self, labels: np.ndarray) -> tuple[GroupResidual, ...]:
+        out = []
+        for name in dict.fromkeys(labels[self.counted]):
+            rows = self.counted & (labels == name)
+            r, z = self.residual[rows], self.normalised[rows]
+            rms, normalised = np.sqrt(np.mean(r**2)), np.sqrt(np.mean(z**2))
+            out.append(
+                GroupResidual(
+                    str(name), int(rows.sum()), float(r.mean()), float(rms), float(normalised)
+                )
+            )
+        return tuple(out)
+
+
+@one_blas_thread()
+def compare(
+    run: Run, model: Model, estimates: Prior | None = None, progress: Progress = quiet
+) -> Comparison:
+    """Measured against predicted deviations.
+
+    Args:
+        run: The measurements.
+        model: Machine and effects.
+        estimates: Of the model's parameters, from an earlier run; then nothing but where the
+            standard stands is learnt from this one. None fits the whole model to this run.
+        progress: Told of the tests.
+
+    Raises:
+        NotEnoughData: So few touches that nothing can be said.
+    """
+    run = counted_once(run)
+    if estimates is None:
+        fit = fit_run(run, model)
+        u = run.u
+    else:
+        fit = _predicted(run, model, estimates)
+        u = np.sqrt(run.u**2 + _prediction_variance(fit, estimates))
+    nothing = EffectSet(Complement.of(fit), np.zeros((int(fit.used.sum()) + len(fit.prior), 0)))
+    found = tuple(find_structure(nothing, progress))
+    return Comparison(fit, estimates is not None, u, found, regions(fit), remarks(fit))
+
+
+def _predicted(run: Run, model: Model, estimates: Prior) -> Fit:
+    """Set-ups fitted, the machine as estimated before; no touch is called a gross error unless it
+    is one beside the uncertainty of the prediction.
+    """  # noqa: D205
+    learnt = fit_run(run, model, estimates)
+    known = Prior(estimates.mean, np.zeros_like(estimates.root))
+    gross = GrossErrors(
+        learnt.gross.rows, learnt.gross.size, learnt.gross.score, learnt.gross.limit
+    )
+    everything = replace(run, split=np.full(len(run), "", dtype="U5"))
+    return fit_run(everything, model, known, gross=gross)
+
+
+def _prediction_variance(fit: Fit, estimates: Prior) -> Array:
+    """Variance of the prediction that a set-up cannot take up, (N,), mm^2."""
+    machine = len(estimates)
+    unit = fit.run.u[:, None]
+    S = fit.model.columns(fit.run.touches) @ estimates.root / unit
+    free = solve(fit.X[:, machine:] * fit.noise.factor, np.zeros(len(S))).Q
+    left = S - free @ (free.T @ S)
+    return np.asarray(np.einsum("np,np->n", left, left) * fit.run.u**2)

@@ -1,0 +1,47 @@
+"""Do gross errors lie together? Accidents do not; a cause of its own does."""
+
+import numpy as np
+from scipy.spatial import cKDTree
+from scipy.special import gammainc
+
+from diagnosis.fit import BoolArray
+from diagnosis.residual.patterns import pairs, variables
+from twin.record import Touches
+
+NEAREST = 5
+"""Neighbours of a touch that are looked at."""
+
+FEWEST = 3
+"""Fewer gross errors than this make no crowd."""
+
+
+def crowds(touches: Touches, allowed: BoolArray, gross: BoolArray) -> dict[tuple[str, str], float]:
+    """Probability, pair of variables by pair, that gross errors lie so close to one another.
+
+    Counted are the pairs of gross errors that are among each other's nearest touches; if every
+    touch is as likely a gross error as every other, that number is nearly Poisson distributed with
+    the mean ``links g (g - 1) / (n (n - 1))``. Not corrected for the number of pairs.
+
+    Args:
+        touches: All of the run.
+        allowed: Those that could have been found out, (N,).
+        gross: Those that were, (N,).
+    """
+    rows = np.flatnonzero(allowed)
+    bad = gross[rows]
+    n, g = len(rows), int(bad.sum())
+    known = variables(touches)
+    out: dict[tuple[str, str], float] = {}
+    if g < FEWEST or n <= 2 * NEAREST:
+        return out
+    for names in pairs(touches, known):
+        place = np.column_stack([known[name][rows] for name in names])
+        place = (place - place.min(axis=0)) / np.ptp(place, axis=0)
+        near = cKDTree(place).query(place, k=NEAREST + 1)[1]
+        links = np.stack([np.repeat(np.arange(n), NEAREST + 1), near.reshape(-1)], axis=1)
+        links = np.unique(np.sort(links, axis=1), axis=0)
+        links = links[links[:, 0] < links[:, 1]]
+        together = int((bad[links[:, 0]] & bad[links[:, 1]]).sum())
+        mean = len(links) * g * (g - 1) / (n * (n - 1))
+        out[names] = float(gammainc(together, mean)) if together else 1.0
+    return out

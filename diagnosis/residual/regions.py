@@ -1,0 +1,304 @@
+"""Regions where a model fails, in words: boxes of a few conditions, honest about chance."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import fdtrc, ndtr
+
+from diagnosis.fit import BoolArray, Fit
+from diagnosis.residual.patterns import variables
+from twin.frames import Array
+from twin.words import condition
+
+Limit = tuple[str, float, float]
+"""A column with its lower and upper end; one of them may be infinite."""
+
+CHANCE = 1e-3
+"""Probability that noise is said to have a region."""
+
+DEPTH = 3
+"""Most conditions that are joined."""
+
+SMALLEST = 12
+"""Fewest touches of a region in either half of the poses."""
+
+CUTS = 16
+"""Thresholds that are tried for a variable."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Region:
+    """Touches that a model predicts wrongly: on average, or worse than others with both signs.
+
+    Attributes:
+        limits: Lower and upper end of every column that bounds it, in the column's unit; of a
+            label such as `feature = pad4` the column is 1 where that is so, else 0.
+        rows: Touches in it, (N,).
+        mean: Mean residual over those poses that had no say in drawing the region, mm.
+        rms: Root mean square residual over the same poses, mm.
+        p_value: Probability of such a mean, or of a scatter so much larger than that of the other
+            touches, by chance, over the same poses, all regions together.
+        u: Standard uncertainty of the mean, from the noise, mm.
+    """
+
+    limits: tuple[Limit, ...]
+    rows: BoolArray
+    mean: float
+    rms: float
+    p_value: float
+    u: float
+
+    @property
+    def conditions(self) -> str:
+        """Conditions on columns of the run file, `B_deg >= 60 and time_s < 2400`."""
+        return " and ".join(_condition(*limit) for limit in self.limits)
+
+    @property
+    def words(self) -> str:
+        """The same as a reader says it, `B > 60 deg and time < 40 min`."""
+        return " and ".join(condition(*limit) for limit in self.limits)
+
+
+def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, ...]:
+    """Regions of a run where the mean residual is not zero, what stands out most first.
+
+    Each is without the touches of those before it. Where no mean stands out, since what is wrong
+    has both signs everywhere, regions where the residual is larger than elsewhere.
+
+    Every condition on one column and every pair of them is tried, since a free set-up may leave
+    nothing of a misfit in either column alone; a third is joined where it says more. One half of
+    the table poses draws the regions, the other half judges them, so that a threshold chosen by
+    chance is found out.
+
+    Args:
+        fit: Any fit; rows in use count.
+        cured: The same with the effects that it lacked. What they explain then draws the regions:
+            so few numbers, that are known not to be chance, need no half of the poses to judge
+            them, and the residuals of all do.
+        most: Largest number of regions.
+
+    Reference:
+        Friedman and Fisher, Bump hunting in high-dimensional data, Statistics and Computing 9
+        (1999) 123-143.
+    """
+    known = {k: v for k, v in _explaining(fit).items() if np.ptp(v) > 0.0}
+    draws, judges = _halves(fit) if cured is None else (fit.used, fit.used)
+    offers = _offers(known, draws)
+    if not offers:
+        return ()
+    inside = np.stack([_within(known, limit) for limit in offers])
+    u = fit.u if cured is None else cured.u
+    z = _even(fit) / u
+    drawing = z if cured is None else (fit.residual - cured.residual) / u
+    squares = z**2 if cured is None else 1.0 + drawing**2
+    for kind, values in ((_BY_MEAN, drawing), (_BY_SIZE, squares)):
+        left = fit.used
+        found: list[Region] = []
+        for _ in range(most):
+            box = _best_box(inside, values, draws & left, judges & left, kind)
+            if box is None:
+                break
+            rows = np.all(inside[list(box)], axis=0) & left
+            region = _judged(fit, [offers[i] for i in box], u, (rows, judges & left), kind, most)
+            if region is not None:
+                found.append(region)
+            left = left & ~rows
+        if found:
+            return tuple(found)
+    return ()
+
+
+def _even(fit: Fit) -> Array:
+    """Residuals with the share given back that the fit takes from each row in use, (N,), mm."""
+    out = fit.residual.copy()
+    out[fit.used] /= np.sqrt(np.maximum(1.0 - fit.solution.leverage, 1e-6))
+    return out
+
+
+def _mean_worth(sums: Array, counts: Array, values: Array) -> Array:
+    """Log likelihood that a mean of its own gains a region."""
+    return 0.5 * sums**2 / np.maximum(counts, 1.0)
+
+
+def _size_worth(sums: Array, counts: Array, values: Array) -> Array:
+    """Log likelihood that a larger variance of its own gains a region; sums are of squares."""
+    count, total = len(values), float(values.sum())
+    others = np.maximum(count - counts, 1.0)
+    here = np.maximum(sums / np.maximum(counts, 1.0), 1e-12)
+    there = np.maximum((total - sums) / others, 1e-12)
+    gained = count * np.log(total / count) - counts * np.log(here) - others * np.log(there)
+    return np.where((here > there) & (count - counts >= SMALLEST), 0.5 * gained, 0.0)
+
+
+def _mean_chance(z: Array, others: Array) -> float:
+    """Probability of such a mean in noise, either sign."""
+    return 2.0 * float(ndtr(-abs(float(z.sum())) / np.sqrt(len(z))))
+
+
+def _size_chance(z: Array, others: Array) -> float:
+    """Probability of such a variance beside that of the others, F test."""
+    ratio = float(np.mean(z**2) / np.mean(others**2)) if len(others) else 0.0
+    return float(fdtrc(len(z), max(len(others), 1), ratio))
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """How a region stands out.
+
+    Attributes:
+        worth: Log likelihood gained, from sums and numbers of touches in boxes and all values.
+        chance: Probability of a region's normalised residuals beside those of the others.
+    """
+
+    worth: Callable[[Array, Array, Array], Array]
+    chance: Callable[[Array, Array], float]
+
+
+_BY_MEAN = _Kind(_mean_worth, _mean_chance)
+_BY_SIZE = _Kind(_size_worth, _size_chance)
+
+
+def _judged(
+    fit: Fit,
+    limits: Sequence[Limit],
+    noise: Array,
+    who: tuple[BoolArray, BoolArray],
+    kind: _Kind,
+    count: int,
+) -> Region | None:
+    """A region as those poses see it that had no say in drawing it; None if it may be chance."""
+    rows, judges = who
+    seen, z = rows & judges, _even(fit) / noise
+    p = min(1.0, kind.chance(z[seen], z[judges & ~rows]) * count)
+    if p >= CHANCE:
+        return None
+    r = fit.residual[seen]
+    rms = float(np.sqrt(np.mean(r**2)))
+    u = float(np.sqrt(np.sum(noise[seen] ** 2)) / len(r))
+    return Region(_joined(limits), rows, float(r.mean()), rms, p, u)
+
+
+def _explaining(fit: Fit) -> dict[str, Array]:
+    """Variables that a user can find on the machine; temperatures only where time is not known."""
+    known = variables(fit.run.touches)
+    if "time_s" in known:
+        known = {k: v for k, v in known.items() if not k.startswith("T_")}
+    t = fit.run.touches
+    setups = np.array([s.name for s in t.setups])[t.setup]
+    for column, labels in (("feature", t.feature), ("setup", setups)):
+        known |= {f"{column} = {k}": (labels == k).astype(float) for k in np.unique(labels)}
+    return known
+
+
+def _halves(fit: Fit) -> tuple[BoolArray, BoolArray]:
+    """Touches in use of every other table pose, and those of the rest."""
+    t = fit.run.touches
+    label = np.unique(np.column_stack([t.setup, t.pose]), axis=0, return_inverse=True)[1]
+    odd = label.reshape(-1) % 2 == 1
+    if label.max() < 3:  # too few poses: every other touch
+        odd = np.arange(len(t)) % 2 == 1
+    return fit.used & odd, fit.used & ~odd
+
+
+def _offers(known: dict[str, Array], draws: BoolArray) -> list[Limit]:
+    """Every condition on one column that is tried."""
+    out: list[Limit] = []
+    for name, values in known.items():
+        if " = " in name:
+            out.append((name, 0.5, np.inf))
+            continue
+        for cut in _cuts(values[draws]):
+            out += [(name, -np.inf, cut), (name, cut, np.inf)]
+    return out
+
+
+def _within(known: dict[str, Array], limit: Limit) -> BoolArray:
+    """Touches that meet a condition, (N,)."""
+    name, low, high = limit
+    return np.asarray((known[name] >= low) & (known[name] < high))
+
+
+def _best_box(
+    inside: BoolArray, values: Array, draws: BoolArray, judges: BoolArray, kind: _Kind
+) -> tuple[int, ...] | None:
+    """Conditions of the region that stands out most, or None if chance could do as well.
+
+    Its worth is the log likelihood gained by what is its own, less the log of the number of regions
+    of as many conditions that were tried.
+
+    Args:
+        inside: Touches that meet each condition, (C, N).
+        values: Of which a region's sum is taken, (N,).
+        draws: Touches that draw, (N,).
+        judges: Touches that judge, (N,).
+        kind: How a region stands out.
+    """
+    drawn, judged = inside[:, draws].astype(float), inside[:, judges].astype(float)
+    here = values[draws]
+    if not len(here):
+        return None
+
+    def worth(sums: Array, counts: Array, others: Array) -> Array:
+        enough = (counts >= SMALLEST) & (others >= SMALLEST)
+        return np.where(enough, kind.worth(sums, counts, here), 0.0)
+
+    both = worth((drawn * here) @ drawn.T, drawn @ drawn.T, judged @ judged.T)
+    both = both - np.log(len(inside)) * (2.0 - np.eye(len(inside)))
+    i, j = np.unravel_index(int(np.argmax(both)), both.shape)
+    box, best = tuple(dict.fromkeys((int(i), int(j)))), float(both[i, j])
+    while len(box) < DEPTH:
+        part = np.all(drawn[list(box)] > 0.0, axis=0)
+        other = np.all(judged[list(box)] > 0.0, axis=0)
+        sums, counts = drawn[:, part] @ here[part], drawn[:, part].sum(axis=1)
+        more = worth(sums, counts, judged[:, other].sum(axis=1))
+        gained = more - np.log(len(inside)) * (len(box) + 1.0)
+        k = int(np.argmax(gained))
+        if gained[k] <= best:
+            break
+        box, best = (*box, k), float(gained[k])
+    return box if best > 0.0 else None
+
+
+def _cuts(values: Array) -> list[float]:
+    """Round thresholds between the quantiles of some values."""
+    unique = np.unique(values)
+    if len(unique) < 2:
+        return []
+    at = np.unique(np.linspace(0, len(unique) - 2, CUTS).astype(int))
+    return [_round_between(float(unique[i]), float(unique[i + 1])) for i in at]
+
+
+def _round_between(low: float, high: float) -> float:
+    """The number with the fewest digits in (low, high].
+
+    Example:
+        >>> _round_between(2391.7, 2405.1)
+        2400.0
+    """
+    middle = 0.5 * (low + high)
+    for digits in range(-6, 12):
+        rounded = round(middle, digits)
+        if low < rounded <= high:
+            return float(rounded) + 0.0  # no negative zero
+    return high
+
+
+def _joined(limits: Sequence[Limit]) -> tuple[Limit, ...]:
+    """Conditions with those on one column joined to the tightest."""
+    out: dict[str, Limit] = {}
+    for name, low, high in limits:
+        _, lowest, highest = out.get(name, (name, -np.inf, np.inf))
+        out[name] = (name, max(low, lowest), min(high, highest))
+    return tuple(out.values())
+
+
+def _condition(name: str, low: float, high: float) -> str:
+    """One range of a column, as a file has it."""
+    if " = " in name:
+        return name if low > -np.inf else name.replace(" = ", " != ")
+    if np.isinf(low):
+        return f"{name} < {high:.6g}"
+    if np.isinf(high):
+        return f"{name} >= {low:.6g}"
+    return f"{low:.6g} <= {name} < {high:.6g}"

@@ -1,0 +1,228 @@
+"""Tests for structure left in a residual: is it noise, and if not, what does it vary with?"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+from scipy.special import ndtr
+
+from diagnosis.evidence import Complement, EffectSet, Progress, quiet, reduced
+from diagnosis.fit import PRIOR_DOF
+from diagnosis.residual.crowds import crowds
+from diagnosis.residual.patterns import Pattern, patterns, thinned, whitened
+from diagnosis.residual.quadratic import ratio_probability
+from diagnosis.residual.waves import Wave, best_wave
+from twin.frames import Array
+from twin.record import IntArray, Touches
+from twin.words import listed, noun, span
+
+CHANCE = 1e-3
+"""Probability, all tests together, that white noise is said to have structure."""
+
+SIZES = np.geomspace(0.3, 3e4, 11) ** 2
+"""Variances of a pattern over the noise variance of one touch that are tried for its evidence."""
+
+FAR = 1e4
+"""Distance (mm) by which different features are held apart in the search for neighbours."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Structure:
+    """One test of a residual for one kind of pattern.
+
+    Attributes:
+        shape: "smooth", "wave", "neighbours" or "crowd".
+        variables: What the pattern varies with.
+        direction: Along what it acts.
+        p_value: Probability in white noise, corrected for all the tests made.
+        evidence: Log evidence for the pattern against noise alone.
+        columns: Projected features scaled to their most likely size, (N + P, K): a prior of one
+            each; None for tests that name no pattern.
+        words: In words.
+        period: Of a wave, s; zero for everything else.
+    """
+
+    shape: str
+    variables: tuple[str, ...]
+    direction: str
+    p_value: float
+    evidence: float
+    columns: Array | None
+    words: str
+    period: float = 0.0
+
+
+def find_structure(
+    effects: EffectSet, progress: Progress = quiet, most: int = 12
+) -> list[Structure]:
+    """Everything that a residual varies with beyond chance, the most certain first.
+
+    The statistic of a smooth pattern is the squared correlation of its features with the residual,
+    weighted by the spectrum (the score of a random function of that roughness); its distribution in
+    white noise after the projection is exact. A wave in time is an F test, scanned over periods;
+    two tests of neighbours (in time, on the standard) ask no shape at all; gross errors that lie
+    together are no accidents.
+
+    Args:
+        effects: Model and effects in it.
+        progress: Told after every pattern.
+        most: Columns are returned for so many of the most certain.
+    """
+    complement = effects.complement
+    touches = complement.touches
+    if effects.objective <= 0.0:  # a run without any deviation at all
+        return []
+    rows = thinned(complement)
+    known = list(patterns(touches))
+    tested = [_tested(effects, pattern, rows) for pattern in known]
+    progress(0.6, "structure left")
+    wave = best_wave(effects, touches, rows)
+    neighbours = [*_neighbours(effects), *_crowds(complement)]
+    count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
+    found = [_as_structure(p, t, count) for p, t in zip(known, tested, strict=True)]
+    found += [_wave_structure(effects, wave, count), *(_corrected(n, count) for n in neighbours)]
+    found = sorted((f for f in found if f.p_value < CHANCE), key=lambda f: f.p_value)
+    progress(1.0, "structure left")
+    return [_with_columns(effects, known, f, rows) for f in found[:most]] + found[most:]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tested:
+    """Probabilities (L,) and log evidences (L,) of a pattern's roughnesses, with the best size."""
+
+    p: Array
+    evidence: Array
+    size: Array
+
+
+def _tested(effects: EffectSet, pattern: Pattern, rows: IntArray) -> _Tested:
+    """Score tests of one pattern at every roughness."""
+    inner = reduced(effects, whitened(effects.complement, pattern.features, rows), rows)
+    root = np.sqrt(pattern.spectra)[:, :, None]  # (L, K, 1)
+    S = root * inner.gram * np.swapaxes(root, 1, 2)
+    values, vectors = np.linalg.eigh(S)
+    values = np.maximum(values, 0.0)
+    along = np.einsum("lkj,lk->lj", vectors, root[:, :, 0] * inner.along) ** 2
+    objective = effects.objective
+    p = ratio_probability(along.sum(axis=1) / objective, values, effects.dof)
+    sizes = SIZES / max(float(np.mean(np.trace(S, axis1=1, axis2=2))), 1e-300)
+    gained = _evidence(effects, values, along, sizes)
+    best = np.argmax(gained, axis=0)
+    return _Tested(p, gained[best, np.arange(len(p))], sizes[best])
+
+
+def _evidence(effects: EffectSet, values: Array, along: Array, sizes: Array) -> Array:
+    """Log evidence of every size (T,) and roughness (L,) against no pattern, (T, L)."""
+    scaled = sizes[:, None, None]
+    fall = (scaled * along / (1.0 + scaled * values)).sum(axis=2)
+    charge = np.log1p(scaled * values).sum(axis=2)
+    n = len(effects.complement.u) + PRIOR_DOF
+    left = np.maximum(effects.objective - fall, 1e-9) + PRIOR_DOF
+    return np.asarray(-0.5 * n * np.log(left / (effects.objective + PRIOR_DOF)) - 0.5 * charge)
+
+
+def _as_structure(pattern: Pattern, tested: _Tested, count: int) -> Structure:
+    """Best roughness of a pattern, its probability corrected for all tests."""
+    best = int(np.argmin(tested.p))
+    p = min(1.0, float(tested.p[best]) * count)
+    return Structure(
+        "smooth",
+        pattern.variables,
+        pattern.direction,
+        p,
+        float(tested.evidence.max()),
+        None,
+        _words(pattern.variables, pattern.direction),
+    )
+
+
+def _words(names: tuple[str, ...], direction: str) -> str:
+    """`varies with X and Y, along Z`."""
+    return f"varies with {listed([noun(name) for name in names])}, along {_along(direction)}"
+
+
+def _along(direction: str) -> str:
+    return "the normal" if direction == "normal" else direction
+
+
+def _with_columns(
+    effects: EffectSet, known: Iterable[Pattern], found: Structure, rows: IntArray
+) -> Structure:
+    """A structure with its projected, scaled columns, ready to stand in a model as a nuisance."""
+    for pattern in known if found.shape == "smooth" else ():
+        if (pattern.variables, pattern.direction) == (found.variables, found.direction):
+            tested = _tested(effects, pattern, rows)
+            best = int(np.argmax(tested.evidence))
+            scale = np.sqrt(pattern.spectra[best] * tested.size[best])
+            every = np.arange(len(effects.complement.u))
+            F = whitened(effects.complement, pattern.features, every) * scale
+            C = effects.complement.project(F)
+            return replace(found, columns=C)
+    return found
+
+
+def _corrected(found: Structure, count: int) -> Structure:
+    """With the number of tests paid for."""
+    return replace(found, p_value=min(1.0, found.p_value * count))
+
+
+def _wave_structure(effects: EffectSet, wave: Wave, count: int) -> Structure:
+    """The best wave in time as a structure; its two amplitudes are as free as the data like."""
+    n = len(effects.complement.u) + PRIOR_DOF
+    fall = -np.log(max(1.0 - wave.drop / effects.objective, 1e-9))
+    gained = 0.5 * n * fall - np.log1p(wave.drop) - np.log(max(wave.count, 1))
+    p = min(1.0, wave.p_value * count)
+    words = f"a wave in time, every {span(wave.period)}, along {_along(wave.direction)}"
+    C = effects.complement.project(wave.columns) if p < CHANCE else None
+    along = wave.direction
+    return Structure("wave", ("time_s",), along, p, float(gained), C, words, wave.period)
+
+
+def _neighbours(effects: EffectSet) -> list[Structure]:
+    """Do neighbours agree: in time, and on the standard within one set-up?
+
+    ``sum r_i r_j`` over pairs has the mean ``-sum q_i . q_j`` in white noise, because the fit makes
+    residuals of neighbours slightly opposite, and nearly the variance of the number of pairs.
+    """
+    complement = effects.complement
+    n = len(complement.u)
+    touches = complement.touches[complement.used]
+    r = effects.residual[:n] / np.sqrt(effects.objective / max(effects.dof, 1.0))
+    Q = complement.Q[:n]
+    out = []
+    for variables, left, right in _neighbour_pairs(touches):
+        mean = -float(np.einsum("np,np->", Q[left], Q[right]))
+        score = (float(r[left] @ r[right]) - mean) / np.sqrt(max(len(left), 1))
+        p = float(ndtr(-score))
+        words = f"neighbours in {listed([noun(v) for v in variables])} agree"
+        out.append(Structure("neighbours", variables, "normal", p, -np.inf, None, words))
+    return out
+
+
+def _crowds(complement: Complement) -> list[Structure]:
+    """Do gross errors lie together?"""
+    allowed = complement.used | complement.gross
+    found = crowds(complement.touches, allowed, complement.gross)
+    out = []
+    for names, p in found.items():
+        words = f"gross errors crowd together in {listed([noun(n) for n in names])}"
+        out.append(Structure("crowd", names, "normal", p, -np.inf, None, words))
+    return out
+
+
+def _neighbour_pairs(touches: Touches) -> list[tuple[tuple[str, ...], IntArray, IntArray]]:
+    """Pairs of touches that follow each other, and that lie next to each other on the standard."""
+    order = np.argsort(touches.time, kind="stable")
+    out: list[tuple[tuple[str, ...], IntArray, IntArray]] = []
+    if np.ptp(touches.time) > 0.0:
+        out.append((("time_s",), order[:-1], order[1:]))
+    label = np.unique(touches.feature, return_inverse=True)[1]
+    tree = cKDTree(np.column_stack([touches.point, FAR * label]))
+    distance, index = tree.query(tree.data, k=2)
+    near = np.sort(np.column_stack([np.arange(len(label)), index[:, 1]]), axis=1)
+    # a touch repeated at one point may come first in its own list: it is no neighbour of itself
+    near = np.unique(near[(distance[:, 1] < FAR) & (near[:, 0] < near[:, 1])], axis=0)
+    if len(near):
+        out.append((("px_mm", "py_mm", "pz_mm"), near[:, 0], near[:, 1]))
+    return out

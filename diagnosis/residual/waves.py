@@ -1,0 +1,136 @@
+"""Waves in time: does a residual repeat with any period?"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.evidence import EffectSet, f_probability, reduced
+from diagnosis.residual.patterns import directions
+from twin.frames import Array
+from twin.record import IntArray, Touches
+
+SHORTEST = 4.0
+"""Shortest period, in mean distances of touches."""
+
+ALIAS = 2.0
+"""Shortest period in usual steps between times: a faster wave looks like a slower one."""
+
+LONGEST = 0.5
+"""Lowest frequency, in turns over the run: what is slower is no wave but a drift."""
+
+PER_LINE = 2.0
+"""Scanned frequencies per resolvable one."""
+
+MOST = 800
+"""Most scanned frequencies."""
+
+BLOCK = 64
+"""Frequencies that are tried at a time."""
+
+FINER = 8
+"""Points of the scan around the best frequency, and how many times it is repeated."""
+TIMES = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wave:
+    """The best wave of a scan.
+
+    Attributes:
+        count: Frequencies and directions that were tried.
+        p_value: Probability by chance of the best, not corrected for their number.
+        drop: Fall of the objective by it.
+        period: Of the best, s.
+        direction: Along which it acts.
+        columns: Whitened sine and cosine, (N, 2), so large that a prior of one leaves them free.
+    """
+
+    count: int
+    p_value: float
+    drop: float
+    period: float
+    direction: str
+    columns: Array
+
+
+def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
+    """Scan waves in time over every period that the touches can show, in every direction.
+
+    Args:
+        effects: Model and effects in it.
+        touches: All of the run.
+        rows: Which of the touches in use are looked at, (R,).
+    """
+    complement = effects.complement
+    time = touches.time[complement.used]
+    span = float(np.ptp(time))
+    if span <= 0.0:
+        return Wave(0, 1.0, 0.0, np.inf, "normal", np.zeros((len(time), 0)))
+    highest = min(len(rows) / (SHORTEST * span), 1.0 / (ALIAS * _step(time)))
+    count = int(min(MOST, max(BLOCK, PER_LINE * highest * span)))
+    frequency = np.linspace(LONGEST / span, max(highest, 1.0 / span), count)
+    along = directions(touches)
+    best = (0.0, frequency[0], "normal")
+    for name, part in along.items():
+        weight = part[complement.used] / complement.u
+        best = max(best, (*_scan(effects, time, frequency, weight, rows), name))
+    weight = along[best[2]][complement.used] / complement.u
+    lowest, step = frequency[0], frequency[1] - frequency[0]
+    drop, found = _finer(effects, time, best[1], step, lowest, weight, rows)
+    p = float(f_probability(drop, 2.0, effects.objective - drop, effects.dof - 2.0))
+    columns = _wave(time, np.array([found]), weight)
+    scale = 10.0 / max(float(np.abs(columns).max()), 1e-300)
+    return Wave(count * len(along), p, drop, 1.0 / found, best[2], columns * scale)
+
+
+def _step(time: Array) -> float:
+    """Usual step between times at which anything was touched, s."""
+    return float(np.median(np.diff(np.unique(time))))
+
+
+def _scan(
+    effects: EffectSet, time: Array, frequency: Array, weight: Array, rows: IntArray
+) -> tuple[float, float]:
+    """Largest fall of the objective by a wave, and its frequency."""
+    best = (0.0, float(frequency[0]))
+    for block in np.array_split(frequency, -(-len(frequency) // BLOCK)):
+        drop = _drops(effects, _wave(time[rows], block, weight[rows]), rows)
+        i = int(np.argmax(drop))
+        best = max(best, (float(drop[i]), float(block[i])))
+    return best
+
+
+def _finer(
+    effects: EffectSet,
+    time: Array,
+    frequency: float,
+    step: float,
+    lowest: float,
+    weight: Array,
+    rows: IntArray,
+) -> tuple[float, float]:
+    """The same around the best frequency of the scan, finer and finer."""
+    best = (0.0, frequency)
+    for _ in range(TIMES):
+        around = best[1] + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)
+        best = max(best, _scan(effects, time, around[around >= lowest], weight, rows))
+        step /= FINER
+    return best
+
+
+def _wave(time: Array, frequency: Array, weight: Array) -> Array:
+    """Sines, then cosines of some frequencies, (N, 2 K)."""
+    angle = 2.0 * np.pi * time[:, None] * frequency
+    return np.concatenate([np.sin(angle), np.cos(angle)], axis=1) * weight[:, None]
+
+
+def _drops(effects: EffectSet, F: Array, rows: IntArray) -> Array:
+    """Fall of the objective by each pair of columns (i, K + i), (K,)."""
+    inner = reduced(effects, F, rows)
+    S, g = inner.gram, inner.along
+    count = F.shape[1] // 2
+    i = np.arange(count)
+    a, b, c = S[i, i], S[i, count + i], S[count + i, count + i]
+    det = np.maximum(a * c - b * b, 1e-9 * a * c + 1e-300)
+    x, y = g[i], g[count + i]
+    return np.asarray((c * x * x - 2.0 * b * x * y + a * y * y) / det)

@@ -1,0 +1,101 @@
+"""Gross errors at an edge in time: accidents, or all there is on one side of a slip?
+
+A standard that slips two touches before the end of its set-up leaves two touches that no other
+agrees with. As accidents they would lie anywhere; where that is too unlikely they are put back into
+the fit, the slip is offered beside all other effects, and the test for gross errors comes again.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import gammaln
+
+from diagnosis.evidence import Sized
+from diagnosis.fit import BoolArray, GrossErrors
+from twin.frames import Array
+from twin.record import IntArray, Touches
+
+CHANCE = 1e-3
+"""Probability, all edges and lengths together, that accidents lie so at an edge."""
+
+LONGEST = 8
+"""Touches from an edge that are looked at; a slip farther inside is a crowd to begin with."""
+
+FEWEST = 2
+"""Gross errors at an edge that may be no accidents."""
+
+
+def offered(touches: Touches, gross: GrossErrors, effects: Sequence[Sized]) -> BoolArray:
+    """Gross errors that a slip may explain, (N,).
+
+    At the edges of a set-up those that so few accidents would hardly ever form; at the instant of a
+    slip that was found, all that adjoin it, since the instant rests upon the touches without them.
+
+    Args:
+        touches: All of the run.
+        gross: Of the fit.
+        effects: That were found.
+    """
+    instants = np.array([_instant(s) for s in effects if "instant" in _tuning(s)])
+    out = np.zeros(len(touches), dtype=bool)
+    bad = gross.rows
+    edges = list(_edges(touches, instants))
+    for rows, is_instant in edges:
+        near = rows[:LONGEST]
+        if is_instant:
+            stop = int(np.argmin(np.append(bad[near], False)))
+            out[near[:stop]] = True
+            continue
+        count = np.cumsum(bad[near])
+        for k in np.flatnonzero(bad[near] & (count >= FEWEST)):
+            p = _by_chance(len(touches), int(bad.sum()), int(k) + 1, int(count[k]))
+            if p * len(edges) * LONGEST < CHANCE:
+                out[near[: k + 1]] |= bad[near[: k + 1]]
+    return out
+
+
+def without(gross: GrossErrors, rows: BoolArray) -> GrossErrors:
+    """Gross errors less some rows."""
+    return replace(gross, rows=gross.rows & ~rows)
+
+
+def _tuning(sized: Sized) -> dict[str, float]:
+    return dict(getattr(sized.effect, "tuning", {}))
+
+
+def _instant(sized: Sized) -> float:
+    return _tuning(sized)["instant"]
+
+
+def _edges(touches: Touches, instants: Array) -> Iterator[tuple[IntArray, bool]]:
+    """Rows from every edge inwards, and whether the edge is an instant inside a set-up."""
+    for s in np.unique(touches.setup):
+        rows = np.flatnonzero(touches.setup == s)
+        rows = rows[np.argsort(touches.time[rows], kind="stable")]
+        inside = touches.time[rows]
+        cuts = [c for c in np.searchsorted(inside, np.sort(instants)) if 0 < c < len(rows)]
+        yield rows, False
+        yield rows[::-1], False
+        for cut in cuts:
+            yield rows[cut:], True
+            yield rows[:cut][::-1], True
+
+
+def _by_chance(touches: int, gross: int, length: int, found: int) -> float:
+    """Probability that of some gross errors anywhere so many or more lie in one short row.
+
+    Hypergeometric: ``sum_j C(length, j) C(touches - length, gross - j) / C(touches, gross)``.
+
+    Example:
+        >>> round(_by_chance(4, 2, 2, 2) * 6, 9)
+        1.0
+    """
+    j = np.arange(found, min(length, gross) + 1)
+    log = _log_choose(length, j) + _log_choose(touches - length, gross - j)
+    return float(np.exp(log - _log_choose(touches, np.array(gross))).sum())
+
+
+def _log_choose(n: int, k: IntArray) -> Array:
+    """Logarithm of the number of choices of k of n."""
+    return np.asarray(gammaln(n + 1.0) - gammaln(k + 1.0) - gammaln(n - k + 1.0))

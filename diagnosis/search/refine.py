@@ -1,0 +1,96 @@
+"""Inner parameters beyond the grid: a finer and finer scan around the best point."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.evidence import Complement, EffectSet, Signatures, Sized, addition, projected
+from diagnosis.fit import continuous_inner, spacing
+from twin.model import Effect, Tunable
+
+POINTS = 9
+"""Points of every scan, over one distance of the grid to either side."""
+
+LEVELS = 4
+"""Scans, each four times finer than the one before."""
+
+SWEEPS = 6
+"""Most turns through the inner parameters of an effect that has several: the best value of one
+depends on the others."""
+
+SETTLED = 0.01
+"""Gain of log evidence in one turn below which they are settled."""
+
+
+def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[Sized, float]:
+    """An effect with its inner parameters refined, and the log evidence of the set with it.
+
+    Args:
+        base: What else is in the set.
+        effect: At the best point of its grid.
+        levels: Number of scans.
+    """
+    best, (top, scale) = effect, _addition(base, effect)
+    several = len(continuous_inner(effect, base.complement.touches)) > 1
+    for _ in range(SWEEPS if several else 1):
+        before = top
+        best, top, scale = _sweep(base, best, top, scale, levels)
+        if top - before < SETTLED:
+            break
+    return Sized(best, scale), top
+
+
+def _sweep(
+    base: EffectSet, best: Effect, top: float, scale: float, levels: int
+) -> tuple[Effect, float, float]:
+    """Every inner parameter in turn; the effect with its log evidence and its size."""
+    for index, inner, _ in continuous_inner(best, base.complement.touches):
+        assert isinstance(best, Tunable)
+        low, high = float(np.min(inner.grid)), float(np.max(inner.grid))
+        for level in range(levels):
+            value = list(best.tuning.values())[index]
+            half = spacing(inner, value) / 4.0**level
+            for point in np.clip(np.linspace(value - half, value + half, POINTS), low, high):
+                trial = _moved(best, index, float(point))
+                found, size = _addition(base, trial)
+                if found > top:
+                    best, top, scale = trial, found, size
+    return best, top, scale
+
+
+def _moved(effect: Tunable, index: int, value: float) -> Tunable:
+    values = list(effect.tuning.values())
+    values[index] = value
+    return effect.tuned(*values)
+
+
+def _addition(base: EffectSet, effect: Effect) -> tuple[float, float]:
+    return addition(base, projected(base.complement, [Sized(effect)]))
+
+
+def refined_set(complement: Complement, chosen: Sequence[Sized], rounds: int = 2) -> list[Sized]:
+    """Effects of a set with all inner parameters refined, in turn, the others in place."""
+    out = list(chosen)
+    for _ in range(rounds if len(out) > 1 else 1):
+        for i in range(len(out)):
+            others = EffectSet(complement, projected(complement, out[:i] + out[i + 1 :]))
+            out[i] = refined(others, out[i].effect)[0]
+    return out
+
+
+def moved(pool: Signatures, to: Mapping[int, Effect]) -> Signatures:
+    """A pool with points of its grids moved, in the place of the old ones, which are lost.
+
+    Args:
+        pool: Signatures of all candidates.
+        to: New effect by the number of the variant.
+    """
+    variants = list(pool.variants)
+    for variant, effect in to.items():
+        raw = pool.complement.columns([effect])
+        place = slice(pool.start[variant], pool.start[variant + 1])
+        pool.C[:, place] = pool.complement.project(raw)
+        pool.size[place] = np.linalg.norm(raw, axis=0)
+        variants[variant] = effect
+    return replace(pool, variants=tuple(variants))

@@ -1,0 +1,360 @@
+"""Choice of the effects that a model lacks: forward with alternatives, swaps, a backward look.
+
+A first step that is merely the best single one may be a compromise between two real effects; so a
+few different sets are carried along, and in each every member is offered for exchange whenever
+another has joined. A set stands only if every member passes three tests with the others in place:
+its probability by chance, corrected for the grid of its inner parameters and for the number of
+candidates; the evidence, which charges it for its freedom; and the error of table poses that were
+left out of the fit.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+
+from diagnosis.evidence import Complement, EffectSet, Progress, Scores, Signatures, quiet, score_all
+from twin.frames import Array
+from twin.model import Effect
+
+CHANCE = 1e-3
+"""Probability, all candidates and grids together, that a run without a hidden effect gets one."""
+
+WORTH = 3.0
+"""Least gain of log evidence by which an effect pays for its freedom: odds of twenty to one."""
+
+ALIKE = 0.95
+"""Correlation of two fitted signatures from which one set need not be carried beside the other."""
+
+CARRIED = 4
+"""Sets that are carried from one size to the next."""
+
+OPENED = 8
+"""Ways to begin anew where two members of a set are taken out."""
+
+REOPENINGS = 3
+
+MOST_EFFECTS = 6
+"""Largest number of effects that one run is asked for."""
+
+LISTED = 25
+"""Candidates that are told of, best first."""
+
+MOST_SETS = 1500.0
+"""Sets of effects that all searches of one diagnosis may try. A usual run asks for a hundred, one
+that nothing explains for three hundred; a long record of which every sensor knows something, or
+one of near copies, asks for more, and is told when it did not get it."""
+
+LARGE = 5e7
+"""Touches times squared columns from which a set counts for more than one."""
+
+
+@dataclass(slots=True)
+class Budget:
+    """Sets that searches may still try, shared; spent, they end with what they have.
+
+    Attributes:
+        left: Number of sets of ordinary size.
+    """
+
+    left: float = MOST_SETS
+
+    def spend(self, touches: int, columns: int) -> None:
+        """Charge for one set."""
+        self.left -= 1.0 + float(touches) * columns * columns / LARGE
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether some search was ended before its end."""
+        return self.left <= 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Member:
+    """An effect in a set, at one point of its grid.
+
+    Attributes:
+        variant: Index into the variants of the pool.
+        candidate: Index into its names.
+        effect: With its inner parameters.
+        scale: Factor on its usual size.
+    """
+
+    variant: int
+    candidate: int
+    effect: Effect
+    scale: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chosen:
+    """A set of effects with what it explains.
+
+    Attributes:
+        members: In the order in which they joined.
+        effects: The set in the projection.
+    """
+
+    members: tuple[Member, ...]
+    effects: EffectSet
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Verified:
+    """Tests of one member with all the others in place.
+
+    Attributes:
+        member: The effect.
+        p_value: Probability by chance, corrected for grid and number of candidates.
+        evidence: Gain of log evidence by this member.
+        held_out: Held-out error with it over that without it.
+        density: Gain of the held-out log predictive density by it.
+    """
+
+    member: Member
+    p_value: float
+    evidence: float
+    held_out: float
+    density: float
+
+    @property
+    def stands(self) -> bool:
+        """Whether all tests are passed."""
+        return (
+            self.p_value < CHANCE
+            and self.evidence > WORTH
+            and self.held_out < 1.0
+            and self.density > 0.0
+        )
+
+
+def effect_set(
+    complement: Complement, pool: Signatures, members: Sequence[Member], fixed: Array | None = None
+) -> EffectSet:
+    """Set of members of a pool, with further fixed columns beside them."""
+    blocks = [] if fixed is None else [fixed]
+    blocks += [m.scale * pool.columns_of(m.variant) for m in members]
+    rows = len(complement.residual)
+    return EffectSet(complement, np.hstack(blocks) if blocks else np.zeros((rows, 0)))
+
+
+class Search:
+    """Search among sets of effects of one pool.
+
+    Args:
+        pool: Signatures of all candidates.
+        fixed: Further columns that are in every set, (N + P, K), such as a pattern without a name.
+        progress: Told after every step.
+        budget: Shared with other searches; None for one of its own.
+    """
+
+    def __init__(
+        self,
+        pool: Signatures,
+        fixed: Array | None = None,
+        progress: Progress = quiet,
+        budget: Budget | None = None,
+    ) -> None:
+        self.pool = pool
+        self.budget = budget or Budget()
+        self.complement = pool.complement
+        self.fixed = fixed
+        self.progress = progress
+        self._scores: dict[tuple[tuple[int, float], ...], Scores] = {}
+        self._products: dict[int, Array] = {}
+
+    def chosen(self, members: Iterable[Member]) -> Chosen:
+        """A set in the projection."""
+        members = tuple(members)
+        effects = effect_set(self.complement, self.pool, members, self.fixed)
+        self.budget.spend(*effects.A.shape)
+        return Chosen(members, effects)
+
+    def member(self, chosen: Chosen, variant: int) -> Member:
+        """A variant as an addition to a set, at its likeliest scale there."""
+        scale = float(self.scores(chosen).scale[variant])
+        owner = int(self.pool.owner[variant])
+        return Member(variant, owner, self.pool.variants[variant], scale)
+
+    def name_of(self, variant: int) -> str:
+        """Name of the candidate of a variant."""
+        return self.pool.names[self.pool.owner[variant]]
+
+    def scores(self, chosen: Chosen) -> Scores:
+        """Scores of all variants as additions to a set, computed once."""
+        key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
+        if key not in self._scores:
+            self._scores[key] = score_all(chosen.effects, self.pool, self._inside(chosen))
+        return self._scores[key]
+
+    def _inside(self, chosen: Chosen) -> Array:
+        """Inner products of a set's columns with all signatures, (K, M).
+
+        Those of a variant are made once: a long run has few variants that are ever members.
+        """
+        rows = [np.zeros((0, self.pool.C.shape[1]))]
+        if self.fixed is not None:
+            rows.append(self._fixed_product)
+        for m in chosen.members:
+            if m.variant not in self._products:
+                self._products[m.variant] = self.pool.columns_of(m.variant).T @ self.pool.C
+            rows.append(m.scale * self._products[m.variant])
+        return np.vstack(rows)
+
+    @cached_property
+    def _fixed_product(self) -> Array:
+        """The same of the columns that are in every set."""
+        assert self.fixed is not None
+        return np.asarray(self.fixed.T @ self.pool.C)
+
+    def ranking(self, chosen: Chosen) -> list[int]:
+        """Best variant of every candidate that is not in a set, most evidence first."""
+        evidence = self.scores(chosen).evidence
+        order = np.argsort(-evidence, kind="stable")
+        taken = {m.candidate for m in chosen.members}
+        _, first = np.unique(self.pool.owner[order], return_index=True)
+        ranked = order[np.sort(first)]
+        return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
+
+    def extensions(self, chosen: Chosen, count: int) -> list[Chosen]:
+        """The best sets of one member more, no two alike in what they explain."""
+        out: list[Chosen] = []
+        directions: list[Array] = []
+        scores = self.scores(chosen)
+        for variant in self.ranking(chosen)[: 12 * count]:
+            if len(out) >= count or scores.evidence[variant] <= chosen.effects.evidence:
+                break
+            direction = self.explained(chosen, variant)
+            if all(abs(direction @ d) < ALIKE for d in directions):
+                directions.append(direction)
+                out.append(self.chosen((*chosen.members, self.member(chosen, variant))))
+        return out
+
+    def explained(self, chosen: Chosen, variant: int) -> Array:
+        """Direction of what a variant would explain beyond a set, (N + P,), of length 1."""
+        effects = chosen.effects
+        C = self.scores(chosen).scale[variant] * self.pool.columns_of(variant)
+        E = effects.whiten(C)
+        S = C.T @ C - E.T @ E
+        g = C.T @ self.complement.residual - E.T @ effects.along
+        phi = np.linalg.solve(S + np.eye(len(S)), g)
+        direction = C @ phi - effects.A @ effects.coefficients(C @ phi)
+        return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-300))
+
+    def polished(self, chosen: Chosen) -> Chosen:
+        """Exchange members for better ones, one at a time, until none is better."""
+        improved = True
+        while improved and chosen.members and not self.budget.is_spent:
+            improved = False
+            for i in range(len(chosen.members)):
+                others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
+                best = self.ranking(others)[0]
+                gain = self.scores(others).evidence[best] - chosen.effects.evidence
+                if gain > 1e-6:
+                    members = list(chosen.members)
+                    members[i] = self.member(others, best)
+                    chosen, improved = self.chosen(members), True
+        return chosen
+
+    def stands(self, chosen: Chosen) -> bool:
+        """Whether every member of a set passes its tests, the quick ones first."""
+        for i, member in enumerate(chosen.members):
+            others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
+            p = float(self.scores(others).p[member.variant])
+            gained = chosen.effects.evidence - others.effects.evidence
+            if self.corrected(member.candidate, p) >= CHANCE or gained <= WORTH:
+                return False
+        return all(v.stands for v in self.verify(chosen))
+
+    def verify(self, chosen: Chosen) -> list[Verified]:
+        """Tests of every member of a set with the others in place."""
+        out = []
+        for i, member in enumerate(chosen.members):
+            others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
+            out.append(self.verified(others, chosen, member))
+        return out
+
+    def verified(self, others: Chosen, whole: Chosen, member: Member) -> Verified:
+        """Tests of one member, given the set without it and the set with it."""
+        scores = self.scores(others)
+        ratio = whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300)
+        return Verified(
+            member,
+            self.corrected(member.candidate, float(scores.p[member.variant])),
+            float(whole.effects.evidence - others.effects.evidence),
+            ratio,
+            float(whole.effects.held_out_log_density - others.effects.held_out_log_density),
+        )
+
+    def corrected(self, candidate: int, p: float) -> float:
+        """Probability with the scan of the grid and the number of candidates paid for."""
+        return float(min(1.0, p * self.pool.tries[candidate] * self.pool.tried))
+
+    def run(self, start: Sequence[Member] = ()) -> Chosen:
+        """The best set of which every member stands; empty where nothing does.
+
+        Args:
+            start: Members of a set to begin with, as from an earlier round.
+        """
+        best = self.backward(self.polished(self.chosen(start)))
+        for _ in range(REOPENINGS):
+            best = self.backward(self.grown(best))
+            other = self.reopened(best)
+            if other.effects.evidence <= best.effects.evidence + WORTH or not self.stands(other):
+                break
+            best = other
+        return best
+
+    def grown(self, best: Chosen) -> Chosen:
+        """A set with one member more and more, as long as every member stands."""
+        carried = [best]
+        for size in range(len(best.members) + 1, MOST_EFFECTS + 1):
+            if self.budget.is_spent:
+                break
+            grown = [s for c in carried for s in self.extensions(c, CARRIED)]
+            carried = self.kept(self.polished(s) for s in grown[: CARRIED * CARRIED])
+            self.progress(size / MOST_EFFECTS, "sets of effects")
+            better = [c for c in carried if c.effects.evidence > best.effects.evidence + WORTH]
+            standing = next((c for c in better if self.stands(c)), None)
+            if standing is None:
+                break
+            best = standing
+        return best
+
+    def reopened(self, chosen: Chosen) -> Chosen:
+        """The best set with two of its members out and two others in, or the set itself.
+
+        Two effects may stand in for two others, each being the best beside the other; no exchange
+        of one at a time finds the way out.
+        """
+        best = chosen
+        for pair in combinations(chosen.members, 2):
+            if self.budget.is_spent:
+                break
+            rest = self.chosen(m for m in chosen.members if m not in pair)
+            for first in self.extensions(rest, OPENED):
+                for second in self.extensions(first, 1):
+                    found = self.polished(second)
+                    if found.effects.evidence > best.effects.evidence:
+                        best = found
+        return best
+
+    def kept(self, sets: Iterable[Chosen]) -> list[Chosen]:
+        """The few best of some sets, each once."""
+        unique = {tuple(sorted(m.variant for m in s.members)): s for s in sets}
+        return sorted(unique.values(), key=lambda s: -s.effects.evidence)[:CARRIED]
+
+    def backward(self, chosen: Chosen) -> Chosen:
+        """Take out members that a better one made superfluous, the weakest first."""
+        while chosen.members:
+            verified = self.verify(chosen)
+            fallen = [v for v in verified if not v.stands]
+            if not fallen:
+                break
+            weakest = min(fallen, key=lambda v: v.evidence)
+            chosen = self.polished(
+                self.chosen(m for m in chosen.members if m is not weakest.member)
+            )
+        return chosen

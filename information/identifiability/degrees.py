@@ -1,0 +1,124 @@
+"""To which degree the touches support every component error."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from information.identifiability.parameter_words import in_words
+from twin.effects import HigherOrder
+from twin.frames import Array
+from twin.machine import Family, Link, Symbol
+from twin.model import Model, columns
+from twin.record import Touches
+from twin.units import shown
+
+HIGHEST = 8
+"""Highest degree that is tried."""
+
+SUPPORTED = 0.5
+"""A coefficient is supported when the touches leave less than this part of its expected size."""
+
+
+@dataclass(frozen=True)
+class Degree:
+    """What touches support of one component error over its reading.
+
+    Attributes:
+        symbol: Name, `EXX`.
+        supported: Degrees (harmonics on a rotary axis) whose coefficients the touches determine,
+            all of them free together; the first may be 2, where degree 1 is tied to a location
+            error or the set-up.
+        largest: Largest of them; 0 where there is none.
+        u: Standard uncertainty of the coefficient of that degree, mm or rad; 0 where there is none.
+        unit: Base unit of u.
+        words: The same in words.
+    """
+
+    symbol: str
+    supported: tuple[int, ...]
+    largest: int
+    u: float
+    unit: str
+    words: str
+
+
+def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) -> tuple[Degree, ...]:
+    """Largest degree of every component error of an axis that a program positions.
+
+    The error's own distributions are replaced by Chebyshev polynomials, or harmonics, of expected
+    size ``sd/k^1.5``; all other errors and the set-up stay free. Of the variance of the
+    coefficients up to degree n ``(1 + C^T C - C^T W M^-1 W^T C)^-1`` is left. A degree is supported
+    when with it none of the degrees below falls out: one more coefficient than touches over a part
+    of the travel can carry spoils those that they had.
+
+    Args:
+        model: Machine and its expected errors.
+        touches: The touches, (N,).
+        W: Their whitened rows with the set-up free, (N, P).
+        noise: Standard deviation of a touch, mm.
+    """
+    symbols = [getattr(effect, "symbol", None) for effect, _ in model.parameters]
+    out = []
+    for symbol in model.chain.symbols:
+        link = model.chain.link(symbol.link)
+        own = np.array([s == symbol for s in symbols])
+        if symbol.family is not Family.COMPONENT or not link.programmed or not own.any():
+            continue
+        sd = float(model.prior_sd[own].max())
+        effect = HigherOrder(symbol, HIGHEST, sd, link.kind == "rotary")
+        size = np.array([p.sd for p in effect.parameters])
+        C = columns([effect], touches) * size / noise
+        rest = W[:, ~own]
+        shared = rest.T @ C
+        M = np.eye(rest.shape[1]) + rest.T @ rest
+        A = C.T @ C - shared.T @ np.linalg.solve(M, shared)
+        out.append(_degree(symbol, link, A, size, model))
+    return tuple(out)
+
+
+def _degree(symbol: Symbol, link: Link, A: Array, size: Array, model: Model) -> Degree:
+    """Degrees that an information A supports, in units of the expected sizes."""
+    each = 2 if link.kind == "rotary" else 1
+    left = np.ones((HIGHEST, HIGHEST))  # of degree k + 1 in column k, with n + 1 degrees free
+    for n in range(HIGHEST):
+        free = each * (n + 1)
+        covariance = np.linalg.solve(np.eye(free) + A[:free, :free], np.eye(free))
+        left[n, : n + 1] = np.sqrt(np.diag(covariance)).reshape(n + 1, each).max(axis=1)
+    supported = _run(left < SUPPORTED)
+    u = 0.0
+    if supported:
+        last = supported[-1] - 1
+        u = float(left[last, last] * size[each * last])
+    largest = max(supported, default=0)
+    words = _words(symbol, link, supported, u, model)
+    unit = "rad" if symbol.is_angular else "mm"
+    return Degree(symbol.name, supported, largest, u, unit, words)
+
+
+def _run(is_supported: NDArray[np.bool_]) -> tuple[int, ...]:
+    """Degrees that are supported together, the first being 1 or else 2.
+
+    Args:
+        is_supported: Degree k + 1 (columns) with n + 1 degrees free (rows), (n, k).
+    """
+    for first in (0, 1):
+        n = first
+        while n < len(is_supported) and is_supported[n, first : n + 1].all():
+            n += 1
+        if n > first:
+            return tuple(range(first + 1, n + 1))
+    return ()
+
+
+def _words(symbol: Symbol, link: Link, supported: tuple[int, ...], u: float, model: Model) -> str:
+    """`straightness of X in Y (EYX): degrees 2 to 5, the last to 0.4 µm`."""
+    what = in_words(f"geometric({symbol.name},)", model.chain).strip()
+    kind = "harmonic" if link.kind == "rotary" else "degree"
+    if not supported:
+        return f"{what}: no {kind}"
+    label, factor = shown("rad" if symbol.is_angular else "mm")
+    first, last = supported[0], supported[-1]
+    if first == last:
+        return f"{what}: {kind} {last} to {u / factor:.2g} {label}"
+    return f"{what}: {kind}s {first} to {last}, the last to {u / factor:.2g} {label}"

@@ -1,0 +1,110 @@
+"""Names of parameters in the words of the trade: `location(EC0C)` is the zero position of C."""
+
+import re
+
+from twin.machine import Chain, Family, Symbol, parse_symbol
+
+_NAME = re.compile(r"(geometric|location|setup|coupling)\(([^,)]+)(?:,([^)]*))?\)(?:: (\w+))?\Z")
+_SETUP = {"dx": "X", "dy": "Y", "dz": "Z", "rx": "X", "ry": "Y", "rz": "Z"}
+_SINE = re.compile(r"sinusoidal(?:,([\d.]+))?(?:@(-?[\d.]+))?\Z")
+
+
+def in_words(name: str, chain: Chain) -> str:
+    """What a parameter is, with its symbol in brackets; a name of another kind as it is.
+
+    Args:
+        name: As in `Model.names`: `location(EC0C)`, `geometric(EXX,linear)`, `setup(a): rz`.
+        chain: The machine.
+    """
+    match = _NAME.match(name)
+    if match is None:
+        return name
+    kind, first, second, part = match.groups()
+    if kind == "setup" and part in _SETUP:
+        how = "displacement along" if part.startswith("d") else "rotation about"
+        return f"set-up {how} {_SETUP[part]} ({first})"
+    symbol = parse_symbol(first)
+    if symbol is None or symbol not in chain.symbols:
+        return name
+    if kind == "location":
+        return f"{_location(symbol, chain)} ({symbol.name})"
+    if kind == "geometric":
+        return f"{_shape(second or '', part)} {_component(symbol, chain)} ({symbol.name})"
+    return name
+
+
+def _direction(symbol: Symbol) -> str:
+    return "XYZ"[symbol.component % 3]
+
+
+def _location(symbol: Symbol, chain: Chain) -> str:
+    """A location or set-up error."""
+    along = _direction(symbol)
+    if symbol.family is Family.SETUP:
+        if symbol.link == "w":
+            how = "rotation about" if symbol.is_angular else "displacement along"
+            return f"set-up {how} {along}"
+        if not symbol.is_angular:
+            return "tool length" if along == "Z" else f"tool offset along {along}"
+        return f"tilt of the tool about {along}"
+    link = chain.link(symbol.link)
+    own = "XYZ"[link.own]
+    if along == own and (link.kind == "linear" or symbol.is_angular):
+        return f"zero position of {symbol.link}"
+    if link.kind == "linear":
+        return f"squareness of {symbol.link} about {along}"
+    if symbol.is_angular:
+        return f"tilt of the line of {symbol.link} about {along}"
+    return f"displacement of the line of {symbol.link} along {along}"
+
+
+def _component(symbol: Symbol, chain: Chain) -> str:
+    """A component error by its word."""
+    link, along = chain.link(symbol.link), _direction(symbol)
+    own = "XYZ"[link.own]
+    if link.kind == "linear":
+        if not symbol.is_angular:
+            if along == own:
+                return f"positioning of {link.name}"
+            return f"straightness of {link.name} in {along}"
+        return f"roll of {link.name}" if along == own else f"tilt of {link.name} about {along}"
+    if not symbol.is_angular:
+        return f"{'axial' if along == own else 'radial'} motion of {link.name} along {along}"
+    if along == own:
+        return f"angular positioning of {link.name}"
+    return f"tilt motion of {link.name} about {along}"
+
+
+def _shape(shape: str, part: str | None) -> str:
+    """A distribution or a coefficient over the reading, as an adjective."""
+    if part is not None and part[:1] == "T":
+        return {"T1": "linear", "T2": "parabolic"}.get(part, f"degree {part[1:]} of the")
+    if part is not None and part[:3] in ("sin", "cos"):
+        wave = "sine" if part[:3] == "sin" else "cosine"
+        return f"{wave} of harmonic {part[3:]} of the"
+    match = _SINE.match(shape)
+    if match is None:
+        return shape
+    waves = "" if match.group(1) is None else f" of {match.group(1)} periods"
+    phase = {None: "sine", "90": "cosine"}.get(match.group(2), f"wave at {match.group(2)}°")
+    return f"{phase}{waves} of the"
+
+
+def short(name: str) -> str:
+    """Name of a parameter as it fits beside a map: `EXX cosine` for `geometric(EXX,sinusoidal@90)`.
+
+    Example:
+        >>> short("geometric(EXX,sinusoidal@90)"), short("location(EX0C)"), short("setup(a): dx")
+        ('EXX cosine', 'EX0C', 'set-up a dx')
+    """
+    kind, _, rest = name.partition("(")
+    inner, _, tail = rest.partition(")")
+    if kind == "geometric":
+        symbol, _, shape = inner.partition(",")
+        waves = {"sinusoidal": "sine", "sinusoidal@90": "cosine", "constant": ""}
+        return f"{symbol} {waves.get(shape, shape)}".strip()
+    if kind == "location" and not tail:
+        return inner
+    if kind == "setup":
+        return f"set-up {inner} {tail.removeprefix(':').strip()}".strip()
+    return name

@@ -1,0 +1,183 @@
+"""What touches can and cannot separate, in the words of a metrologist.
+
+A gauge freedom is a direction of parameter space that no touch notices: the constants of an axis
+and the set-up of the standard, the tilt of a ram and its straightness at one tool length. They come
+from the null space of the rows, by `information.identifiability.nullspace`, and are checked, one
+by one, against
+richer touches that could have been made: another stylus length, another set-up, the whole travel.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from information.identifiability.freedom_words import (
+    TURNS,
+    Freedom,
+    Parameters,
+    equation,
+    reason,
+    terms,
+)
+from information.identifiability.nullspace import INVISIBLE, condition, groups, seen, sparse
+from twin.frames import Array
+from twin.machine import Chain, Family, Symbol
+from twin.units import UM, URAD
+
+__all__ = ["NEVER", "SIDEWAYS", "Freedom", "Group", "Identifiability", "identifiability"]
+
+NEVER = "nothing that touches a workpiece; it is fixed by convention"
+"""What resolves a freedom that is one of the machine and not of the touches."""
+
+SIDEWAYS = "a second stylus that reaches sideways, off the line of the spindle"
+"""What resolves an error that turns about that line; tools on the line never feel it."""
+
+_KEPT = 1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
+
+
+@dataclass(frozen=True)
+class Group:
+    """Parameters that are tied to one another by gauge freedoms, and to no others.
+
+    Attributes:
+        members: Names.
+        known: Number of their combinations that the touches see; the rest is gauge.
+        words: The same in words.
+    """
+
+    members: tuple[str, ...]
+    known: int
+    words: str
+
+
+@dataclass(frozen=True, eq=False)
+class Identifiability:
+    """What the touches can and cannot separate.
+
+    Attributes:
+        parameters: Their number.
+        rank: Number of independent combinations that move any touch.
+        condition: Largest over smallest visible singular value of the columns, each scaled to
+            length one.
+        condition_prior: The same with every column times its parameter's expected size.
+        condition_raw: The same unscaled, per µm and µrad.
+        freedoms: One for every parameter beyond the rank.
+        groups: Of parameters that are confounded with one another.
+    """
+
+    parameters: int
+    rank: int
+    condition: float
+    condition_prior: float
+    condition_raw: float
+    freedoms: tuple[Freedom, ...]
+    groups: tuple[Group, ...]
+
+
+def identifiability(
+    W: Array,
+    prior_sd: Array,
+    names: Sequence[str],
+    parameters: Parameters = (),
+    chain: Chain | None = None,
+    richer: Mapping[str, Array] | None = None,
+) -> Identifiability:
+    """Rank, condition, gauge freedoms and confounded groups of some touches.
+
+    Freedoms have as few members as could be found. Where it is free which member is named as the
+    one to leave out, set-up, tool and zero positions go first, as conventions have it.
+
+    Args:
+        W: Whitened rows, shape (N, P).
+        prior_sd: Shape (P,).
+        names: Of the parameters.
+        parameters: The same with their effects (`Model.parameters`), for words and conventions.
+        chain: The machine, for words; None to do without.
+        richer: Rows of touches that could be made instead, by what they are called, cheapest first;
+            columns as those of W, and after them those of set-ups and tools of their own.
+    """
+    found = seen(W)
+    null = found.null
+    more = {name: _without_own(R, W.shape[1]) for name, R in (richer or {}).items()}
+    never = seen(np.concatenate([W, *more.values()])).null if more else None
+    order = sorted(range(len(names)), key=lambda p: _convention(parameters, p))
+    units = [p.unit for _, p in parameters] or ["1"] * len(names)
+    freedoms = []
+    for lead, z in sparse(null, order, never):
+        size = np.abs(z).max()
+        base = -z * prior_sd / prior_sd[lead]
+        others = [k for k in np.argsort(-np.abs(z), kind="stable").tolist() if k != lead and z[k]]
+        alike = tuple((names[k], float(base[k])) for k in others)
+        words = why = ""
+        if chain is not None:
+            words = equation(names[lead], units[lead], terms(others, base, names, units), chain)
+            why = reason([lead, *others], parameters, chain)
+        by = _resolved_by(z / size, more, why)
+        freedoms.append(Freedom(names[lead], alike, words, why, by))
+    per_unit = np.array([URAD if u == "rad" else UM for u in units])
+    raw = W / np.where(prior_sd > 0.0, prior_sd, 1.0) * per_unit
+    return Identifiability(
+        parameters=W.shape[1],
+        rank=found.rank,
+        condition=found.condition,
+        condition_prior=condition(W, found.rank),
+        condition_raw=condition(raw, found.rank),
+        freedoms=tuple(freedoms),
+        groups=_groups(null, names),
+    )
+
+
+def _convention(parameters: Parameters, p: int) -> tuple[int, int]:
+    """Rank of a parameter among those by which a freedom is named: low ones are left out first."""
+    symbol = getattr(parameters[p][0], "symbol", None) if parameters else None
+    if not isinstance(symbol, Symbol):
+        is_setup = bool(parameters) and parameters[p][0].kind == "setup"
+        return (-2 if is_setup else 3, -p)
+    if symbol.family is Family.SETUP:
+        return (-2 if symbol.link == "w" else -1, -p)
+    if symbol.family is Family.LOCATION:
+        return (2 - int(symbol.is_angular), -p)
+    still = getattr(parameters[p][0], "shape", "") == "constant"
+    return (0 if still else 3 if symbol.is_angular else 4, -p)
+
+
+def _without_own(W: Array, P: int) -> Array:
+    """Columns of the first P parameters, less what set-ups and tools of their own can imitate."""
+    own = W[:, P:]
+    length = np.linalg.norm(own, axis=0)
+    own = own[:, length > 0.0] / length[length > 0.0]
+    left = W[:, :P]
+    if own.shape[1]:
+        U, s, _ = np.linalg.svd(own, full_matrices=False)
+        U = U[:, s > INVISIBLE * s[0]]
+        left = left - U @ (U.T @ left)
+        left = left - U @ (U.T @ left)
+    return left
+
+
+def _resolved_by(z: Array, richer: Mapping[str, Array], why: str) -> str:
+    """The first of the richer touches, freed of what is their own, in which a direction shows."""
+    for name, W in richer.items():
+        if np.linalg.norm(W @ z) > _KEPT * np.linalg.norm(W, axis=0).max():
+            return name
+    if richer and why == TURNS:
+        return SIDEWAYS
+    return NEVER if richer else ""
+
+
+def _groups(null: Array, names: Sequence[str]) -> tuple[Group, ...]:
+    """Confounded groups, the largest first; parameters that move nothing are in none."""
+    out = []
+    for group in groups(null):
+        if len(group) == 1:
+            continue
+        size = np.linalg.svd(null[:, group], compute_uv=False)
+        known = len(group) - int(np.sum(size > 1e-9 * size[0]))
+        members = tuple(names[p] for p in group)
+        out.append(
+            Group(
+                members, known, f"{len(group)} parameters, {known} combinations of which are seen"
+            )
+        )
+    return tuple(sorted(out, key=lambda g: -len(g.members)))

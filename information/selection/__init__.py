@@ -1,0 +1,20 @@
+"""Choosing touches: exchange, groups, relaxed optimum and certificate."""
+
+from information.selection.certificate import Certificate, relaxed, rounded
+from information.selection.groups import best_groups
+from information.selection.shares import heaviest
+from information.selection.touch_selection import Mask, Purpose, Quota, Selection, exchange, fill
+
+__all__ = [
+    "Certificate",
+    "Mask",
+    "Purpose",
+    "Quota",
+    "Selection",
+    "best_groups",
+    "exchange",
+    "fill",
+    "heaviest",
+    "relaxed",
+    "rounded",
+]

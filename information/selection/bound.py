@@ -1,0 +1,92 @@
+"""What no choice of touches can beat: a proven bound, at any information, for every criterion.
+
+Every touch may be made by a fraction, ``0 <= x_i <= 1``, ``sum x_i = n``, with the shares of poses
+and features that the choice itself has to keep: a convex problem, whose optimum no whole choice can
+beat. With the tangent ``sum_s trace(K_s M_s^-1)`` of a criterion (`Purpose.tangent`), which is
+nowhere above it, both
+
+    phi = 1 / sum_s trace(K_s M_s^-1)       and for D       phi = prod_s det(M_s)^(w_s/R)
+
+are concave and of degree one in the priors and the information together. So at *any* F0, near the
+optimum or not,
+
+    phi <= phi(F0) (sum_s trace(S_s prior_s) + most of sum x_i g_i) / sum_s trace(S_s M_s),
+
+with ``g_i = sum_s w_i^T S_s w_i`` and ``S_s = M_s^-1 K_s M_s^-1`` (``w_s M_s^-1`` for D). That
+holds for every criterion of `Purpose`, the largest of several and means over the worst machines
+included. It is a proof and needs no faith in the search that found F0.
+
+Reference:
+    Pukelsheim, Optimal Design of Experiments (1993), chapters 5 and 7 (information functions).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from information.criteria import Purpose
+from information.selection.shares import largest_sum
+from information.selection.touch_selection import Quota
+from twin.frames import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Slope:
+    """Where a criterion falls most, seen from one information.
+
+    Attributes:
+        inverse: ``M_s^-1``, (S, R, R).
+        S: Forms of the gains ``w^T S_s w``, (S, R, R).
+        constant: ``sum_s trace(S_s prior_s)``.
+        value: Of the tangent: the criterion itself, or below it.
+        degree: ``sum_s trace(S_s M_s)``.
+    """
+
+    inverse: Array
+    S: Array
+    constant: float
+    value: float
+    degree: float
+
+    def gains(self, W: Array) -> Array:
+        """Gain of every candidate, (N,)."""
+        total = self.S.sum(axis=0)
+        return np.asarray(np.einsum("nr,nr->n", W @ total, W), dtype=np.float64)
+
+
+def slope(aim: Purpose, information: Array) -> Slope:
+    """Slope of a criterion at an information (R, R)."""
+    M = aim.prior + information
+    inverse = np.asarray(np.linalg.solve(M, np.broadcast_to(np.eye(M.shape[1]), M.shape)))
+    tangent = aim.tangent(information)
+    if aim.is_determinant:
+        S = tangent.weight[:, None, None] * inverse
+        logarithms = -np.linalg.slogdet(M)[1]
+        value = float(np.exp(tangent.weight @ logarithms / M.shape[1]))
+        return Slope(inverse, S, float(np.sum(S * aim.prior)), value, float(M.shape[1]))
+    S = inverse @ tangent.K @ inverse
+    S = 0.5 * (S + np.swapaxes(S, 1, 2))
+    value = float(np.sum(inverse * tangent.K))
+    return Slope(inverse, S, float(np.sum(S * aim.prior)), value, value)
+
+
+def bound_at(
+    aim: Purpose, W: Array, information: Array, count: int, quotas: tuple[Quota, ...] = ()
+) -> tuple[float, Array]:
+    """What no choice of rows can beat, by the tangent at some information.
+
+    Args:
+        aim: Criterion.
+        W: Rows of all candidates, (N, R).
+        information: ``W^T diag(x) W`` of fractions or of a choice, (R, R); any will do, the nearer
+            to the best the tighter.
+        count: Number of touches.
+        quotas: Shares that every choice has to keep.
+
+    Returns:
+        The bound, and the gain g of every candidate, (N,).
+    """
+    here = slope(aim, information)
+    gain = here.gains(W)
+    top = largest_sum(gain, count, quotas).most
+    return here.value * here.degree / (here.constant + top), gain

@@ -1,0 +1,100 @@
+"""How near a choice of touches is to the best that any choice could be, certified.
+
+The efficiency is the bound of `information.selection.bound` over the criterion of the choice; the
+fractions
+of `information.selection.relaxed` make the bound tight, their heaviest touches a good start for
+exchanges.
+"""
+
+from dataclasses import dataclass
+
+from information.criteria import Purpose
+from information.selection.bound import bound_at
+from information.selection.relaxed import Relaxed, relaxed
+from information.selection.shares import heaviest
+from information.selection.touch_selection import Mask, Quota, Selection, exchange
+from twin.frames import Array
+
+__all__ = ["Certificate", "Relaxed", "bound_at", "certificate", "relaxed", "rounded"]
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """How near a choice is to the best that there can be.
+
+    Attributes:
+        candidates: Touches that could have been chosen.
+        count: Touches that were.
+        value: Criterion of the choice.
+        bound: No other choice of as many of the candidates has a smaller one.
+        shares: Whether other choices have to keep the same shares of poses and features.
+    """
+
+    candidates: int
+    count: int
+    value: float
+    bound: float
+    shares: bool = False
+
+    @property
+    def efficiency(self) -> float:
+        """At least so near to the best possible choice, 0 to 1."""
+        return self.bound / self.value
+
+    def __str__(self) -> str:
+        same = " under the same shares" if self.shares else ""
+        return (
+            f"{self.count} of {self.candidates} candidate touches: at least "
+            f"{100 * self.efficiency:.1f} % as good as any choice of as many{same}"
+        )
+
+
+def certificate(
+    aim: Purpose,
+    W: Array,
+    chosen: Mask,
+    tolerance: float = 2e-3,
+    quotas: tuple[Quota, ...] = (),
+) -> Certificate:
+    """Certified efficiency of a choice among candidates.
+
+    Args:
+        aim: Criterion.
+        W: Rows of all candidates, (N, R).
+        chosen: The choice, (N,).
+        tolerance: Relative gap to which the relaxed problem is solved.
+        quotas: Shares that the choice keeps and every other would have to keep.
+
+    Raises:
+        DesignError: The choice does not keep the shares.
+    """
+    count = int(chosen.sum())
+    best = relaxed(aim, W, count, chosen, tolerance, quotas)
+    rows = W[chosen]
+    return Certificate(len(W), count, aim.value(rows.T @ rows), best.bound, bool(quotas))
+
+
+def rounded(
+    aim: Purpose,
+    W: Array,
+    weight: Array,
+    count: int,
+    most: int = 300,
+    quotas: tuple[Quota, ...] = (),
+) -> Selection:
+    """A choice of whole touches from fractions: the heaviest, then exchanged until none helps.
+
+    Args:
+        aim: Criterion.
+        W: Rows of all candidates, (N, R).
+        weight: Fractions, (N,).
+        count: Number of touches.
+        most: Largest number of exchanges.
+        quotas: Shares to be kept.
+
+    Raises:
+        DesignError: No whole choice near the fractions keeps the shares.
+    """
+    selection = Selection(aim, W, heaviest(weight, count, quotas))
+    exchange(selection, quotas, most=most)
+    return selection

@@ -1,0 +1,119 @@
+"""Choosing what brings many touches at once: patches of a standard, table poses."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from information.criteria import Purpose
+from twin.compute import blocks
+from twin.frames import Array
+from twin.record import IntArray
+
+_GROUPS_A_BLOCK = 100
+
+
+def best_groups(
+    aim: Purpose,
+    W: Array,
+    group: IntArray,
+    count: int,
+    take: int,
+    start: Array | None = None,
+    apart: NDArray[np.bool_] | None = None,
+) -> list[int]:
+    """Choose groups of rows that belong together (the touches of a patch, of a table pose).
+
+    A group is worth what its `take` most useful rows bring, useful as seen from the groups chosen
+    before it; greedy, then every chosen group is once weighed against all that are left out.
+
+    Args:
+        aim: What for.
+        W: Rows in the directions that matter, (N, R).
+        group: Of every row, (N,), from 0.
+        count: Number of groups.
+        take: Rows that a group will contribute.
+        start: W^T W of what is measured anyway, (R, R).
+        apart: Which groups may stand beside each other, (groups, groups); None for all.
+
+    Returns:
+        The chosen groups, in the order of choice; fewer than `count` where no other fits.
+    """
+    board = _Groups(aim, W, group, take, np.zeros_like(aim.K) if start is None else start)
+    fits = np.ones((board.count, board.count), dtype=bool) if apart is None else apart
+    chosen: list[int] = []
+    while len(chosen) < count:
+        best = board.best(chosen, fits)
+        if best is None:
+            break
+        chosen.append(best)
+    for i in range(len(chosen)):
+        others = chosen[:i] + chosen[i + 1 :]
+        better = board.best(others, fits)
+        assert better is not None  # the one that was taken out fits again
+        chosen[i] = better
+    return chosen
+
+
+class _Groups:
+    """Information that groups of rows bring."""
+
+    def __init__(self, aim: Purpose, W: Array, group: IntArray, take: int, start: Array) -> None:
+        self.aim, self.take, self.start = aim, take, start
+        order = np.argsort(group, kind="stable")
+        self.W = W[order]
+        self.count = int(group.max(initial=-1)) + 1
+        self.edges = np.searchsorted(group[order], np.arange(self.count + 1))
+        self.brought: dict[int, Array] = {}
+
+    def best(self, chosen: list[int], fits: NDArray[np.bool_]) -> int | None:
+        """The group that helps most beside those chosen, and whose rows are then remembered."""
+        information: Array = self.start.copy()
+        for k in chosen:
+            information = information + self.brought[k]
+        tangent = self.aim.tangent(information)
+        reaches = [np.linalg.solve(prior + information, self.W.T).T for prior in self.aim.prior]
+        gain = np.zeros(len(self.W))
+        for reach, K, weight in zip(reaches, tangent.K, tangent.weight, strict=True):
+            leverage = np.einsum("nr,nr->n", reach, self.W)
+            if self.aim.is_determinant:
+                gain += weight * np.log1p(leverage)
+            else:
+                gain += np.einsum("nr,nr->n", reach @ K, reach) / (1.0 + leverage)
+        free = np.all(fits[chosen], axis=0) if chosen else np.ones(self.count, dtype=bool)
+        free[chosen] = False
+        open_groups = np.flatnonzero(free & (np.diff(self.edges) > 0))
+        if not len(open_groups):
+            return None
+        top = self._most_useful(open_groups, gain)
+        drop = np.zeros(len(top))
+        for reach, K, weight in zip(reaches, tangent.K, tangent.weight, strict=True):
+            for some in blocks(len(top), _GROUPS_A_BLOCK):
+                drop[some] += self._drops(top[some], reach, K, weight)
+        i = int(np.argmax(drop))
+        rows = top[i][top[i] >= 0]
+        best = int(open_groups[i])
+        self.brought[best] = self.W[rows].T @ self.W[rows]
+        return best
+
+    def _most_useful(self, groups: IntArray, gain: Array) -> IntArray:
+        """The rows of largest gain of some groups, (groups, take); -1 where one has fewer."""
+        out = np.full((len(groups), self.take), -1)
+        for i, k in enumerate(groups):
+            rows = np.arange(self.edges[k], self.edges[k + 1])
+            rows = rows[np.argsort(-gain[rows], kind="stable")[: self.take]]
+            out[i, : len(rows)] = rows
+        return out
+
+    def _drops(self, top: IntArray, reach: Array, K: Array, weight: float) -> Array:
+        """``trace(K M^-1) - trace(K (M + w^T w)^-1)`` of every group, by Woodbury, (groups,).
+
+        ``trace((1 + w M^-1 w^T)^-1  w M^-1 K M^-1 w^T)`` with reach = w M^-1; for D the logarithm
+        of ``det(1 + w M^-1 w^T)``, times the weight of the machine.
+        """
+        there = (top >= 0)[:, :, None]
+        w, v = np.where(there, self.W[top], 0.0), np.where(there, reach[top], 0.0)
+        inner = np.eye(self.take) + v @ np.swapaxes(w, 1, 2)
+        if self.aim.is_determinant:
+            return weight * np.asarray(np.linalg.slogdet(inner)[1], dtype=np.float64)
+        spread = v @ K @ np.swapaxes(v, 1, 2)
+        drops: Array = np.trace(np.linalg.solve(inner, spread), axis1=1, axis2=2)
+        return drops

@@ -1,0 +1,278 @@
+"""Fractions of touches that are nearly the best possible: the relaxed design.
+
+Weight flows from the least useful touch that has some to the most useful one that has room, each
+time as much as is best for the pair (vertex exchange), within the shares that have to be kept.
+Where no single flow helps any more, a step towards the best corner of the shares is made (Frank and
+Wolfe). A criterion that is curved is followed along its tangent in short stretches, and the mean
+that stands for the largest of several is sharpened as the search comes to rest.
+
+Reference:
+    Boehning, Metrika 33 (1986) 337 (vertex exchange); Frank and Wolfe, Naval Research Logistics
+    Quarterly 3 (1956) 95.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from information.criteria import Purpose
+from information.selection.bound import slope
+from information.selection.shares import cells, keeps, largest_sum
+from information.selection.touch_selection import Mask, Quota
+from twin.errors import DesignError
+from twin.frames import Array
+from twin.record import IntArray
+
+_STEPS = 400  # vertex exchanges between two looks at all candidates
+_CURVED = 40  # the same along one tangent of a criterion that is curved
+_ROUNDS = 100
+_REFRESH = 50
+_HALVINGS = 8
+_PATIENCE = 3  # looks without progress before the mean is sharpened, or the search given up
+_SHARPEST = 1000.0
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxed:
+    """Fractions of touches that are nearly the best possible, and what no choice can beat.
+
+    Attributes:
+        weight: Fraction of every candidate, (N,), between 0 and 1.
+        value: Criterion of the fractions; smaller is better.
+        bound: No choice of as many whole touches has a smaller criterion.
+        steps: Vertex exchanges that were made.
+    """
+
+    weight: Array
+    value: float
+    bound: float
+    steps: int
+
+    @property
+    def gap(self) -> float:
+        """Share of the value that could still be gained at most."""
+        return 1.0 - self.bound / self.value
+
+
+def relaxed(
+    aim: Purpose,
+    W: Array,
+    count: int,
+    start: Mask,
+    tolerance: float = 2e-3,
+    quotas: tuple[Quota, ...] = (),
+) -> Relaxed:
+    """Nearly the best fractions of touches, by vertex exchange on the candidates that matter.
+
+    All candidates are looked at again every few hundred steps, and the best bound met on the way is
+    kept; it is true however far the fractions are from the best.
+
+    Args:
+        aim: Criterion.
+        W: Rows of all candidates, (N, R).
+        count: Number of touches.
+        start: A choice of as many rows to start from, (N,).
+        tolerance: Relative gap between value and bound that is close enough.
+        quotas: Shares that fractions and whole choices have to keep.
+
+    Raises:
+        DesignError: Fewer candidates than touches, a start of another number, or one that does not
+            keep the shares.
+    """
+    if len(W) < count or int(start.sum()) != count:
+        raise DesignError(f"{int(start.sum())} of {len(W)} touches to start from, {count} wanted")
+    if not all(keeps(q, start) for q in quotas):
+        raise DesignError("the touches to start from do not keep the shares")
+    x = start.astype(np.float64)
+    cell, lowest = cells(quotas, len(W)), np.inf
+    bound, steps, stalled = 0.0, 0, 0
+    for _ in range(_ROUNDS):
+        there = np.flatnonzero(x > 0.0)
+        information = (W[there] * x[there, None]).T @ W[there]
+        here = slope(aim, information)
+        gain = here.gains(W)
+        top = largest_sum(gain, count, quotas)
+        bound = max(bound, here.value * here.degree / (here.constant + top.most))
+        value = aim.value(information)
+        stalled = 0 if value < lowest * (1.0 - 0.05 * tolerance) else stalled + 1
+        if value < lowest:
+            lowest, best = value, x
+        if bound >= (1.0 - tolerance) * lowest:
+            break
+        if stalled >= _PATIENCE:
+            if aim.roots is None or aim.sharpness > _SHARPEST:
+                break
+            aim, stalled = replace(aim, sharpness=2.0 * aim.sharpness), 0
+        few = _worth_looking_at(gain, there, count, cell)
+        after, made = _exchanged(aim, W[few], x[few], tuple(_of(q, few) for q in quotas))
+        steps += made
+        new = x.copy()
+        new[few] = after
+        if aim.is_curved or made == 0:
+            new = _stepped(aim, W, x, new if made else top.x)
+        x = new
+    return Relaxed(best, lowest, bound, steps)
+
+
+def _of(quota: Quota, rows: IntArray) -> Quota:
+    """The same quota over some rows, among which all weight is."""
+    return Quota(quota.kind[rows], quota.most, quota.least)
+
+
+def _worth_looking_at(gain: Array, there: IntArray, count: int, cell: IntArray) -> IntArray:
+    """Candidates with weight, as many again of the largest gains, and the best of every cell."""
+    size = min(len(gain), 2 * count)
+    best = np.argpartition(-gain, size - 1)[:size]
+    few = np.union1d(there, best)
+    if not cell.any():
+        return few
+    order = np.lexsort((-gain, cell))
+    start = np.searchsorted(cell[order], np.arange(int(cell.max()) + 1))
+    rank = np.arange(len(gain)) - start[cell[order]]
+    return np.union1d(few, order[rank < 4 + 2 * count // len(start)])
+
+
+def _stepped(aim: Purpose, W: Array, x: Array, towards: Array) -> Array:
+    """Some way from fractions towards others, as far as halving finds that the criterion falls."""
+    ends = []
+    for weight in (x, towards):
+        there = np.flatnonzero(weight > 0.0)
+        ends.append((W[there] * weight[there, None]).T @ W[there])
+    best, part = aim.merit(ends[0]), 0.0
+    for k in range(_HALVINGS):
+        t = 0.5**k
+        merit = aim.merit((1.0 - t) * ends[0] + t * ends[1])
+        if merit < best:
+            best, part = merit, t
+        elif part > 0.0:
+            break
+    if part == 0.0:
+        return x
+    return np.clip((1.0 - part) * x + part * towards, 0.0, 1.0)
+
+
+class _Board:
+    """Which flows between cells keep the shares."""
+
+    def __init__(self, quotas: tuple[Quota, ...], count: int) -> None:
+        self.quotas = quotas
+        self.cell = cells(quotas, count)
+        self.order = np.argsort(self.cell, kind="stable")
+        self.first = np.searchsorted(self.cell[self.order], np.arange(int(self.cell.max()) + 1))
+        member = self.order[self.first]
+        self.kinds = [q.kind[member] for q in quotas]  # of every cell
+        self.same = [k[:, None] == k[None, :] for k in self.kinds]
+
+    def best(self, gain: Array, x: Array) -> tuple[int, int, float]:
+        """The pair of rows between which a flow helps most, to and from, and its room."""
+        up = np.where(x < 1.0, gain, -np.inf)
+        down = np.where(x > 0.0, gain, np.inf)
+        if not self.quotas:
+            i, j = int(np.argmax(up)), int(np.argmin(down))
+            return i, j, np.inf
+        high = np.maximum.reduceat(up[self.order], self.first)
+        low = np.minimum.reduceat(down[self.order], self.first)
+        allowed = np.full((len(high), len(high)), np.inf)
+        for quota, kinds, same in zip(self.quotas, self.kinds, self.same, strict=True):
+            count = np.bincount(quota.kind, weights=x, minlength=len(quota.most))
+            least = np.zeros(len(count)) if quota.least is None else quota.least
+            room, spare = (quota.most - count)[kinds], (count - least)[kinds]
+            limit = np.minimum(room[:, None], spare[None, :])
+            allowed = np.minimum(allowed, np.where(same, np.inf, limit))
+        with np.errstate(invalid="ignore"):
+            worth = np.where(allowed > 1e-9, high[:, None] - low[None, :], -np.inf)
+        worth = np.where(np.isnan(worth), -np.inf, worth)
+        a, b = np.unravel_index(int(np.argmax(worth)), worth.shape)
+        rows = [np.flatnonzero(self.cell == k) for k in (a, b)]
+        i = int(rows[0][np.argmax(up[rows[0]])])
+        j = int(rows[1][np.argmin(down[rows[1]])])
+        return i, j, float(allowed[a, b])
+
+
+def _exchanged(aim: Purpose, W: Array, x: Array, quotas: tuple[Quota, ...]) -> tuple[Array, int]:
+    """Vertex exchanges among a few candidates: their new weights, and how many were made."""
+    x = x.copy()
+    board = _Board(quotas, len(x))
+    forms = aim.tangent((W * x[:, None]).T @ W)
+    most_steps = _CURVED if aim.is_curved else _STEPS
+    for step in range(most_steps):
+        if step % _REFRESH == 0:
+            here = slope(aim, (W * x[:, None]).T @ W)
+            inverse, gain = here.inverse.copy(), here.gains(W)
+        up, down, room = board.best(gain, x)
+        if not gain[up] > gain[down] * (1.0 + 1e-9):
+            return x, step
+        pair = W[[up, down]]
+        reach = inverse @ pair.T  # (S, R, 2)
+        most = min(1.0 - x[up], x[down], room)
+        h, k = pair @ reach, np.swapaxes(reach, 1, 2) @ forms.K @ reach
+        flow = _best_flow(aim.is_determinant, forms.weight, h, k, most)
+        x[up] = 1.0 if flow == 1.0 - x[up] else x[up] + flow
+        x[down] = 0.0 if flow == x[down] else x[down] - flow
+        gain = gain + _turned(aim, W, inverse, reach, h, flow, forms.K, forms.weight)
+    return x, most_steps
+
+
+def _turned(
+    aim: Purpose,
+    W: Array,
+    inverse: Array,
+    reach: Array,
+    h: Array,
+    flow: float,
+    K: Array,
+    weight: Array,
+) -> Array:
+    """By how much a flow changes the gains of all, (N,); the inverses are updated in place."""
+    out = np.zeros(len(W))
+    turned = np.linalg.solve(np.diag([1.0 / flow, -1.0 / flow]) + h, np.eye(2)[None])
+    for s, inner in enumerate(turned):
+        along = W @ reach[s]  # (N, 2)
+        if aim.is_determinant:
+            out -= weight[s] * np.einsum("ni,ij,nj->n", along, inner, along)
+        else:
+            other = W @ (inverse[s] @ (K[s] @ reach[s]))
+            kappa = inner @ (reach[s].T @ K[s] @ reach[s]) @ inner
+            out -= 2.0 * np.einsum("ni,ij,nj->n", other, inner, along)
+            out += np.einsum("ni,ij,nj->n", along, kappa, along)
+        inverse[s] -= reach[s] @ inner @ reach[s].T
+    return out
+
+
+def _best_flow(is_determinant: bool, weight: Array, h: Array, k: Array, most: float) -> float:
+    """How much weight should flow from the second touch of a pair to the first.
+
+    Along the flow t the determinant of a machine's information grows by ``1 + b t - d t^2``, and
+    its share of the criterion falls by ``(a t - c t^2) / (1 + b t - d t^2)``, which is concave; the
+    slope of the sum is bisected.
+
+    Args:
+        is_determinant: Whether the criterion is D.
+        weight: Of the machines, (S,).
+        h: ``w M^-1 w`` of the pair, (S, 2, 2).
+        k: ``w M^-1 K M^-1 w`` of the pair, (S, 2, 2).
+        most: Largest flow.
+    """
+    b = (h[:, 0, 0] - h[:, 1, 1]).tolist()
+    d = (h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2).tolist()
+    a = (k[:, 0, 0] - k[:, 1, 1]).tolist()
+    c = k[:, 0, 0] * h[:, 1, 1] + k[:, 1, 1] * h[:, 0, 0] - 2.0 * k[:, 0, 1] * h[:, 0, 1]
+    parts = list(zip(a, b, c.tolist(), d, weight.tolist(), strict=True))
+
+    def falls(t: float) -> float:
+        total = 0.0
+        for a, b, c, d, w in parts:
+            det, turn = 1.0 + b * t - d * t * t, b - 2.0 * d * t
+            if is_determinant:
+                total += w * turn / det
+            else:
+                total += ((a - 2.0 * t * c) * det - (t * a - t * t * c) * turn) / (det * det)
+        return total
+
+    if falls(most) >= 0.0:
+        return float(most)
+    low, high = 0.0, most
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if falls(middle) > 0.0 else (low, middle)
+    return float(max(low, 1e-12))

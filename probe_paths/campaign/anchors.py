@@ -1,0 +1,80 @@
+"""Where each ball really met the surface: foot points of the balls where the machine had them.
+
+A machine whose errors carry the ball a quarter of a millimetre along the surface touches it beside
+the foot point of where the ball was believed to be, and the curvature in between, some
+micrometres, would pass for a deviation. The ordinary model of the machine, fitted to the run
+itself, says where the ball was to some micrometres, poses with few touches included; what it does
+not know moves a foot point by as much as the error that it lacks, whose curvature is nothing.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from artefact.body import Standard
+from probe_paths.campaign.foot_points import foot_points
+from twin.effects import setup_errors
+from twin.frames import Array
+from twin.library import ordinary_model
+from twin.model import Model
+from twin.record import Run, computed_deviation
+from twin.units import UM
+
+_NOISE = 2.0 * UM
+"""How closely the model is asked to fit at most, mm: what it lacks is not noise, but as large."""
+
+_HUBER = 3.0
+"""Residuals beyond so many times the median count with less than their full weight."""
+
+_ROUNDS = 4
+_STILL = 1e-5
+"""Deviations that change less than this in a round are settled, mm."""
+
+
+def anchored(run: Run, standard: Standard) -> Run:
+    """A run whose points and normals are those where the balls met the standard.
+
+    ``p = foot point of (x + d)``, x the believed ball centre and d what the fitted model says of
+    its displacement relative to the standard. The deviations ``n . (x - p) - radius`` remain those
+    of the believed balls: only the point and the normal that they refer to are better.
+
+    Args:
+        run: With foot points of the believed balls.
+        standard: As calibrated.
+
+    Returns:
+        The run anew, with the old foot point where a moved ball has none.
+    """
+    weight = np.ones(len(run))
+    for _ in range(_ROUNDS):
+        t, before = run.touches, run.deviation
+        moved, weight = _displacement(run, weight)
+        point, normal = foot_points(standard, t.feature, t.ball_artefact + moved)
+        found = np.all(np.isfinite(point), axis=1, keepdims=True)
+        t = replace(
+            t, point=np.where(found, point, t.point), normal=np.where(found, normal, t.normal)
+        )
+        run = replace(run, touches=t, deviation=computed_deviation(t))
+        if np.abs(run.deviation - before).max() < _STILL:
+            break
+    return run
+
+
+def _displacement(run: Run, weight: Array) -> tuple[Array, Array]:
+    """Of the balls relative to the standard by the ordinary model, artefact frame, (N, 3), mm.
+
+    Least squares with the prior of the model as further rows: minimises
+    ``weight |A theta - dev|^2 / noise^2 + |theta / sd|^2``. What the touches do not tell stays
+    zero. Also returns the weights (N,) of the next round: Huber's, so that a chip pulls little.
+    """
+    t = run.touches
+    model = Model(t.chain, (*ordinary_model(t.chain).effects, *setup_errors(t)))
+    sd = np.array([p.sd for effect in model.effects for p in effect.parameters])
+    root = np.sqrt(weight) / np.maximum(run.u, _NOISE)
+    columns = model.columns(t)
+    A = np.concatenate([columns * sd * root[:, None], np.eye(len(sd))])
+    y = np.concatenate([run.deviation * root, np.zeros(len(sd))])
+    theta = sd * np.linalg.lstsq(A, y, rcond=None)[0]
+    left = np.abs(run.deviation - columns @ theta)
+    usual = _HUBER * max(float(np.median(left)), _NOISE)
+    return model.relative_deviation(t, theta), usual / np.maximum(left, usual)

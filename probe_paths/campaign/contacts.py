@@ -1,0 +1,164 @@
+"""Where true balls meet true surfaces: all touches of a program at once, by Newton's method."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from artefact.body import Meeting, Standard
+from artefact.reach import contact
+from probe_paths.control import Clock, ReadProgram
+from probe_paths.language import Dialect
+from twin.frames import Array, apply, inverse, turn
+from twin.machine import Chain, Contribution, exact_tip, linear_directions, tip
+from twin.record import IntArray, Setup, Touches
+from twin.units import NM
+
+CONTACT_TOLERANCE = 1e-3 * NM
+"""The ball touches when its gap is this small, mm."""
+
+_STEPS = 12
+
+Disturbance = Callable[[Touches], Contribution]
+
+
+@dataclass(frozen=True, eq=False)
+class VirtualMachine:
+    """The machine as it really is, for nobody but the simulator to know.
+
+    Attributes:
+        chain: Nominal kinematics.
+        disturbance: What all errors add at given touches; None for a perfect machine.
+        setup_error: Pose (4, 4) of the standard where it really stands, seen from where it is
+            believed to stand (artefact frame).
+        noise: Standard deviation of the trigger along the normal, mm.
+        clock: Speeds.
+        dialect: Of the control.
+    """
+
+    chain: Chain
+    disturbance: Disturbance | None = None
+    setup_error: Array = field(default_factory=lambda: np.eye(4))
+    noise: float = 0.0
+    clock: Clock = field(default_factory=Clock)
+    dialect: Dialect = field(default_factory=Dialect)
+
+
+class Contacts:
+    """Solves all touches of a program at once."""
+
+    def __init__(
+        self, program: ReadProgram, standard: Standard, machine: VirtualMachine, noise: Array
+    ) -> None:
+        touches = program.touches
+        self.program, self.standard, self.machine, self.noise = program, standard, machine, noise
+        self.radius, self.length = program.heading.radius, program.heading.length
+        self.start = np.array([t.q for t in touches]).reshape(-1, len(machine.chain.axes))
+        self.direction = np.array([t.direction for t in touches]).reshape(self.start.shape)
+        self.distance = np.array([t.distance for t in touches])
+        believed = program.heading.setup.T_table_artefact
+        self.T_artefact_table = inverse(believed @ machine.setup_error)
+        self._meet_nominally()
+
+    def _meet_nominally(self) -> None:
+        """First contact of every ball with the standard where it stands, on a perfect machine."""
+        chain = self.machine.chain
+        columns = [chain.axis_index(a) for a in chain.linear_axes]
+        D = linear_directions(chain, self.start)
+        motion = np.einsum("nij,nj->ni", D, self.direction[:, columns])
+        self.motion = turn(self.T_artefact_table, motion)  # (N, 3) of the ball per mm of travel
+        centre = apply(self.T_artefact_table, tip(chain, self.start, self.length))
+        hit = contact(self.standard, centre, self.motion, self.radius)
+        self.miss = np.array(
+            [
+                "" if m == Meeting.SURFACE else f"the ball {m}" + (f" ({f})" if f else "")
+                for m, f in zip(hit.meeting, hit.feature, strict=True)
+            ],
+            dtype="U200",
+        )
+        self.feature = hit.feature.astype(str)
+        met = self.miss == ""
+        self.travel = np.where(met, hit.travel, self.distance)
+        self.gap = np.zeros(len(hit.travel))  # left between ball and surface, mm
+        self.uv = np.where(met[:, None], hit.uv, 0.0)
+        self.point = np.where(met[:, None], hit.point, 0.0)
+        self.normal = np.where(met[:, None], hit.normal, -self.motion)
+
+    @property
+    def q(self) -> Array:
+        """Readings where the balls stand now, (N, A)."""
+        return self.start + self.travel[:, None] * self.direction
+
+    def settle(self, time: Array) -> None:
+        """Move the axes until the true balls touch.
+
+        Newton on ``f(t) = n . (c(t) - S) - (radius + bias + noise)``, with c the true ball centre
+        at the actual readings, S its foot point on the surface and n the normal there. Errors
+        hardly vary along the way, so the slope is that of the perfect machine.
+        """
+        met = np.flatnonzero(self.miss == "")
+        for _ in range(_STEPS if len(met) else 0):
+            centre, radius = self._true_balls(met, time)
+            for name in dict.fromkeys(self.feature[met].tolist()):
+                mine = np.flatnonzero(self.feature[met] == name)
+                surface = self.standard.features[name]
+                uv = surface.project(centre[mine])
+                self.uv[met[mine]] = uv
+                self.point[met[mine]], self.normal[met[mine]] = (
+                    surface.point(uv),
+                    surface.normal(uv),
+                )
+            n = self.normal[met]
+            gap = np.einsum("ni,ni->n", n, centre - self.point[met]) - radius
+            slope = np.einsum("ni,ni->n", n, self.motion[met])
+            self.gap[met] = gap
+            self.travel[met] -= np.where(np.isfinite(gap), gap, 0.0) / slope
+            if np.all(np.abs(gap) < CONTACT_TOLERANCE):
+                break
+
+    def _true_balls(self, rows: IntArray, time: Array) -> tuple[Array, Array]:
+        """True ball centres (M, 3) in the artefact frame and radii (M,) at the trigger."""
+        chain = self.machine.chain
+        touches = self._touches(rows, time)
+        added = Contribution.zeros(len(rows), len(chain.links))
+        if self.machine.disturbance is not None:
+            added = self.machine.disturbance(touches)
+        actual = exact_tip(chain, touches.q, self.length, added) - added.shift
+        radius = self.radius + added.bias + self.noise[rows]
+        return apply(self.T_artefact_table, actual), radius
+
+    def _touches(self, rows: IntArray, time: Array) -> Touches:
+        """The record that effects look at."""
+        chain = self.machine.chain
+        probings = self.program.touches
+        side = np.array([probings[i].side for i in rows])
+        return Touches(
+            chain=chain,
+            q=self.q[rows],
+            length=np.full(len(rows), self.length),
+            radius=np.full(len(rows), self.radius),
+            point=self.point[rows],
+            normal=self.normal[rows],
+            setups=(Setup(self.program.heading.setup.name, inverse(self.T_artefact_table)),),
+            setup=np.zeros(len(rows), dtype=np.int64),
+            time=time[rows],
+            approach=np.where(self.direction[rows] != 0.0, np.sign(self.direction[rows]), side),
+            feature=self.feature[rows],
+            pose=np.array([probings[i].pose for i in rows]),
+        )
+
+    def judge(self) -> None:
+        """Contacts that the control would not report, in words."""
+        reasons = [
+            (~(np.abs(self.gap) < 1e3 * CONTACT_TOLERANCE), str(Meeting.UNRESOLVED)),
+            (self.travel < 0.0, "the ball touches before it starts"),
+            (self.travel > self.distance, "the ball meets nothing within the travel"),
+        ]
+        for name in dict.fromkeys(self.feature.tolist()):
+            if name in self.standard.features:
+                inside = self.standard.features[name].contains(self.uv)
+                words = f"the ball {Meeting.EDGE} ({name})"
+                reasons.append(((self.feature == name) & ~inside, words))
+        for wrong, words in reasons:
+            self.miss = np.where((self.miss == "") & wrong, words, self.miss)
+        self.travel = np.where(self.miss == "", self.travel, self.distance)

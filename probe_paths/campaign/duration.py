@@ -1,0 +1,45 @@
+"""How long it takes to probe a body that somebody might have instead of the standard."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from artefact.body import Standard
+from artefact.reach import Requests
+from probe_paths.emit import make_programs
+from probe_paths.plan import PlanOptions, Probe, plan_touches
+from twin.errors import NotReachable
+from twin.machine import Chain
+from twin.record import Setup
+
+
+def probing_time(
+    body: Standard,
+    chain: Chain,
+    probe: Probe,
+    setup: Setup,
+    requests: Requests,
+    options: PlanOptions | None = None,
+) -> float:
+    """Time on the machine by the programs that a plan of the same care would have.
+
+    Touches that this plan refuses are counted as if they took as long as the others.
+
+    Args:
+        body: What is touched.
+        chain: The machine.
+        probe: In the spindle.
+        setup: Where the body stands.
+        requests: Its touches.
+        options: How carefully; those of the standard's own plan.
+
+    Returns:
+        In s; nan where no plan at all can be made.
+    """
+    options = replace(options or PlanOptions(), tolerated=len(requests))
+    try:
+        plan = plan_touches(body, chain, probe, setup, requests, options)
+    except NotReachable:
+        return float(np.nan)
+    planned = int(np.sum(plan.request >= 0))
+    return make_programs(plan).duration * len(requests) / planned

@@ -1,0 +1,174 @@
+"""What the order of a plan costs in time on the machine, and what it lets the touches know.
+
+The same touches are put into quicker orders. For each, programs are made and read back, so that
+times and sides of approach are those of the programs' text; then a drift of the set-up and a
+reversal of each rotary axis, both of unknown size, are fitted together with every error of the
+machine, and their standard deviations tell how well the order separates them from geometry.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from probe_paths.control import Clock, Probing, interpret, step_times
+from probe_paths.emit import Feeds, make_programs
+from probe_paths.plan import TouchPlan, Visit, home_readings, nearest_neighbours
+from twin.frames import Array
+from twin.library import parse_effect
+from twin.model import Effect, Model, columns
+from twin.record import IntArray, Setup, Touches
+
+_FREE = 1e3
+"""Prior of what is looked for, in units of its typical size: nearly none."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """One order of the same touches.
+
+    Attributes:
+        name: In words.
+        touches: Number, anchor touches included.
+        duration: Of all programs, s.
+        drift: Standard deviation of the rate of a drift, its worst direction, mm/h.
+        reversal: Standard deviation of the reversal of every rotary axis, in chain order, rad.
+    """
+
+    name: str
+    touches: int
+    duration: float
+    drift: float
+    reversal: tuple[float, ...]
+
+
+def orders(plan: TouchPlan, model: Model, noise: float) -> tuple[Order, ...]:
+    """The plan's own order first, then the same touches in ever quicker ones.
+
+    Args:
+        plan: As it is to be probed.
+        model: Geometric errors of the machine with their prior.
+        noise: Standard deviation of one touch, mm.
+    """
+    bare = _rows(plan, np.flatnonzero(plan.request >= 0))
+    once = _once(bare)
+    tried = (
+        ("as planned: mixed, twice, from both sides, anchor touches", plan),
+        ("the same without the anchor touches", bare),
+        ("mixed, every pose once", once),
+        ("shortest ways, every pose once, from whatever side", _shortest(once)),
+    )
+    return tuple(_judged(name, one, model, noise) for name, one in tried)
+
+
+def _judged(name: str, plan: TouchPlan, model: Model, noise: float) -> Order:
+    touches, duration = _timed(plan)
+    rotary = plan.chain.rotary_axes
+    sought: list[Effect] = [parse_effect("drift", plan.chain)]
+    sought += [parse_effect(f"backlash({axis})", plan.chain) for axis in rotary]
+    size = np.array([p.sd for effect in sought for p in effect.parameters]) * _FREE
+    sd = size * _sd_beside(
+        columns(sought, touches) * size / noise, model.columns(touches) * model.prior_sd / noise
+    )
+    drift = float(sd[:3].max())
+    reversal = tuple(float(value) for value in sd[3:])
+    return Order(name, len(plan), duration, drift, reversal)
+
+
+def _sd_beside(C: Array, W: Array) -> Array:
+    """Standard deviations of C's parameters when W's are unknown too, all of prior one, (Q,)."""
+    known = np.eye(W.shape[1]) + W.T @ W
+    left = np.eye(C.shape[1]) + C.T @ C - C.T @ W @ np.linalg.solve(known, W.T @ C)
+    sd: Array = np.sqrt(np.diag(np.linalg.solve(left, np.eye(len(left)))))
+    return sd
+
+
+def _timed(plan: TouchPlan) -> tuple[Touches, float]:
+    """Touches with times and sides of approach as the programs' text has them; duration, s."""
+    # all in one program: an order shall not be judged by where its files begin
+    programs = make_programs(plan, feeds=Feeds(touches_per_file=len(plan)))
+    (program,) = programs.programs
+    text, path = program.text.encode("ascii"), Path(f"{program.name}.H")
+    read = interpret(text, path, programs.masks.get, plan.chain, plan.probe)
+    travel = np.full(len(read.touches), plan.options.standoff)
+    clock = step_times(plan.chain, read.steps, Clock(), travel)
+    time = clock[[isinstance(step, Probing) for step in read.steps]]
+    side = np.array([touch.side for touch in read.touches])
+    return _record(plan, time, side), float(clock[-1])
+
+
+def _record(plan: TouchPlan, time: Array, approach: Array) -> Touches:
+    n = len(plan)
+    return Touches(
+        chain=plan.chain,
+        q=plan.contact,
+        length=np.full(n, plan.probe.length),
+        radius=np.full(n, plan.probe.radius),
+        point=plan.point,
+        normal=plan.normal,
+        setups=(Setup(plan.setup.name, plan.setup.T_table_artefact),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=time,
+        approach=approach,
+        feature=plan.feature,
+        pose=np.array([visit.pose for visit in plan.visits])[plan.visit],
+    )
+
+
+def _rows(plan: TouchPlan, rows: IntArray) -> TouchPlan:
+    """Some rows of a plan in the order given; each visit must keep one touch at least."""
+    per_touch = ("visit", "request", "feature", "point", "normal", "start", "contact", "direction")
+    return replace(plan, **{name: getattr(plan, name)[rows] for name in per_touch})
+
+
+def _shortest(plan: TouchPlan) -> TouchPlan:
+    """Visits in a short order from home and back, every pose straight from the one before."""
+    way = _short_way(np.array([v.rotary for v in plan.visits]), home_readings(plan.chain))
+    here, last = home_readings(plan.chain), np.zeros(len(plan.chain.rotary_axes))
+    visits = []
+    for stop in (plan.visits[i] for i in way):
+        side = np.where(stop.rotary == here, last, np.sign(stop.rotary - here))
+        # an axis that has not turned at all yet is reached as it was planned
+        before = np.where(side == 0.0, stop.before, stop.rotary)
+        side = np.where(side == 0.0, stop.side, side)
+        visits.append(replace(stop, before=before, side=side))
+        here, last = stop.rotary, side
+    return _once(plan, tuple(visits))
+
+
+def _short_way(poses: Array, home: Array) -> list[int]:
+    """Order of poses (V, R) with little turning, by nearest neighbours and reversals of parts."""
+    places = np.concatenate([home[None], poses])
+    cost = np.abs(places[:, None] - places).max(axis=-1)  # the slowest axis decides
+    tour = [0, *(1 + nearest_neighbours(poses, home)).tolist()]
+    improved = True
+    while improved:
+        improved = False
+        for i in range(1, len(tour) - 1):
+            for j in range(i + 1, len(tour)):
+                a, b, c, d = tour[i - 1], tour[i], tour[j], tour[(j + 1) % len(tour)]
+                if cost[a, c] + cost[b, d] < cost[a, b] + cost[c, d] - 1e-9:
+                    tour[i : j + 1] = tour[i : j + 1][::-1]
+                    improved = True
+    return [int(k) - 1 for k in tour[1:]]
+
+
+def _once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPlan:
+    """Every pose visited once, in the order of some visits or that of the plan."""
+    first: dict[int, Visit] = {}
+    for visit in visits or plan.visits:
+        first.setdefault(visit.pose, visit)
+    pose = np.array([visit.pose for visit in plan.visits])[plan.visit]
+    linear = [plan.chain.axis_index(name) for name in plan.chain.linear_axes]
+    rows = []
+    for k in first:
+        mine = np.flatnonzero(pose == k)
+        places = plan.start[mine][:, linear]
+        rows.append(mine[nearest_neighbours(places, places[0])])
+    sizes = [len(mine) for mine in rows]
+    moved = _rows(plan, np.concatenate(rows))
+    return replace(
+        moved,
+        visits=tuple(first.values()),
+        visit=np.repeat(np.arange(len(first)), sizes),
+    )

@@ -1,0 +1,79 @@
+"""Programs run on the twin, their logs read back and evaluated: text in, measurements out."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from artefact.body import Standard
+from artefact.reach import TABLE_RADIUS
+from probe_paths.campaign.collisions import check_moves
+from probe_paths.campaign.contacts import VirtualMachine
+from probe_paths.campaign.evaluate import evaluate
+from probe_paths.campaign.virtual import VirtualRun, run_programs
+from probe_paths.control import read_log, read_program
+from probe_paths.plan import Probe
+from twin.errors import NotReachable
+from twin.record import Run
+
+SMALLEST_U = 1e-5
+"""Uncertainty stated where no noise is simulated, mm: a run file cannot state none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """All programs of one set-up or several, run one after the other.
+
+    Attributes:
+        run: The measurements.
+        runs: What each program did.
+    """
+
+    run: Run
+    runs: tuple[VirtualRun, ...]
+
+    @property
+    def logs(self) -> Mapping[str, str]:
+        """Text of every log file by name."""
+        return {name: text for one in self.runs for name, text in one.log.items()}
+
+
+def simulate(
+    programs: Sequence[str | Path],
+    standard: Standard,
+    machine: VirtualMachine,
+    rng: np.random.Generator,
+    probe: Probe | None = None,
+    table_radius: float = TABLE_RADIUS,
+) -> Campaign:
+    """Run program files on the twin and evaluate the logs that they leave.
+
+    Args:
+        programs: `.H` files with their masks beside them, in the order in which they are run.
+        standard: The true one, which is also the calibrated one.
+        machine: As it really is; the evaluation knows only its nominal chain.
+        rng: For the noise of the trigger.
+        probe: In the spindle; None takes the one that each program states.
+        table_radius: Of the table's face, mm: moves are kept clear of it.
+
+    Raises:
+        BadFile: A program that the control, or a cautious operator, would not run.
+        NotReachable: A touch without contact; the program stopped there.
+        DesignError: A program made for another standard.
+    """
+    texts = [read_program(path, machine.chain, probe) for path in programs]
+    for text in texts:
+        check_moves(text, standard, machine.chain, table_radius)
+    runs = run_programs(texts, standard, machine, rng)
+    if runs[-1].why:
+        raise NotReachable(runs[-1].why, runs=runs)
+    parts = [
+        part
+        for one in runs
+        for name, text in one.log.items()
+        for part in read_log(name, machine.chain.rotary_axes, text)
+    ]
+    u = max(machine.noise, SMALLEST_U)
+    run = evaluate(parts, standard, machine.chain, u, machine.dialect)
+    return Campaign(run, tuple(runs))

@@ -1,0 +1,223 @@
+"""Runs a program, as read from its text, on the exact twin: the true ball meets the true surface.
+
+The axes go where the text sends them. At every touch the ball, displaced by all errors at the
+actual readings, travels along the probing vector until it touches the B-spline or the sphere; what
+the control then knows are the readings, and they go through the masks into the log.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from enum import StrEnum
+
+import numpy as np
+
+from artefact.body import Standard
+from probe_paths.campaign.contacts import Contacts, VirtualMachine
+from probe_paths.control import (
+    STATUS,
+    Halt,
+    Print,
+    Probing,
+    ReadProgram,
+    Result,
+    Step,
+    Value,
+    step_times,
+)
+from probe_paths.plan import LINEAR, Probe, ProgramFrame
+from twin.errors import DesignError
+from twin.frames import Array
+from twin.record import Labels
+
+FIRST_MORNING = datetime(2000, 1, 1, 8, 0, 0)
+"""When a simulated campaign begins; any date does, but it must not depend on today."""
+
+CHANGEOVER = 60.0
+"""Between two programs, s."""
+
+
+class Outcome(StrEnum):
+    """How a simulated program ended; the values are sentences for a report."""
+
+    DONE = "ran to its end"
+    STOPPED = "stopped at a touch without contact"
+
+
+@dataclass(frozen=True, eq=False)
+class VirtualRun:
+    """What a program brought about.
+
+    Attributes:
+        program: As read.
+        q: Readings at the trigger, (N, A); nan for touches without contact.
+        time: Of the trigger, s since the start of the campaign, (N,).
+        feature: What was touched, (N,).
+        miss: Why there was no contact, (N,); empty where there was one.
+        reached: How many touches were tried before the program ended.
+        log: Text of every log file by name.
+        outcome: How it ended.
+        end: s since the start of the campaign.
+    """
+
+    program: ReadProgram
+    q: Array
+    time: Array
+    feature: Labels
+    miss: Labels
+    reached: int
+    log: Mapping[str, str]
+    outcome: Outcome
+    end: float
+
+    @property
+    def why(self) -> str:
+        """One line on a program that stopped; empty for one that did not."""
+        if self.outcome is Outcome.DONE:
+            return ""
+        touch = self.program.touches[self.reached - 1]
+        return (
+            f"{self.program.path}: line {touch.line}: touch {touch.number} "
+            f"on {self.program.features[touch.feature]} has no contact: {self.miss[touch.index]}"
+        )
+
+
+def run_programs(
+    programs: Sequence[ReadProgram],
+    standard: Standard,
+    machine: VirtualMachine,
+    rng: np.random.Generator,
+) -> list[VirtualRun]:
+    """Run programs one after the other; a stopped one ends the campaign.
+
+    Args:
+        programs: As read from their texts.
+        standard: The true one.
+        machine: As it really is.
+        rng: For the noise of the trigger.
+
+    Raises:
+        DesignError: A program made for another standard.
+    """
+    runs: list[VirtualRun] = []
+    begin = 0.0
+    for program in programs:
+        runs.append(run_program(program, standard, machine, rng, begin))
+        if runs[-1].outcome is not Outcome.DONE:
+            break
+        begin = runs[-1].end + CHANGEOVER
+    return runs
+
+
+def run_program(
+    program: ReadProgram,
+    standard: Standard,
+    machine: VirtualMachine,
+    rng: np.random.Generator,
+    begin: float = 0.0,
+) -> VirtualRun:
+    """Run one program.
+
+    Args:
+        program: As read from its text.
+        standard: The true one.
+        machine: As it really is.
+        rng: For the noise of the trigger.
+        begin: When it is started, s since the start of the campaign.
+
+    Raises:
+        DesignError: A program made for another standard.
+    """
+    _check_standard(program, standard)
+    steps, clock = program.steps, machine.clock
+    noise = rng.normal(0.0, 1.0, len(program.touches)) * machine.noise
+    contacts = Contacts(program, standard, machine, noise)
+    rows = [i for i, step in enumerate(steps) if isinstance(step, Probing)]
+    times = begin + step_times(machine.chain, steps, clock, contacts.travel)
+    contacts.settle(times[rows])
+    contacts.judge()
+    times = begin + step_times(machine.chain, steps, clock, contacts.travel)
+    control = _Control(program, contacts, machine)
+    outcome, reached, end = control.run(steps, times)
+    return VirtualRun(
+        program=program,
+        q=np.where((contacts.miss == "")[:, None], contacts.q, np.nan),
+        time=times[rows],
+        feature=contacts.feature,
+        miss=contacts.miss,
+        reached=reached,
+        log=control.log,
+        outcome=outcome,
+        end=end,
+    )
+
+
+def _check_standard(program: ReadProgram, standard: Standard) -> None:
+    names = list(standard.features)
+    for number, name in program.features.items():
+        if not 0 < number <= len(names) or names[number - 1] != name:
+            raise DesignError(
+                f"{program.path}: feature {number} is {name} in the program; standard "
+                f"'{standard.name}' has {', '.join(f'{i + 1} {n}' for i, n in enumerate(names))}"
+            )
+    if program.heading.standard != standard.name:
+        raise DesignError(
+            f"{program.path}: made for standard '{program.heading.standard}', "
+            f"this one is '{standard.name}'"
+        )
+
+
+class _Control:
+    """What the control knows and prints."""
+
+    def __init__(self, program: ReadProgram, contacts: Contacts, machine: VirtualMachine) -> None:
+        self.program, self.contacts = program, contacts
+        heading = program.heading
+        self.frame = ProgramFrame(machine.chain, Probe(heading.radius, heading.length))
+        self.dialect = machine.dialect
+        self.lines: dict[str, list[str]] = {}
+        self.results = self._results()
+
+    def _results(self) -> Array:
+        """X, Y, Z and status of every touch as cycle 4 returns them, (N, 4)."""
+        q = self.contacts.q
+        out = np.empty((len(q), 4))
+        for i, letter in enumerate(LINEAR):
+            column = self.frame.chain.axis_index(letter)
+            out[:, i] = [self.frame.coordinate(letter, v) for v in q[:, column]]
+        if self.dialect.result_height == "gauge":
+            out[:, 2] += self.frame.probe.tool_length
+        out[:, STATUS] = np.where(self.contacts.miss == "", 0.0, -1.0)
+        return out
+
+    @property
+    def log(self) -> Mapping[str, str]:
+        """Text of every log file."""
+        return {name: "\n".join(lines) + "\n" for name, lines in self.lines.items()}
+
+    def run(self, steps: Sequence[Step], times: Array) -> tuple[Outcome, int, float]:
+        """Print what the program prints; outcome, touches tried and time of the end."""
+        tried, now = 0, float(times[0]) if len(times) else 0.0
+        for step, time in zip(steps, times, strict=True):
+            now = float(time)
+            if isinstance(step, Print):
+                self._print(step, now)
+            elif isinstance(step, Halt):
+                return Outcome.STOPPED, tried, now
+            elif isinstance(step, Probing):
+                tried += 1
+                if self.contacts.miss[step.index]:
+                    for branch in step.miss:
+                        if isinstance(branch, Print):
+                            self._print(branch, now)
+                    return Outcome.STOPPED, tried, now
+        return Outcome.DONE, tried, now
+
+    def _print(self, step: Print, now: float) -> None:
+        values = {q: self._number(value) for q, value in step.values.items()}
+        moment = FIRST_MORNING + timedelta(seconds=int(now))
+        lines = self.lines.setdefault(step.target, [])
+        lines += [line.filled(values, moment) for line in step.lines]
+
+    def _number(self, value: Value) -> float:
+        return float(self.results[value.touch, value.part]) if isinstance(value, Result) else value

@@ -1,0 +1,36 @@
+"""The control as our programs see it: reader, interpreter, clock and log."""
+
+from probe_paths.control.clock import Clock
+from probe_paths.control.interpreter import interpret, read_program, stated_probe
+from probe_paths.control.log import LogPart, read_log
+from probe_paths.control.steps import (
+    STATUS,
+    Halt,
+    Move,
+    Print,
+    Probing,
+    ReadProgram,
+    Result,
+    Step,
+    Value,
+)
+from probe_paths.control.timeline import step_times
+
+__all__ = [
+    "STATUS",
+    "Clock",
+    "Halt",
+    "LogPart",
+    "Move",
+    "Print",
+    "Probing",
+    "ReadProgram",
+    "Result",
+    "Step",
+    "Value",
+    "interpret",
+    "read_log",
+    "read_program",
+    "stated_probe",
+    "step_times",
+]

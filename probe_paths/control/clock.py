@@ -1,0 +1,66 @@
+"""How long a move takes: the one model of time that plan and simulation share."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.frames import Array
+from twin.machine import Chain
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Speeds of machine and control. Defaults are those of a machine of medium speed.
+
+    Attributes:
+        rapid: Of a linear axis, mm/s.
+        turning: Rapid of a rotary axis, rad/s.
+        acceleration: Of a linear axis, mm/s^2.
+        turning_acceleration: Of a rotary axis, rad/s^2.
+        block: What every move costs besides, s.
+        probing: What a probing cycle costs besides its motion, s.
+    """
+
+    rapid: float = 300.0
+    turning: float = 1.0
+    acceleration: float = 3000.0
+    turning_acceleration: float = 5.0
+    block: float = 0.05
+    probing: float = 0.8
+
+    def durations(self, chain: Chain, steps: Array, feed: Array) -> Array:
+        """Duration of moves from standstill to standstill.
+
+        An axis that travels s needs ``s/v + v/a``, or ``2 sqrt(s/a)`` where it does not come up to
+        speed; the slowest axis decides. A fed move runs at its feed along the path (along the
+        angle, where only rotary axes turn).
+
+        Args:
+            chain: The machine.
+            steps: Change of the readings, shape (M, A), mm and rad; nan counts as no motion.
+            feed: mm/s or rad/s, shape (M,); nan is rapid.
+
+        Returns:
+            Shape (M,), s.
+        """
+        linear = [chain.axis_index(name) for name in chain.linear_axes]
+        rotary = [chain.axis_index(name) for name in chain.rotary_axes]
+        travel = np.abs(np.nan_to_num(steps))
+        fastest = np.maximum(
+            _rapid(travel[:, linear], self.rapid, self.acceleration),
+            _rapid(travel[:, rotary], self.turning, self.turning_acceleration),
+        )
+        path = np.linalg.norm(travel[:, linear], axis=1)
+        path = np.where(path > 0.0, path, np.linalg.norm(travel[:, rotary], axis=1))
+        return self.block + np.where(np.isnan(feed), fastest, path / feed)
+
+
+def _rapid(travel: Array, speed: float, acceleration: float) -> Array:
+    """Duration of rapid moves of axes, the slowest of each row, (M,), s."""
+    if not travel.shape[1]:
+        return np.zeros(len(travel))
+    trapezoid = travel / speed + speed / acceleration
+    triangle = 2.0 * np.sqrt(travel / acceleration)
+    short = travel < speed**2 / acceleration
+    slowest: Array = np.where(short, triangle, trapezoid).max(axis=1)
+    return slowest

@@ -1,0 +1,112 @@
+"""Reads an emitted program and its masks, and executes the text: moves, touches, printed lines.
+
+Only the text is believed. What the plan meant is not known here, so a slip between plan and text
+shows. A touch is assumed to find its surface; what the program does when it does not is read too
+and stands with the touch.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from probe_paths.control.runner import MaskSource, Runner
+from probe_paths.control.state import State
+from probe_paths.control.steps import Probing, ReadProgram
+from probe_paths.control.structure import check_cycles, heading, labels, program_name
+from probe_paths.language import read_blocks
+from probe_paths.plan import Heading, Probe, ProgramFrame
+from twin.errors import BadFile
+from twin.machine import Chain
+
+
+def read_program(path: str | Path, chain: Chain, probe: Probe | None = None) -> ReadProgram:
+    """Read a program file and its masks, and execute it.
+
+    Args:
+        path: The `.H` file; masks (`.A`) stand in the same folder.
+        chain: The machine.
+        probe: In the spindle; None takes the one that the program's head states.
+
+    Raises:
+        BadFile: Whatever the control, or a cautious operator, would not run.
+    """
+    path = Path(path)
+
+    def mask(name: str) -> str | None:
+        try:
+            return (path.parent / name).read_bytes().decode("ascii", "replace")
+        except FileNotFoundError:
+            return None
+
+    return interpret(_content(path), path, mask, chain, probe)
+
+
+def stated_probe(path: str | Path, radius: float | None, length: float | None) -> Probe | None:
+    """The probe that a user states, mm; what is left open comes from the program's head."""
+    if radius is None and length is None:
+        return None
+    head, _ = heading(read_blocks(_content(Path(path)), path), Path(path))
+    return Probe(
+        head.radius if radius is None else radius, head.length if length is None else length
+    )
+
+
+def _content(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise BadFile(path, "file", error.strerror or "nothing", "a program file") from error
+
+
+def interpret(
+    data: bytes, path: Path, masks: MaskSource, chain: Chain, probe: Probe | None = None
+) -> ReadProgram:
+    """Execute the text of a program.
+
+    Args:
+        data: Content of the program file.
+        path: Its name: it must agree with the program's.
+        masks: Where FN 16 finds its masks.
+        chain: The machine.
+        probe: In the spindle; None takes the one that the program's head states.
+
+    Raises:
+        BadFile: Whatever the control, or a cautious operator, would not run.
+    """
+    blocks = read_blocks(data, path)
+    name = program_name(blocks, path)
+    places = labels(blocks, path)
+    check_cycles(blocks, path)
+    head, features = heading(blocks, path)
+    frame = ProgramFrame(chain, _probe(head, probe, path))
+    runner = Runner(blocks, places, frame, path, masks)
+    nothing = np.full(len(chain.axes), np.nan)
+    steps = runner.run(0, State(path, frame, nothing, np.zeros(len(chain.axes))))
+    runner.check_logged()
+    for touch in steps:
+        if isinstance(touch, Probing) and touch.feature not in features:
+            raise BadFile(
+                path,
+                f"line {touch.line}",
+                f"feature {touch.feature}",
+                "a number of the head's list (;FEATURE <number> IS <name>)",
+            )
+    return ReadProgram(path, name, head, features, tuple(steps))
+
+
+def _probe(head: Heading, probe: Probe | None, path: Path) -> Probe:
+    """The probe in the spindle, which must be the one that the program was made for."""
+    if probe is None:
+        return Probe(head.radius, head.length)
+    for what, stated, actual in (
+        ("radius", head.radius, probe.radius),
+        ("length", head.length, probe.length),
+    ):
+        if abs(stated - actual) > 1e-5:
+            raise BadFile(
+                path,
+                "head",
+                f"a probe of {what} {stated:g} mm",
+                f"{actual:g} mm, as in the spindle",
+            )
+    return probe

@@ -1,0 +1,125 @@
+"""Modes, system data and numbers of cycle 4: what a block may set, read and ask for."""
+
+import numpy as np
+
+from probe_paths.control.state import State
+from probe_paths.language import SYSTEM_INDEX, TOOL_LENGTH, Block, Kind
+from probe_paths.plan import LINEAR
+from twin.units import DEG
+
+MAX_PROBING_FEED = 1000.0
+"""Above this a cycle 4 is refused, mm/min: the trigger delay and the overtravel grow with it."""
+
+
+def system_datum(block: Block, state: State) -> float:
+    """FN 18: calibration of the probe, number of the tool, nominal rotary positions."""
+    probe = state.frame.probe
+    group, number = int(block.word("group")), int(block.word("number"))
+    index = int(block.words["index"] or 0)
+    letters = {SYSTEM_INDEX[a]: a for a in state.frame.letters if a not in LINEAR}
+    if (group, number) == (240, 1) and index in letters:
+        if not state.is_synchronous:
+            raise state.refuse(block, "a position read ahead", "FN 20: WAIT FOR SYNC before it")
+        return float(state.q[state.frame.chain.axis_index(letters[index])]) / DEG
+    known = {
+        (350, 11, 0): probe.radius,
+        (350, 12, 0): probe.tool_length,
+        (350, 14, 1): 0.0,
+        (350, 14, 2): 0.0,
+    }
+    if (group, number, index) == (20, 1, 0) and state.tool is not None:
+        return float(state.tool)
+    if (group, number, index) not in known:
+        raise state.refuse(
+            block,
+            f"ID{group} NR{number} IDX{index}",
+            "ID20 NR1, ID240 NR1 of a rotary axis, or ID350 NR11, NR12, NR14 IDX1, IDX2",
+        )
+    return known[group, number, index]
+
+
+def check_cycle(state: State, block: Block, vector: Block, length: float) -> None:
+    """Numbers of a cycle 4 that make sense."""
+    if abs(length - 1.0) > 1e-3:
+        raise state.refuse(vector, f"a vector of length {length:.4f}", "length 1")
+    if block.word("system") != "0":
+        raise state.refuse(block, "REFERENCE SYSTEM:1", "REFERENCE SYSTEM:0")
+    if not 0.0 < block.number("feed") <= MAX_PROBING_FEED:
+        raise state.refuse(block, f"F{block.word('feed')}", f"F1 to F{MAX_PROBING_FEED:.0f}")
+    if not 0.0 <= block.number("back") <= block.number("distance"):
+        raise state.refuse(
+            block, repr(block.text), "a path above zero and MB between zero and the path"
+        )
+
+
+def set_mode(block: Block, state: State) -> None:
+    """Execute a block that changes a mode or sets a parameter; raises BadFile."""
+    setter = _SETTERS.get(block.kind)
+    if setter is None:
+        raise state.refuse(block, repr(block.text), "a subprogram that is called, after M30")
+    setter(block, state)
+
+
+def _tcpm(block: Block, state: State) -> None:
+    state.is_tcpm_off = block.kind is Kind.TCPM_OFF
+
+
+def _shorter_way(block: Block, state: State) -> None:
+    state.is_shorter_way = block.kind is Kind.SHORTER_WAY
+
+
+def _plane_off(block: Block, state: State) -> None:
+    state.is_plane_off = True
+
+
+def _shift(block: Block, state: State) -> None:
+    axis = LINEAR[int(block.word("index")) - 1]
+    if block.word("axis") != axis or block.number("value") != 0.0:
+        raise state.refuse(block, repr(block.text), f"{axis}+0: only the preset may shift")
+    state.shift_off.add(axis)
+
+
+def _preset(block: Block, state: State) -> None:
+    state.preset = int(block.word("row"))
+
+
+def _tool_call(block: Block, state: State) -> None:
+    if block.words["speed"] is not None:
+        raise state.refuse(block, repr(block.text), "no speed: there is a probe in the spindle")
+    if not state.is_tcpm_off or not state.is_retracted:
+        raise state.refuse(block, repr(block.text), "M129 and a retract with M91 before it")
+    state.tool = int(block.word("tool"))
+    state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length
+    # the tool changer leaves the linear axes wherever its builder wanted
+    state.q[state.frame.linear] = np.nan
+    state.is_retracted = False
+
+
+def _wait(block: Block, state: State) -> None:
+    state.is_synchronous = True
+
+
+def _assign(block: Block, state: State) -> None:
+    state.write(block, int(block.word("q")), block.number("value"))
+
+
+def _subtract(block: Block, state: State) -> None:
+    value = state.value(block, int(block.word("from")))
+    if not isinstance(value, float):
+        raise state.refuse(block, repr(block.text), "a number, not the result of a touch")
+    state.write(block, int(block.word("q")), value - block.number("value"))
+
+
+_SETTERS = {
+    Kind.TCPM_ON: _tcpm,
+    Kind.TCPM_OFF: _tcpm,
+    Kind.SHORTER_WAY: _shorter_way,
+    Kind.SHORTER_WAY_OFF: _shorter_way,
+    Kind.PLANE_OFF: _plane_off,
+    Kind.SHIFT: _shift,
+    Kind.PRESET: _preset,
+    Kind.TOOL_CALL: _tool_call,
+    Kind.WAIT: _wait,
+    Kind.ASSIGN: _assign,
+    Kind.SUBTRACT: _subtract,
+}

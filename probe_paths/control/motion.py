@@ -1,0 +1,175 @@
+"""L blocks and retracts: which moves one of our programs may make, and which never."""
+
+import re
+
+import numpy as np
+
+from probe_paths.control.state import SAME, TOP, State
+from probe_paths.control.steps import Move
+from probe_paths.language import Block
+from probe_paths.plan import LINEAR
+from twin.frames import Array
+from twin.units import DEG, MINUTE
+
+_AXIS = re.compile(r"([A-Z])([+-][\d.]+)")
+_FUNCTIONS = {"M91", "M126"}
+
+
+def straight_line(state: State, block: Block) -> Move:
+    """Execute an L block and return its move.
+
+    Raises:
+        BadFile: An axis that the machine lacks or a travel that it exceeds, a rotary move that is
+            not at the retracted height, a rapid move below the clearance height, sideways motion
+            near the standard, no feed, no R0, a mode that forbids the block.
+    """
+    state.check_status_was_tested(block)
+    functions = set(block.word("functions").split())
+    if not functions <= _FUNCTIONS:
+        extra = " ".join(sorted(functions - _FUNCTIONS))
+        raise state.refuse(block, extra, "M91 or M126 and no other M function in an L block")
+    state.is_radius_off = state.is_radius_off or block.words["radius"] is not None
+    if not state.is_radius_off:
+        raise state.refuse(block, repr(block.text), "R0 on the first move")
+    target, letters = _target(state, block, "M91" in functions)
+    feed = _feed(state, block)
+    state.is_shorter_way = state.is_shorter_way or "M126" in functions
+    state.check_travel(block, target)
+    rotary = [a for a in letters if a not in LINEAR]
+    if rotary:
+        _turn(state, block, target, letters, rotary)
+    elif "M91" in functions:
+        _retract(state, block, target, letters)
+    else:
+        _check_height(state, block, target, letters, feed is None)
+    _arrive(state, block, target)
+    scale = 1.0 if not rotary else DEG
+    return Move(block.line, target, None if feed is None else feed * scale / MINUTE)
+
+
+def _target(state: State, block: Block, is_machine_datum: bool) -> tuple[Array, list[str]]:
+    """Readings at the end of the block, and the axes it names."""
+    target = state.q.copy()
+    letters: list[str] = []
+    for letter, number in _AXIS.findall(block.word("axes")):
+        if letter not in state.frame.letters:
+            available = ", ".join(state.frame.letters)
+            raise state.refuse(block, f"axis {letter}", f"an axis of the machine: {available}")
+        if letter in letters:
+            raise state.refuse(block, f"axis {letter} twice", "every axis once in a block")
+        letters.append(letter)
+        column = state.frame.chain.axis_index(letter)
+        if is_machine_datum and letter in LINEAR:
+            target[column] = float(number)
+        else:
+            target[column] = state.frame.reading(letter, float(number))
+    if not is_machine_datum:
+        state.check_ready(block, repr(block.text))
+    return target, letters
+
+
+def _feed(state: State, block: Block) -> float | None:
+    """Feed of the block, mm/min or degrees/min; None is rapid."""
+    word = block.words["feed"]
+    if word == "MAX":
+        return None
+    if word is not None:
+        state.feed = float(word)
+    if not state.feed:
+        raise state.refuse(block, repr(block.text), "a feed above zero, or FMAX")
+    return state.feed
+
+
+def _turn(state: State, block: Block, target: Array, letters: list[str], rotary: list[str]) -> None:
+    """Rules for a block with rotary axes; notes the direction that every axis came from."""
+    if len(rotary) != len(letters):
+        raise state.refuse(block, repr(block.text), "rotary axes in a block of their own")
+    if not state.is_retracted:
+        raise state.refuse(block, repr(block.text), "a retract (L Z.. R0 FMAX M91) before it")
+    for letter in rotary:
+        column = state.frame.chain.axis_index(letter)
+        step = target[column] - state.q[column]
+        if state.is_shorter_way and abs(step) > np.pi + SAME:
+            raise state.refuse(
+                block,
+                f"{letter} turning by {step / DEG:.1f} degrees with M126 active",
+                "at most 180 degrees, or the control takes the other way round",
+            )
+        if np.isfinite(step) and abs(step) > SAME:
+            state.side[column] = np.sign(step)
+
+
+def _retract(state: State, block: Block, target: Array, letters: list[str]) -> None:
+    """Rules for a block with M91: Z alone, up, to the top of its travel."""
+    if not state.is_tcpm_off:
+        raise state.refuse(block, repr(block.text), "M129 before M91")
+    if letters != ["Z"]:
+        raise state.refuse(block, repr(block.text), "Z alone with M91")
+    column = state.frame.chain.axis_index("Z")
+    top = state.frame.chain.link("Z").range[1]
+    if target[column] < top - TOP:
+        raise state.refuse(block, f"Z{target[column]:+.4f} M91", f"at least Z{top - TOP:+.4f}")
+    if target[column] < state.q[column] - SAME:
+        raise state.refuse(block, repr(block.text), "a retract that does not go down")
+    state.is_retracted, state.clearance = True, None
+
+
+def _check_height(
+    state: State, block: Block, target: Array, letters: list[str], is_rapid: bool
+) -> None:
+    """Rules for X, Y, Z blocks: high up anything, below the clearance height slowly along Z."""
+    column = state.frame.chain.axis_index("Z")
+    before, after = state.q[column], target[column]
+    if not np.isfinite(before):
+        raise state.refuse(block, repr(block.text), "a retract (L Z.. R0 FMAX M91) first")
+    if state.is_retracted:
+        if "Z" not in letters:
+            return
+        if letters != ["Z"] or not np.all(np.isfinite(target[state.frame.linear])):
+            raise state.refuse(block, repr(block.text), "X and Y at the retract, then Z alone")
+        state.is_retracted, state.clearance = False, after
+        return
+    assert state.clearance is not None
+    is_up = letters == ["Z"] and after >= before
+    if is_rapid and not is_up and min(before, after) < state.clearance - SAME:
+        raise state.refuse(
+            block,
+            repr(block.text),
+            "no rapid move below the clearance height, where this pose was entered",
+        )
+    is_back = state.way_back is not None
+    if letters != ["Z"] and not is_back and min(before, after) < state.clearance - SAME:
+        raise state.refuse(
+            block,
+            repr(block.text),
+            "below the clearance height only moves along Z, or back from a touch",
+        )
+
+
+def _arrive(state: State, block: Block, target: Array) -> None:
+    """The machine stands at the target."""
+    if state.way_back is not None:
+        if not np.allclose(target, state.way_back, rtol=0.0, atol=SAME, equal_nan=True):
+            raise state.refuse(
+                block, repr(block.text), "a move back to the start of the touch first"
+            )
+        state.way_back = None
+    for column in state.frame.linear:
+        step = target[column] - state.q[column]
+        if np.isfinite(step) and abs(step) > SAME:
+            state.side[column] = np.sign(step)
+    state.q = target
+    state.is_synchronous = False
+
+
+def retract_max(state: State, block: Block) -> Move:
+    """Execute `M140 MB MAX`: along the tool axis to the end of the travel."""
+    state.check_status_was_tested(block)
+    if not state.is_tcpm_off:
+        raise state.refuse(block, repr(block.text), "M129 before M140")
+    target = state.q.copy()
+    column = state.frame.chain.axis_index("Z")
+    target[column] = state.frame.chain.link("Z").range[1]
+    state.q, state.is_retracted, state.clearance = target, True, None
+    state.way_back, state.is_synchronous = None, False
+    return Move(block.line, target, None, checked=False)

@@ -1,0 +1,233 @@
+"""Executes the blocks of a program one after the other and collects what they do."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from probe_paths.control.modes import check_cycle, set_mode, system_datum
+from probe_paths.control.motion import retract_max, straight_line
+from probe_paths.control.state import State
+from probe_paths.control.steps import STATUS, Halt, Move, Print, Probing, Result, Step
+from probe_paths.language import Block, Kind, MaskLine, Q, parse_mask
+from probe_paths.plan import ProgramFrame
+from twin.errors import BadFile
+from twin.units import MINUTE
+
+MAX_CALLS = 8
+"""Depth of nested subprograms that the control allows."""
+
+MaskSource = Callable[[str], str | None]
+"""Gives the text of a mask file by its name without folder; None where there is none."""
+
+_SILENT = {
+    Kind.COMMENT,
+    Kind.STRUCTURE,
+    Kind.STOCK_LOW,
+    Kind.STOCK_HIGH,
+    Kind.SHIFT_NAME,
+    Kind.STOP,
+    Kind.BEGIN,
+    Kind.PROBE_NAME,
+    Kind.PROBE_RESULT,
+    Kind.PROBE_VECTOR,
+}
+
+
+class Runner:
+    """Executes blocks one after the other and collects what they do."""
+
+    def __init__(
+        self,
+        blocks: Sequence[Block],
+        places: dict[int, int],
+        frame: ProgramFrame,
+        path: Path,
+        masks: MaskSource,
+    ) -> None:
+        self.blocks, self.places, self.frame, self.path = blocks, places, frame, path
+        self.source = masks
+        self.masks: dict[str, tuple[MaskLine, ...]] = {}
+        self.touches: list[Probing] = []
+        self.logged: set[int] = set()
+
+    def run(self, start: int, state: State, is_branch: bool = False) -> list[Step]:
+        """Steps from one block to the end of the program."""
+        steps: list[Step] = []
+        returns: list[int] = []
+        i, executed = start, 0
+        while True:
+            block = self.blocks[i]
+            executed += 1
+            if executed > 100 * len(self.blocks):
+                raise state.refuse(block, "a loop without end", "a program that comes to M30")
+            if block.kind is Kind.END:
+                raise state.refuse(block, "END PGM", "M30 or LBL 0 before it")
+            if block.kind is Kind.PROGRAM_STOP:
+                self._check_end(state, block, returns)
+                return steps
+            if block.kind is Kind.ERROR:
+                self._check_halt(block, steps, is_branch)
+                return [*steps, Halt(block.line, int(block.word("number")))]
+            i = self._next(i, block, state, returns, steps)
+
+    def _next(
+        self, i: int, block: Block, state: State, returns: list[int], steps: list[Step]
+    ) -> int:
+        """Execute one block; the index of the following one."""
+        if block.kind is Kind.CALL:
+            returns.append(i + 1)
+            if len(returns) > MAX_CALLS:
+                raise state.refuse(block, f"{len(returns)} nested calls", f"at most {MAX_CALLS}")
+            return self.places[int(block.word("label"))] + 1
+        if block.kind is Kind.LABEL and block.word("label") == "0":
+            if not returns:
+                raise state.refuse(block, "LBL 0 that nobody called", "M30 before subprograms")
+            return returns.pop()
+        if block.kind is Kind.JUMP:
+            return self._jump(i, block, state)
+        if block.kind in _SILENT:
+            return i + 1
+        step = self._execute(i, block, state)
+        if step is not None:
+            steps.append(step)
+        return i + 1
+
+    def _jump(self, i: int, block: Block, state: State) -> int:
+        """FN 11, 12: a number decides at once; a touch's status is taken as good, and as missed."""
+        is_less = block.words["q"] is not None
+        value = state.value(block, int(block.word("q" if is_less else "q_greater")))
+        target, limit = self.places[int(block.word("label"))] + 1, block.number("limit")
+        if not isinstance(value, Result):
+            return target if (value < limit if is_less else value > limit) else i + 1
+        if value.part != STATUS or limit != 0.0 or not is_less:
+            raise state.refuse(block, repr(block.text), "the status (fourth result) LT +0")
+        state.untested = None
+        missed = state.copied()
+        self.touches[value.touch].miss.extend(self.run(target, missed, is_branch=True))
+        return i + 1
+
+    def _execute(self, i: int, block: Block, state: State) -> Step | None:
+        """Every block that changes the state or does something."""
+        if block.kind is Kind.LINE:
+            return straight_line(state, block)
+        if block.kind is Kind.RETRACT_MAX:
+            return retract_max(state, block)
+        if block.kind is Kind.PRINT:
+            return self._print(block, state)
+        if block.kind is Kind.PROBE_PATH:
+            return self._probing(i, state)
+        if block.kind is Kind.READ:
+            state.write(block, int(block.word("q")), system_datum(block, state))
+        else:
+            set_mode(block, state)
+        return None
+
+    def _probing(self, i: int, state: State) -> Probing:
+        """Cycle 4, whose other three blocks stand before this one."""
+        block, vector = self.blocks[i], self.blocks[i - 1]
+        result = int(self.blocks[i - 2].word("q"))
+        state.check_status_was_tested(block)
+        state.check_ready(block, "a touch")
+        column = state.frame.chain.axis_index("Z")
+        moving = [*state.frame.linear, *state.frame.rotary]
+        if not np.all(np.isfinite(state.q[moving])):
+            raise state.refuse(block, "a touch", "a position of every axis before it")
+        if (
+            state.clearance is None
+            or state.q[column] > state.clearance
+            or state.way_back is not None
+        ):
+            raise state.refuse(block, "a touch", "a move down to its start before it")
+        direction = np.zeros(len(state.q))
+        direction[state.frame.linear] = [vector.number(a) for a in "xyz"]
+        length = float(np.linalg.norm(direction))
+        check_cycle(state, block, vector, length)
+        touch = Probing(
+            line=block.line,
+            index=len(self.touches),
+            q=np.nan_to_num(state.q),
+            direction=direction / length,
+            distance=block.number("distance"),
+            feed=block.number("feed") / MINUTE,
+            back=block.number("back"),
+            side=state.side.copy(),
+            number=state.whole(block, Q.TOUCH, "touch"),
+            pose=state.whole(block, Q.POSE, "pose"),
+            feature=state.whole(block, Q.FEATURE, "feature"),
+        )
+        self._check_sides(block, state, touch)
+        left_over = state.parameters.get(result + STATUS)
+        for part in range(4):
+            state.write(block, result + part, Result(touch.index, part))
+        if not isinstance(left_over, float) or left_over >= 0.0:
+            raise state.refuse(
+                block, "the status of the touch before", f"FN 0: Q{result + STATUS} = -1 before it"
+            )
+        state.untested, state.way_back = touch.index, state.q.copy()
+        state.is_synchronous = False
+        self.touches.append(touch)
+        return touch
+
+    def _check_sides(self, block: Block, state: State, touch: Probing) -> None:
+        """The sides that the log will state are those that the axes really came from."""
+        if any(other.number == touch.number for other in self.touches):
+            raise state.refuse(block, f"touch number {touch.number} again", "a number of its own")
+        names = state.frame.chain.rotary_axes
+        for q, column, name in zip((Q.SIDE_1, Q.SIDE_2), state.frame.rotary, names, strict=False):
+            stated = state.whole(block, q, f"side of {name}")
+            if stated != touch.side[column]:
+                raise state.refuse(
+                    block,
+                    f"{name} said to come from side {stated:+d}",
+                    f"{touch.side[column]:+.0f}, as it last moved",
+                )
+
+    def _print(self, block: Block, state: State) -> Print:
+        """FN 16 with the values of this moment."""
+        state.check_status_was_tested(block)
+        if not state.is_synchronous:
+            raise state.refuse(block, "a line printed ahead", "FN 20: WAIT FOR SYNC before it")
+        lines = self._mask(block, state)
+        wanted = {a for line in lines for a in line.arguments if isinstance(a, int)}
+        values = {q: state.value(block, q) for q in sorted(wanted)}
+        self.logged |= {v.touch for v in values.values() if isinstance(v, Result)}
+        return Print(block.line, lines, block.word("target").split("\\")[-1], values)
+
+    def _mask(self, block: Block, state: State) -> tuple[MaskLine, ...]:
+        name = block.word("mask").split("\\")[-1]
+        if name not in self.masks:
+            text = self.source(name)
+            if text is None:
+                raise state.refuse(block, f"mask {name}", "a mask file beside the program")
+            self.masks[name] = parse_mask(text, self.path.parent / name)
+        return self.masks[name]
+
+    def _check_end(self, state: State, block: Block, returns: list[int]) -> None:
+        state.check_status_was_tested(block)
+        if returns:
+            raise state.refuse(block, "M30 inside a subprogram", "LBL 0 at its end")
+        if not state.is_retracted:
+            raise state.refuse(block, "M30", "a retract (L Z.. R0 FMAX M91) at the end")
+
+    def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
+        """Only a touch without contact may end a program early, and only after a retract."""
+        up = [step for step in steps if isinstance(step, Move)]
+        if not is_branch or len(up) != 1 or up[0].checked:
+            raise BadFile(
+                self.path,
+                f"line {block.line}",
+                repr(block.text),
+                "M140 MB MAX, and no other move, after a touch without contact",
+            )
+
+    def check_logged(self) -> None:
+        """Every touch ends up in the log; raises BadFile."""
+        for touch in self.touches:
+            if touch.index not in self.logged:
+                raise BadFile(
+                    self.path,
+                    f"line {touch.line}",
+                    f"touch {touch.number} without a log line",
+                    "FN 16 with its results",
+                )

@@ -1,0 +1,133 @@
+"""The control while it runs one of our programs: positions, modes, parameters, and what forbids."""
+
+import copy
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from probe_paths.control.steps import Value
+from probe_paths.language import FREE, Block
+from probe_paths.plan import ProgramFrame
+from twin.errors import BadFile
+from twin.frames import Array
+
+TOP = 20.0
+"""How far below the upper end of Z's travel a retract with M91 may end, mm."""
+
+SAME = 1e-6
+"""Positions that differ by less are the same, mm or rad."""
+
+
+@dataclass
+class State:
+    """Everything that one block can change.
+
+    Attributes:
+        path: Program file, for messages.
+        frame: Conversion of words to readings.
+        q: Readings, (A,); nan where an axis has not been positioned.
+        side: Sign of the last motion of every axis, (A,).
+        parameters: Q parameters that have been set.
+        feed: Modal feed, mm/min.
+        is_tcpm_off: None until the program says.
+        is_radius_off: R0 has been read.
+        is_shorter_way: M126 is active.
+        is_plane_off: PLANE RESET has been read.
+        shift_off: Axes whose datum shift was set to zero.
+        preset: Active row.
+        tool: Called tool.
+        is_retracted: Z stands where M91 or M140 put it.
+        clearance: Reading of Z that the first move down from the retract went to.
+        untested: Touch whose status was not looked at yet.
+        way_back: Readings that the next move must return to after a touch.
+        is_synchronous: FN 20 was read since the last motion.
+    """
+
+    path: Path
+    frame: ProgramFrame
+    q: Array
+    side: Array
+    parameters: dict[int, Value] = field(default_factory=dict)
+    feed: float | None = None
+    is_tcpm_off: bool | None = None
+    is_radius_off: bool = False
+    is_shorter_way: bool = False
+    is_plane_off: bool = False
+    shift_off: set[str] = field(default_factory=set)
+    preset: int | None = None
+    tool: int | None = None
+    is_retracted: bool = False
+    clearance: float | None = None
+    untested: int | None = None
+    way_back: Array | None = None
+    is_synchronous: bool = False
+
+    def copied(self) -> "State":
+        """A state that can run on its own."""
+        other = copy.copy(self)
+        other.q, other.side = self.q.copy(), self.side.copy()
+        other.parameters, other.shift_off = dict(self.parameters), set(self.shift_off)
+        return other
+
+    def refuse(self, block: Block, found: str, expected: str) -> BadFile:
+        """The one clear line about a block."""
+        return BadFile(self.path, f"line {block.line}", found, expected)
+
+    def check_ready(self, block: Block, what: str) -> None:
+        """Preset, tool and a reset frame are there before a coordinate is believed."""
+        missing = [
+            name
+            for name, there in (
+                ("M129", self.is_tcpm_off),
+                ("PLANE RESET STAY", self.is_plane_off),
+                ("CYCL DEF 7 with zeros in X, Y and Z", self.shift_off == set("XYZ")),
+                ("TOOL CALL", self.tool is not None),
+                ("CYCL DEF 247", self.preset is not None),
+            )
+            if not there
+        ]
+        if missing:
+            raise self.refuse(block, what, f"{missing[0]} before it")
+
+    def check_status_was_tested(self, block: Block) -> None:
+        """Nothing may happen between a touch and the look at its status."""
+        if self.untested is not None:
+            raise self.refuse(
+                block,
+                f"{block.text!r} after touch {self.untested + 1}",
+                "FN 12 on the status of the touch first",
+            )
+
+    def write(self, block: Block, q: int, value: Value) -> None:
+        """Set a Q parameter of the free range."""
+        if q not in FREE:
+            raise self.refuse(block, f"Q{q}", f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}")
+        self.parameters[q] = value
+
+    def value(self, block: Block, q: int) -> Value:
+        """A Q parameter that has been set in this run; nothing left over from others counts."""
+        if q not in self.parameters:
+            raise self.refuse(block, f"Q{q} without a value", "a parameter set by this program")
+        return self.parameters[q]
+
+    def whole(self, block: Block, q: int, name: str) -> int:
+        """A counter that must be set before a touch."""
+        value = self.parameters.get(q)
+        if not isinstance(value, float) or value != int(value):
+            raise self.refuse(block, f"Q{q} = {value}", f"a whole number ({name}) before the touch")
+        return int(value)
+
+    def check_travel(self, block: Block, target: Array) -> None:
+        """Every positioned axis stays within its travel."""
+        chain = self.frame.chain
+        for letter in self.frame.letters:
+            low, high = chain.link(letter).range
+            value = target[chain.axis_index(letter)]
+            if np.isfinite(value) and not low - SAME <= value <= high + SAME:
+                scale = self.frame.coordinate(letter, 1.0) if letter not in "XYZ" else 1.0
+                raise self.refuse(
+                    block,
+                    f"{letter} reading {value * scale:.4f}",
+                    f"{low * scale:g} to {high * scale:g}, the travel of {letter}",
+                )

@@ -1,0 +1,125 @@
+"""What a program does once it is read: moves, touches, printed lines, in order."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from probe_paths.language import MaskLine
+from probe_paths.plan import Heading
+from twin.frames import Array
+
+STATUS = 3
+"""Part of a cycle's result that tells whether there was a contact; negative: none."""
+
+
+class Result(NamedTuple):
+    """A number that only the run brings: part 0-2 = X Y Z, 3 = status, of a touch."""
+
+    touch: int
+    part: int
+
+
+Value = float | Result
+
+
+@dataclass(frozen=True, eq=False)
+class Move:
+    """Positioning to a target.
+
+    Attributes:
+        line: In the program file.
+        q: Readings at the end, (A,), mm and rad; nan where an axis has not been positioned yet.
+        feed: mm/s or rad/s; None is rapid.
+        checked: False for a move that ends in mid-air by definition (M140), not at a position.
+    """
+
+    line: int
+    q: Array
+    feed: float | None
+    checked: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Probing:
+    """One run of touch probe cycle 4.
+
+    Attributes:
+        line: In the program file, of the cycle's last block.
+        index: Counts the touches of this program from 0.
+        q: Readings at the start, (A,), mm and rad.
+        direction: Unit vector of the motion in readings, (A,); zero for rotary axes.
+        distance: Longest travel, mm.
+        feed: mm/s.
+        back: Retract after the contact, mm.
+        side: Sign of the last motion of every axis before the touch, (A,); 0 where unknown.
+        number: Of the touch, as the log will name it.
+        pose: Number of the table pose, likewise.
+        feature: Number of the feature, likewise.
+        miss: What the program does when there is no contact.
+    """
+
+    line: int
+    index: int
+    q: Array
+    direction: Array
+    distance: float
+    feed: float
+    back: float
+    side: Array
+    number: int
+    pose: int
+    feature: int
+    miss: list["Step"] = field(default_factory=list)
+
+
+@dataclass(frozen=True, eq=False)
+class Print:
+    """Lines that FN 16 writes.
+
+    Attributes:
+        line: In the program file.
+        lines: Of the mask.
+        target: Name of the log file.
+        values: Of the Q parameters in the mask.
+    """
+
+    line: int
+    lines: tuple[MaskLine, ...]
+    target: str
+    values: Mapping[int, Value]
+
+
+@dataclass(frozen=True)
+class Halt:
+    """The program stops with one of the control's error texts."""
+
+    line: int
+    number: int
+
+
+Step = Move | Probing | Print | Halt
+
+
+@dataclass(frozen=True, eq=False)
+class ReadProgram:
+    """A program as its text alone tells it.
+
+    Attributes:
+        path: Of the file.
+        name: Of the program.
+        heading: Standard, set-up and probe that it was made for.
+        features: Name of every feature number.
+        steps: In order of execution.
+    """
+
+    path: Path
+    name: str
+    heading: Heading
+    features: Mapping[int, str]
+    steps: tuple[Step, ...]
+
+    @property
+    def touches(self) -> list[Probing]:
+        """The touches in order."""
+        return [step for step in self.steps if isinstance(step, Probing)]

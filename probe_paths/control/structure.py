@@ -1,0 +1,116 @@
+"""What must hold for a program as a whole before a single block of it is executed."""
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from probe_paths.language import Block, Kind
+from probe_paths.plan import Heading, parse_heading
+from twin.errors import BadFile
+
+_FEATURE = re.compile(r"FEATURE (\d+) IS (\S+)")
+_CYCLE = (Kind.PROBE_NAME, Kind.PROBE_RESULT, Kind.PROBE_VECTOR, Kind.PROBE_PATH)
+_NAMES = {
+    Kind.PROBE_NAME: "4.0",
+    Kind.PROBE_RESULT: "4.1",
+    Kind.PROBE_VECTOR: "4.2",
+    Kind.PROBE_PATH: "4.3",
+}
+
+
+def program_name(blocks: Sequence[Block], path: Path) -> str:
+    """Name of the program, after its frame has been checked.
+
+    Raises:
+        BadFile: First or last block missing, a frame inside the program, names that differ from
+            each other or from the file's, inches.
+    """
+    first, last = blocks[0], blocks[-1]
+    if first.kind is not Kind.BEGIN:
+        raise BadFile(path, f"line {first.line}", repr(first.text), "BEGIN PGM <name> MM")
+    if last.kind is not Kind.END:
+        raise BadFile(
+            path, f"line {last.line}", f"{last.text!r} as the last block", "END PGM: cut off?"
+        )
+    for block in blocks[1:-1]:
+        if block.kind in (Kind.BEGIN, Kind.END):
+            raise BadFile(path, f"line {block.line}", repr(block.text), "one frame per file")
+    name = first.word("name")
+    for block in (first, last):
+        if block.word("unit") != "MM":
+            raise BadFile(path, f"line {block.line}", block.word("unit"), "MM")
+        if block.word("name") != name:
+            raise BadFile(path, f"line {block.line}", block.word("name"), f"{name} as in BEGIN PGM")
+    if path.stem.upper() != name.upper():
+        raise BadFile(path, f"line {first.line}", f"program name {name}", f"{path.stem}")
+    return name
+
+
+def labels(blocks: Sequence[Block], path: Path) -> dict[int, int]:
+    """Block index of every label.
+
+    Raises:
+        BadFile: A label that stands twice or that nobody defined, a subprogram before M30 or
+            without LBL 0, no M30.
+    """
+    kinds = [block.kind for block in blocks]
+    if Kind.PROGRAM_STOP not in kinds:
+        raise BadFile(path, f"line {blocks[-1].line}", "no M30", "M30 at the end of the program")
+    stop = kinds.index(Kind.PROGRAM_STOP)
+    found: dict[int, int] = {}
+    for i, block in enumerate(blocks):
+        if block.kind is not Kind.LABEL or block.word("label") == "0":
+            continue
+        number = int(block.word("label"))
+        if number in found:
+            raise BadFile(path, f"line {block.line}", f"LBL {number} again", "every label once")
+        if i < stop:
+            raise BadFile(path, f"line {block.line}", f"LBL {number}", "subprograms after M30")
+        found[number] = i
+    for block in blocks:
+        if block.kind in (Kind.CALL, Kind.JUMP) and int(block.word("label")) not in found:
+            available = ", ".join(str(n) for n in found) or "none"
+            raise BadFile(
+                path,
+                f"line {block.line}",
+                f"LBL {block.word('label')}",
+                f"a label that is defined; available: {available}",
+            )
+    return found
+
+
+def check_cycles(blocks: Sequence[Block], path: Path) -> None:
+    """Cycle 4 stands in four blocks, in order and together; raises BadFile."""
+    expected = 0
+    for block in blocks:
+        place = _CYCLE.index(block.kind) if block.kind in _CYCLE else None
+        if (place is None and expected) or (place is not None and place != expected):
+            raise BadFile(
+                path,
+                f"line {block.line}",
+                repr(block.text),
+                f"TCH PROBE {_NAMES[_CYCLE[expected]]} in its place",
+            )
+        expected = 0 if place is None else (place + 1) % len(_CYCLE)
+
+
+def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, str]]:
+    """Head of a program, and the feature that every number stands for.
+
+    Raises:
+        BadFile: The head is missing or spelt otherwise, a number stands for two features.
+    """
+    remarks = [(b.line, b.word("text").strip()) for b in blocks if b.kind is Kind.COMMENT]
+    starts = [i for i, (_, text) in enumerate(remarks) if text.startswith("STANDARD ")]
+    if not starts:
+        raise BadFile(path, "head", "no comment ';STANDARD ... SETUP ...'", "the program's head")
+    head = parse_heading(remarks[starts[0] : starts[0] + 4], path)
+    features: dict[int, str] = {}
+    for line, text in remarks:
+        match = _FEATURE.fullmatch(text)
+        if match is None:
+            continue
+        if int(match[1]) in features:
+            raise BadFile(path, f"line {line}", repr(text), "every feature number once")
+        features[int(match[1])] = match[2]
+    return head, features

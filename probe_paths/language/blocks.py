@@ -1,0 +1,194 @@
+"""Text of a program to blocks: a closed list, and one clear line for everything else."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+from probe_paths.language.klartext import CYCLE_NAMES, DISTANCE_WORDS
+from twin.errors import BadFile
+
+_NUM = r"[+-]\d{1,5}(?:\.\d{1,7})?"
+_XYZ = rf"X({_NUM}) Y({_NUM}) Z({_NUM})"
+_PATH = r"[A-Z0-9_:\\.-]+"
+
+
+class Kind(Enum):
+    """The blocks of our programs; each value is the pattern of the whole block."""
+
+    BEGIN = r"BEGIN PGM (?P<name>\S+) (?P<unit>\S+)"
+    END = r"END PGM (?P<name>\S+) (?P<unit>\S+)"
+    COMMENT = r";(?P<text>.*)"
+    STRUCTURE = r"\* - (?P<text>.+)"
+    STOCK_LOW = rf"BLK FORM 0\.1 Z {_XYZ}"
+    STOCK_HIGH = rf"BLK FORM 0\.2 {_XYZ}"
+    TCPM_ON = r"M128(?: F\d+)?"
+    TCPM_OFF = r"M129"
+    SHORTER_WAY = r"M126"
+    SHORTER_WAY_OFF = r"M127"
+    PLANE_OFF = r"PLANE RESET STAY"
+    SHIFT_NAME = r"CYCL DEF 7\.0 DATUM SHIFT"
+    SHIFT = rf"CYCL DEF 7\.(?P<index>[123]) (?P<axis>[XYZ])(?P<value>{_NUM})"
+    PRESET = r"CYCL DEF 247 DATUM SETTING ~ Q339=(?P<row>[+]\d+)(?: ;.*)?"
+    TOOL_CALL = r"TOOL CALL (?P<tool>\d+) Z(?P<speed> S.*)?"
+    LINE = (
+        rf"L(?P<axes>(?: [A-Z]{_NUM})+)(?P<radius> R0)?"
+        r"(?: F(?P<feed>MAX|\d+))?(?P<functions>(?: M\d+)*)"
+    )
+    PROBE_NAME = rf"TCH PROBE 4\.0 (?:{'|'.join(CYCLE_NAMES)})"
+    PROBE_RESULT = r"TCH PROBE 4\.1 Q(?P<q>\d+)"
+    PROBE_VECTOR = rf"TCH PROBE 4\.2 IX(?P<x>{_NUM}) IY(?P<y>{_NUM}) IZ(?P<z>{_NUM})"
+    PROBE_PATH = (
+        rf"TCH PROBE 4\.3 (?:{'|'.join(DISTANCE_WORDS)}) ?(?P<distance>{_NUM}) F(?P<feed>\d+) "
+        rf"MB(?P<back>{_NUM}) REFERENCE SYSTEM: ?(?P<system>[01])"
+    )
+    ASSIGN = rf"FN ?0: Q(?P<q>\d+) = (?P<value>{_NUM})"
+    SUBTRACT = rf"FN ?2: Q(?P<q>\d+) = \+?Q(?P<from>\d+) - (?P<value>{_NUM})"
+    JUMP = (
+        r"FN ?1(?:2: IF \+?Q(?P<q>\d+) LT|1: IF \+?Q(?P<q_greater>\d+) GT) "
+        r"(?P<limit>[+-]\d+) GOTO LBL (?P<label>\d+)"
+    )
+    ERROR = r"FN ?14: ERROR ?= ?(?P<number>\d+)"
+    PRINT = rf"FN ?16: F-PRINT (?P<mask>{_PATH}) ?/ ?(?P<target>{_PATH})"
+    READ = (
+        r"FN ?18: SYSREAD Q(?P<q>\d+) = ID(?P<group>\d+) NR(?P<number>\d+)(?: IDX(?P<index>\d+))?"
+    )
+    WAIT = r"FN ?20: WAIT FOR SYNC"
+    CALL = r"CALL LBL (?P<label>[1-9]\d*)"
+    LABEL = r"LBL (?P<label>\d+)"
+    RETRACT_MAX = r"(?:L )?M140 MB MAX"
+    STOP = r"STOP"
+    PROGRAM_STOP = r"M30"
+
+
+_PATTERNS = {kind: re.compile(kind.value + r"\Z") for kind in Kind}
+_REMARK_KINDS = (Kind.COMMENT, Kind.STRUCTURE, Kind.PRESET)
+
+_KNOWN_OTHERS = (
+    (r"PLANE ", "PLANE RESET STAY: our programs swivel by L blocks with readings of their own"),
+    (r"M0?[34]\b|M1[34]\b", "no spindle start: there is a probe in the spindle"),
+    (r"TCH PROBE 4\.0", f"TCH PROBE 4.0 and one of {', '.join(CYCLE_NAMES)}"),
+    (r"TCH PROBE 4\.1", "TCH PROBE 4.1 Q<first result>"),
+    (r"TCH PROBE 4\.2", "TCH PROBE 4.2 IX<signed> IY<signed> IZ<signed>"),
+    (
+        r"TCH PROBE 4\.3",
+        f"TCH PROBE 4.3 <{' | '.join(DISTANCE_WORDS)}> <signed> F<whole> MB<signed> "
+        "REFERENCE SYSTEM:0",
+    ),
+    (r"TCH PROBE", "TCH PROBE 4 (vector probing), the only cycle of our programs"),
+    (r"L\b", "L <axis><signed number> ... R0 F<whole>|FMAX, words in this order"),
+    (r"FN", "FN 0, 2, 11, 12, 14, 16, 18 or 20 in the form that our programs use"),
+    (r"CYCL DEF", "CYCL DEF 7 with zeros or 247 with Q339"),
+    (r"TOOL CALL", "TOOL CALL <number> Z"),
+    (r"LBL|CALL", "LBL <number> or CALL LBL <number>"),
+    (r"BEGIN|END", "BEGIN PGM <name> MM and END PGM <name> MM"),
+)
+_ANYTHING = (
+    "a block of the closed list: BEGIN END ; * BLK L M126 M127 M129 M140 PLANE CYCL TOOL TCH FN "
+    "LBL CALL STOP M30"
+)
+
+
+@dataclass(frozen=True)
+class Block:
+    """One block of a program.
+
+    Attributes:
+        line: Number of its first line in the file, from 1.
+        kind: Which of the closed list.
+        words: Named parts of its pattern; None where an optional part is absent.
+        text: As it stands in the file, blanks folded.
+    """
+
+    line: int
+    kind: Kind
+    words: Mapping[str, str | None]
+    text: str
+
+    def word(self, name: str) -> str:
+        """A part that the pattern guarantees."""
+        value = self.words[name]
+        assert value is not None, name
+        return value
+
+    def number(self, name: str) -> float:
+        """A numeric part that the pattern guarantees."""
+        return float(self.word(name))
+
+
+def read_blocks(data: bytes, path: str | Path) -> list[Block]:
+    """Blocks of a program file.
+
+    Block numbers either stand everywhere and count from 0, or nowhere. A line that ends in a
+    tilde continues on the next one.
+
+    Args:
+        data: Content of the file.
+        path: Its name, for messages.
+
+    Raises:
+        BadFile: A byte outside ASCII, mixed line ends, a last line cut off, a number out of
+            sequence, a block that is not in the closed list.
+    """
+    lines = _physical_lines(data, path)
+    blocks: list[Block] = []
+    numbered: bool | None = None
+    i = 0
+    while i < len(lines):
+        first, raw = i + 1, lines[i]
+        while raw.endswith("~"):
+            i += 1
+            if i == len(lines):
+                raise BadFile(path, f"line {i}", repr(raw), "a further line after the tilde")
+            raw = f"{raw} {lines[i]}"
+        i += 1
+        folded = " ".join(raw.split())
+        match = re.match(r"(\d+) (.*)", folded)
+        numbered = match is not None if numbered is None else numbered
+        if numbered != (match is not None):
+            raise BadFile(
+                path, f"line {first}", repr(folded), "block numbers everywhere or nowhere"
+            )
+        if match is not None:
+            if int(match[1]) != len(blocks):
+                raise BadFile(path, f"line {first}", f"block number {match[1]}", str(len(blocks)))
+            folded = match[2]
+        blocks.append(_parse(folded, first, path))
+    return blocks
+
+
+def _physical_lines(data: bytes, path: str | Path) -> list[str]:
+    if not data:
+        raise BadFile(path, "file", "nothing", "a program that begins with BEGIN PGM")
+    try:
+        text = data.decode("ascii")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        found = f"byte 0x{data[error.start]:02x}"
+        raise BadFile(path, f"line {line}", found, "ASCII") from None
+    if text.count("\r\n") not in (0, text.count("\n")) or text.replace("\r\n", "").count("\r"):
+        raise BadFile(path, "file", "mixed line ends", "CRLF at the end of every line")
+    if not text.endswith("\n"):
+        last = text.count("\n") + 1
+        raise BadFile(
+            path, f"line {last}", repr(text.splitlines()[-1]), "a whole line: the file is cut off"
+        )
+    return [line.rstrip() for line in text.splitlines()]
+
+
+def _parse(text: str, line: int, path: str | Path) -> Block:
+    """The block of one line, remarks at its end dropped."""
+    for kind in _REMARK_KINDS:
+        match = _PATTERNS[kind].match(text)
+        if match is not None:
+            return Block(line, kind, match.groupdict(), text)
+    bare = text.split(";")[0].rstrip()
+    for kind, pattern in _PATTERNS.items():
+        match = pattern.match(bare)
+        if match is not None:
+            return Block(line, kind, match.groupdict(), text)
+    for beginning, expected in _KNOWN_OTHERS:
+        if re.match(beginning, bare):
+            raise BadFile(path, f"line {line}", repr(text), expected)
+    raise BadFile(path, f"line {line}", repr(text), _ANYTHING)

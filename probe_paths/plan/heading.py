@@ -1,0 +1,98 @@
+"""What a program and its log say of themselves: standard, set-up, probe, features.
+
+The operator needs these lines to mount the standard, and whoever reads the text back needs them to
+know where it was believed to stand. They are comments of the program and literal lines of the log.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from twin.errors import BadFile, DesignError
+from twin.frames import Array, fixed_xyz, fixed_xyz_angles, pose
+from twin.record import Setup
+from twin.units import DEG
+
+_NAME = re.compile(r"[A-Za-z0-9_.+-]{1,24}\Z")
+_NUMBER = r"([+-]\d+\.\d+)"
+_ORIGIN = re.compile(rf"ORIGIN X{_NUMBER} Y{_NUMBER} Z{_NUMBER}")
+_TURNED = re.compile(rf"TURNED A{_NUMBER} B{_NUMBER} C{_NUMBER}")
+_PROBE = re.compile(rf"PROBE RADIUS {_NUMBER} LENGTH TO BALL CENTRE {_NUMBER}")
+
+
+@dataclass(frozen=True, eq=False)
+class Heading:
+    """Facts at the head of a program.
+
+    Attributes:
+        standard: Name of the standard, as its file has it.
+        setup: Where it is believed to stand.
+        radius: Of the probe's ball, mm.
+        length: Of the probe to the ball centre, mm.
+    """
+
+    standard: str
+    setup: Setup
+    radius: float
+    length: float
+
+    @property
+    def lines(self) -> list[str]:
+        """The four lines; numbers with six decimals, mm and degrees."""
+        for name in (self.standard, self.setup.name):
+            if not _NAME.match(name):
+                raise DesignError(
+                    f"name '{name}' cannot stand in a program: expected 1 to 24 letters, digits, "
+                    "_ . + or -"
+                )
+        T_table_artefact = self.setup.T_table_artefact
+        angles = fixed_xyz_angles(T_table_artefact[:3, :3]) / DEG
+        return [
+            f"STANDARD {self.standard} SETUP {self.setup.name}",
+            "ORIGIN " + _words("XYZ", T_table_artefact[:3, 3]),
+            "TURNED " + _words("ABC", angles),
+            f"PROBE RADIUS {self.radius:+.6f} LENGTH TO BALL CENTRE {self.length:+.6f}",
+        ]
+
+
+def _words(letters: str, values: Array) -> str:
+    # + 0.0 turns a negative zero, also one that rounding brings about, into a positive one
+    return " ".join(f"{a}{round(v, 6) + 0.0:+.6f}" for a, v in zip(letters, values, strict=True))
+
+
+def rounded_setup(setup: Setup) -> Setup:
+    """The set-up as a program can state it, so that plan, program and log mean the same pose."""
+    T_table_artefact = setup.T_table_artefact
+    angles = np.round(fixed_xyz_angles(T_table_artefact[:3, :3]) / DEG, 6) * DEG
+    return Setup(setup.name, pose(fixed_xyz(angles), np.round(T_table_artefact[:3, 3], 6)))
+
+
+def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> Heading:
+    """Heading from its four lines, each with its line number in the file.
+
+    Raises:
+        BadFile: A line missing or spelt otherwise.
+    """
+    where = f"line {lines[0][0]}" if lines else "head"
+    if len(lines) < 4:
+        raise BadFile(path, where, "an incomplete head", "STANDARD, ORIGIN, TURNED, PROBE lines")
+    words = lines[0][1].split()
+    if len(words) != 4 or words[0] != "STANDARD" or words[2] != "SETUP":
+        raise BadFile(path, where, repr(lines[0][1]), "STANDARD <name> SETUP <name>")
+    origin = _numbers(_ORIGIN, lines[1], path, "ORIGIN X.. Y.. Z..")
+    angles = _numbers(_TURNED, lines[2], path, "TURNED A.. B.. C..")
+    radius, length = _numbers(_PROBE, lines[3], path, "PROBE RADIUS .. LENGTH TO BALL CENTRE ..")
+    T_table_artefact = pose(fixed_xyz(angles * DEG), origin)
+    return Heading(words[1], Setup(words[3], T_table_artefact), float(radius), float(length))
+
+
+def _numbers(
+    pattern: re.Pattern[str], line: tuple[int, str], path: str | Path, expected: str
+) -> Array:
+    match = pattern.fullmatch(line[1].strip())
+    if match is None:
+        raise BadFile(path, f"line {line[0]}", repr(line[1]), expected)
+    return np.array([float(v) for v in match.groups()])

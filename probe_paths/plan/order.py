@@ -1,0 +1,126 @@
+"""Order of poses and touches: mixed, from both sides, and short ways within a pose."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.errors import NotReachable
+from twin.frames import Array
+from twin.machine import Chain
+from twin.record import IntArray
+from twin.units import DEG
+
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+"""Fractional parts of its multiples are spread as evenly as any; no randomness is needed."""
+
+LONGEST_TURN = 170.0 * DEG
+"""A rotary move is cut into pieces below half a turn, so that M126 cannot change its way."""
+
+_ROUNDING = 1e-9
+"""A reading at the very end of the travel is inside, whatever its last digit, rad."""
+
+
+@dataclass(frozen=True, eq=False)
+class Visit:
+    """One stay at a table pose.
+
+    Attributes:
+        pose: Number of the pose, from 0.
+        rotary: Readings of the rotary axes, (R,), rad.
+        side: Direction of the last motion of each rotary axis, (R,), -1 or 1.
+        before: Readings just before it, overshot to the side, (R,), rad.
+        rows: Requests to touch here, (M,).
+        height: Reading of Z at which the probe moves sideways, mm.
+    """
+
+    pose: int
+    rotary: Array
+    side: Array
+    before: Array
+    rows: IntArray
+    height: float = 0.0
+
+
+def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -> list[Visit]:
+    """Visits of all poses: a first round in mixed order, a second one backwards.
+
+    Round one takes the poses, sorted by their readings, in the order of ``frac(k golden)``. The
+    sides of the axes alternate from pose to pose independently of each other and are opposite in
+    the second round.
+
+    Args:
+        chain: The machine.
+        rotary: Readings of every request, (N, R), rad.
+        overshoot: Of the last motion towards a reading, rad.
+        shortest_visit: Fewest touches for which a pose is split over two visits.
+
+    Raises:
+        NotReachable: A rotary reading that is outside the travel or leaves no room to approach.
+    """
+    poses, belongs = np.unique(rotary, axis=0, return_inverse=True)
+    order = np.argsort((np.arange(len(poses)) * GOLDEN) % 1.0, kind="stable")
+    first: list[Visit] = []
+    second: list[Visit] = []
+    for turn, pose in enumerate(order):
+        rows = np.flatnonzero(belongs.reshape(-1) == pose)
+        wanted = np.array([1.0 if (turn >> axis) & 1 else -1.0 for axis in range(rotary.shape[1])])
+        halves = [rows[::2], rows[1::2]] if len(rows) >= shortest_visit else [rows]
+        for half, target, sign in zip(halves, (first, second), (1.0, -1.0), strict=False):
+            target.append(_visit(chain, int(pose), poses[pose], sign * wanted, overshoot, half))
+    return first + second[::-1]
+
+
+def _visit(
+    chain: Chain, pose: int, rotary: Array, side: Array, overshoot: float, rows: IntArray
+) -> Visit:
+    """A visit from the wanted sides, or from the other one where the travel ends."""
+    side = side.copy()
+    for i, name in enumerate(chain.rotary_axes):
+        low, high = chain.link(name).range
+        low, high = low - _ROUNDING, high + _ROUNDING
+        if not low <= rotary[i] <= high:
+            raise NotReachable(
+                f"pose {name}{rotary[i] / DEG:+.4f}: outside the travel of {name}, "
+                f"{low / DEG:g} to {high / DEG:g} degrees"
+            )
+        if not low <= rotary[i] - side[i] * overshoot <= high:
+            side[i] = -side[i]
+        if not low <= rotary[i] - side[i] * overshoot <= high:
+            raise NotReachable(
+                f"pose {name}{rotary[i] / DEG:+.4f}: travel of {name} leaves no room to approach it"
+            )
+    return Visit(pose, rotary, side, rotary - side * overshoot, rows)
+
+
+def waypoints(start: Array, end: Array) -> Array:
+    """Rotary readings (W, R) after `start` up to `end`, no step longer than `LONGEST_TURN`."""
+    pieces = max(int(np.ceil(np.abs(end - start).max(initial=0.0) / LONGEST_TURN)), 1)
+    share = np.arange(1, pieces + 1)[:, None] / pieces
+    between: Array = start + share * (end - start)
+    return between
+
+
+def home_readings(chain: Chain) -> Array:
+    """Rotary readings (R,) where programs begin and end: zero, or as near as the travel allows."""
+    return np.array([np.clip(0.0, *chain.link(name).range) for name in chain.rotary_axes])
+
+
+def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:
+    """Every rotary position (W, R) of a programme of visits, from `start` to `end`."""
+    path = [start[None]]
+    for stop in stops:
+        path += [waypoints(path[-1][-1], stop.before), stop.rotary[None]]
+    return np.concatenate([*path, end[None]])
+
+
+def nearest_neighbours(places: Array, first: Array) -> IntArray:
+    """Order of places (N, 3) that goes from `first` (3,) always to the nearest one left."""
+    left = np.ones(len(places), dtype=bool)
+    order = np.empty(len(places), dtype=np.int64)
+    here = first
+    for k in range(len(places)):
+        distance = np.where(left, np.linalg.norm(places - here, axis=1), np.inf)
+        order[k] = int(np.argmin(distance))
+        left[order[k]] = False
+        here = places[order[k]]
+    return order

@@ -1,0 +1,251 @@
+"""Makes a plan: works out every touch, refuses what cannot be made, puts the rest in order."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from artefact.body import Standard
+from artefact.reach import Probing, Requests, joined
+from probe_paths.plan.clearance import obstacles, readings_at, swing_height, top_height
+from probe_paths.plan.frame import LINEAR, ProgramFrame
+from probe_paths.plan.heading import rounded_setup
+from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, rotary_path, visits
+from probe_paths.plan.probe import Probe
+from probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
+from twin.errors import DesignError, NotReachable, ShapeMismatch
+from twin.frames import Array
+from twin.machine import Chain, table_to_tool
+from twin.record import IntArray, Labels, Setup
+from twin.units import DEG
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """What shall be planned; fields as of `plan_touches`."""
+
+    standard: Standard
+    chain: Chain
+    probe: Probe
+    setup: Setup
+    options: PlanOptions
+
+    @property
+    def probing(self) -> Probing:
+        """What can be touched, with the margins of the plan."""
+        o = self.options
+        return Probing(
+            self.chain,
+            self.setup,
+            self.probe.shape,
+            self.probe.length,
+            steepest=o.steepest,
+            room=o.room,
+            standoff=o.standoff,
+            search=o.search,
+            table_radius=o.table_radius,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Touches:
+    """Touches worked out in readings; fields as in `TouchPlan`."""
+
+    feature: Labels
+    point: Array
+    normal: Array
+    start: Array
+    contact: Array
+    direction: Array
+    reason: Labels  # (N,), empty where nothing is against the touch
+
+    def __getitem__(self, rows: IntArray | slice) -> "_Touches":
+        return _Touches(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
+
+
+def plan_touches(
+    standard: Standard,
+    chain: Chain,
+    probe: Probe,
+    setup: Setup,
+    requests: Requests,
+    options: PlanOptions | None = None,
+) -> TouchPlan:
+    """Plan of all touches of one set-up.
+
+    Args:
+        standard: What is touched.
+        chain: The machine.
+        probe: In the spindle.
+        setup: Where the standard is believed to stand.
+        requests: Wanted touches, at any poses, in any order.
+        options: How carefully.
+
+    Raises:
+        NotReachable: More requests refused than tolerated, a pose without room for the probe above
+            or for the table to turn.
+        DesignError: A machine or a feature that programs cannot name.
+    """
+    options = options or PlanOptions()
+    setup = rounded_setup(setup)
+    ProgramFrame(chain, probe)
+    _check_requests(standard, chain, requests)
+    rotary = np.round(requests.rotary / GRID) * GRID
+    task = _Task(standard, chain, probe, setup, options)
+    stops = visits(chain, rotary, options.overshoot, options.shortest_visit)
+    stops = _with_heights(task, stops)
+    height = np.empty(len(requests))
+    for stop in stops:
+        height[stop.rows] = stop.height
+    wanted = _looked_at(task, replace(requests, rotary=rotary), height)
+    refused = [Refusal(i, str(r)) for i, r in enumerate(wanted.reason) if r]
+    if len(refused) > options.tolerated:
+        raise NotReachable(
+            f"{len(refused)} of {len(requests)} touches cannot be made, "
+            f"{options.tolerated} tolerated; the first: {refused[0].reason}",
+            refused=refused,
+        )
+    plan, failed = _assembled(task, stops, wanted)
+    return replace(plan, refused=tuple(refused + failed))
+
+
+def _check_requests(standard: Standard, chain: Chain, requests: Requests) -> None:
+    n = len(requests)
+    shapes = [(n, 3), (n, 3), (n, len(chain.rotary_axes))]
+    found = [requests.point.shape, requests.normal.shape, requests.rotary.shape]
+    if shapes != found or len(requests.feature) != n or not n:
+        raise ShapeMismatch(f"touch requests of shapes {found}, expected {shapes} and N > 0")
+    for name in sorted(set(requests.feature.tolist())):
+        if name not in standard.features:
+            available = ", ".join(standard.features)
+            raise DesignError(f"no feature '{name}' on {standard.name}; available: {available}")
+
+
+def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
+    """Visits with their clearance heights, after checking that the table can turn between them."""
+    chain, probe, options = task.chain, task.probe, task.options
+    solid = obstacles(task.standard, task.setup, options.table_radius)
+    retract = chain.link("Z").range[1] - options.retract
+    rotary = np.array([stop.rotary for stop in stops])
+    frame = ProgramFrame(chain, probe)
+    heights = top_height(chain, rotary, solid, probe) + options.clearance
+    # whole millimetres in the program: an operator reads them at a glance
+    heights = np.array([frame.reading("Z", np.ceil(frame.coordinate("Z", h))) for h in heights])
+    home = home_readings(chain)
+    swing = swing_height(chain, rotary_path(home, stops, home), solid, probe).max(initial=-np.inf)
+    highest = max(heights.max(), swing + 0.5 * options.clearance)
+    if highest > retract:
+        raise NotReachable(
+            f"Z would have to rise to {highest:.1f} mm to clear standard and table while they "
+            f"turn; it retracts to {retract:.1f} mm"
+        )
+    return [replace(stop, height=float(h)) for stop, h in zip(stops, heights, strict=True)]
+
+
+def _looked_at(task: _Task, wanted: Requests, height: Array) -> _Touches:
+    """Touches in readings, with the first reason against each."""
+    chain, options, probing = task.chain, task.options, task.probing
+    contact = probing.readings(wanted)
+    start = probing.readings(wanted, options.standoff)
+    linear = [chain.axis_index(name) for name in LINEAR]
+    direction = (contact - start)[:, linear] / options.standoff
+    against = probing.reasons(task.standard, wanted)
+    too_high = start[:, chain.axis_index("Z")] > height
+    against = np.where(
+        (against == "") & too_high, "its start lies above the clearance height", against
+    )
+    named = [
+        f"{f}, {_pose_words(chain, q)}: {r}" if r else ""
+        for f, q, r in zip(wanted.feature, contact, against, strict=True)
+    ]
+    reason = np.array(named, dtype="U200")
+    return _Touches(wanted.feature, wanted.point, wanted.normal, start, contact, direction, reason)
+
+
+def _pose_words(chain: Chain, q: Array) -> str:
+    return " ".join(f"{a}{q[chain.axis_index(a)] / DEG:+.1f}" for a in chain.rotary_axes)
+
+
+def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, str]]:
+    """The best anchor touch that can be made at every pose, or none and what is against it."""
+    poses = list({stop.pose: stop for stop in stops}.values())
+    if not task.standard.spheres or not poses:
+        return {}
+    lots = [_anchor_requests(task, stop) for stop in poses]
+    height = np.repeat([stop.height for stop in poses], [len(lot) for lot in lots])
+    looked_at = _looked_at(task, joined(lots), height)
+    ends = np.cumsum([len(lot) for lot in lots])
+    return {
+        stop.pose: _first_good(looked_at[slice(int(end) - len(lot), int(end))])
+        for stop, lot, end in zip(poses, lots, ends, strict=True)
+    }
+
+
+def _anchor_requests(task: _Task, stop: Visit) -> Requests:
+    """Possible anchor touches of a pose, best first."""
+    options = task.options
+    spheres = sorted(task.standard.spheres, key=lambda s: s.name != options.anchor)
+    q = readings_at(task.chain, stop.rotary[None])
+    R_table_tool = table_to_tool(task.chain, q)[0, :3, :3]
+    azimuth = 120.0 * DEG * stop.pose + 60.0 * DEG * np.arange(6)
+    sin, cos = np.sin(options.anchor_tilt), np.cos(options.anchor_tilt)
+    local = np.stack([sin * np.cos(azimuth), sin * np.sin(azimuth), np.full(6, cos)], axis=-1)
+    tilted = np.concatenate([local, [[0.0, 0.0, 1.0]]]) @ R_table_tool.T
+    normal = tilted @ task.setup.T_table_artefact[:3, :3]
+    return Requests(
+        np.repeat([s.name for s in spheres], len(normal)),
+        np.concatenate([s.centre + s.radius * normal for s in spheres]),
+        np.tile(normal, (len(spheres), 1)),
+        np.repeat(stop.rotary[None], len(spheres) * len(normal), axis=0),
+    )
+
+
+def _assembled(
+    task: _Task, stops: list[Visit], wanted: _Touches
+) -> tuple[TouchPlan, list[Refusal]]:
+    """The plan in order of execution, and anchors that no pose could be given."""
+    parts: list[_Touches] = []
+    visit: list[int] = []
+    request: list[int] = []
+    failed: list[Refusal] = []
+    kept: list[Visit] = []
+    stops = [stop for stop in stops if np.any(wanted.reason[stop.rows] == "")]
+    anchors = _anchors(task, stops)
+    linear = [task.chain.axis_index(name) for name in LINEAR]
+    for stop in stops:
+        rows = stop.rows[wanted.reason[stop.rows] == ""]
+        anchor, why = anchors.get(stop.pose, (wanted[rows[:0]], ""))
+        if why:
+            failed.append(Refusal(-1, f"no anchor touch: {why}"))
+        first = anchor.start[0] if len(anchor.point) else wanted.start[rows[0]]
+        order = nearest_neighbours(wanted.start[rows][:, linear], first[linear])
+        parts += [anchor, wanted[rows[order]]]
+        request += [-1] * len(anchor.point) + rows[order].tolist()
+        visit += [len(kept)] * (len(anchor.point) + len(rows))
+        kept.append(stop)
+    if not kept:
+        raise NotReachable("no touch can be made", refused=failed)
+    plan = TouchPlan(
+        chain=task.chain,
+        probe=task.probe,
+        standard=task.standard,
+        setup=task.setup,
+        options=task.options,
+        visits=tuple(kept),
+        visit=np.array(visit),
+        request=np.array(request),
+        feature=np.concatenate([part.feature for part in parts]),
+        point=np.concatenate([part.point for part in parts]),
+        normal=np.concatenate([part.normal for part in parts]),
+        start=np.concatenate([part.start for part in parts]),
+        contact=np.concatenate([part.contact for part in parts]),
+        direction=np.concatenate([part.direction for part in parts]),
+    )
+    return plan, failed
+
+
+def _first_good(candidates: _Touches) -> tuple[_Touches, str]:
+    """The first candidate that nothing is against, or none and the reason against the first."""
+    good = np.flatnonzero(candidates.reason == "")
+    if len(good):
+        return candidates[good[:1]], ""
+    return candidates[good], str(candidates.reason[0])

@@ -1,0 +1,122 @@
+"""What is touched, in which order, from which side: the plan of one set-up of the standard.
+
+Rotary positions are approached from both sides, poses come in mixed order and twice, the second
+time backwards, so that every pose has the same mean time and a linear drift drops out of its mean.
+On every visit a datum sphere is touched first, at the same point in both visits of a pose.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from artefact.body import Standard
+from artefact.reach import TABLE_RADIUS, Requests
+from probe_paths.plan.order import Visit
+from probe_paths.plan.probe import Probe
+from twin.frames import Array
+from twin.machine import Chain
+from twin.record import IntArray, Labels, Setup
+from twin.units import DEG
+
+GRID = 1e-4 * DEG
+"""Rotary readings are rounded to what a program can state, rad."""
+
+
+@dataclass(frozen=True)
+class PlanOptions:
+    """How carefully and how thoroughly, base units.
+
+    Attributes:
+        standoff: Gap between ball and surface at the start of a touch.
+        search: How far beyond the expected contact the probe looks for the surface.
+        clearance: Height of the tool above everything while it moves sideways.
+        room: Smallest gap between stylus, body, spindle and anything solid at a touch.
+        overshoot: How far before a rotary position the last motion towards it begins, rad.
+        steepest: Largest angle between the surface's normal and the tool axis, rad.
+        retract: Below the upper end of Z's travel, where rotary axes may turn.
+        anchor: Sphere touched on every visit; empty for the first of the standard.
+        anchor_tilt: Angle between the anchor touch's normal and the tool axis, rad.
+        shortest_visit: Fewest touches for which a pose is visited twice, half of them each time.
+        table_radius: Of the rotary table's face, kept clear.
+        tolerated: How many requests may be refused before the whole plan is.
+    """
+
+    standoff: float = 5.0
+    search: float = 3.0
+    clearance: float = 20.0
+    room: float = 1.0
+    overshoot: float = 5.0 * DEG
+    steepest: float = 90.5 * DEG
+    retract: float = 1.0
+    anchor: str = ""
+    anchor_tilt: float = 40.0 * DEG
+    shortest_visit: int = 4
+    table_radius: float = TABLE_RADIUS
+    tolerated: int = 0
+
+
+def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> Requests:
+    """Touches at parameters (N, 2) of one feature at rotary readings (N, R) or (R,), rad."""
+    surface = standard.features[feature]
+    rotary = np.broadcast_to(np.asarray(rotary, dtype=float), (len(uv), np.shape(rotary)[-1]))
+    return Requests(np.full(len(uv), feature), surface.point(uv), surface.normal(uv), rotary)
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """A request that cannot be made.
+
+    Attributes:
+        request: Row of the requests; -1 for an anchor touch.
+        reason: One clear line.
+    """
+
+    request: int
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class TouchPlan:
+    """Touches in the order of execution; rows of one visit stand together.
+
+    Attributes:
+        chain: The machine.
+        probe: In the spindle.
+        standard: What is touched.
+        setup: Where it is believed to stand.
+        options: As planned.
+        visits: Table poses in order, each with its side of approach and clearance height.
+        visit: Index into `visits`, (N,).
+        request: Row of the requests, -1 for an anchor touch, (N,).
+        feature: Names, (N,).
+        point: Contact points, artefact frame, (N, 3), mm.
+        normal: Outward unit normals, (N, 3).
+        start: Readings at the start of the touch, (N, A).
+        contact: Readings at the expected contact, (N, A).
+        direction: Unit vector of the probing motion in X, Y, Z readings, (N, 3).
+        refused: Requests that cannot be made, and why.
+    """
+
+    chain: Chain
+    probe: Probe
+    standard: Standard
+    setup: Setup
+    options: PlanOptions
+    visits: tuple[Visit, ...]
+    visit: IntArray
+    request: IntArray
+    feature: Labels
+    point: Array
+    normal: Array
+    start: Array
+    contact: Array
+    direction: Array
+    refused: tuple[Refusal, ...] = field(default=())
+
+    def __len__(self) -> int:
+        return len(self.visit)
+
+    @property
+    def distance(self) -> float:
+        """Longest path of a touch, mm."""
+        return self.options.standoff + self.options.search

@@ -1,0 +1,220 @@
+"""Maps of sensitivities and of the volumetric error, for reports (PNG)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from report.maps.canvas import GRID, INK, SHADES, axis_title, figure, nothing, reading_label, save
+from report.maps.regions_picture import draw_regions
+from report.maps.rotary_picture import draw_rotary
+from report.maps.sensitivity_pictures import maps_of_S, overview
+from sensitivity.shares import region_totals, regions
+from sensitivity.study import Study
+from twin.frames import Array
+from twin.units import DEG, UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_BARS = 24
+_BINS = 12
+
+
+def draw_maps(
+    study: Study, folder: Path, rng: np.random.Generator | None = None
+) -> list[tuple[str, str]]:
+    """Draw every map of a study into a folder.
+
+    Args:
+        study: The study.
+        folder: For the pictures.
+        rng: Source of the random machines that show what errors do to the length |d|; None to do
+            without.
+
+    Returns:
+        File name and caption of each.
+    """
+    sampled = f"Monte Carlo: {study.volumetric.statement}; {len(study.q)} poses."
+    maps = [
+        (
+            "sensitivity.png",
+            overview(study),
+            "Sensitivity S of the tool point to every error parameter, smallest to largest over "
+            "the workspace. A translation counts once everywhere; an angle by its lever arm. "
+            "Exact to first order.",
+        ),
+        (
+            "sensitivity_maps.png",
+            maps_of_S(study),
+            "Sensitivity of the parameters for which it depends on the pose, each over the one or "
+            "two readings it depends on most; other readings in the middle of the workspace.",
+        ),
+        (
+            "volumetric_sections.png",
+            _volumetric_sections(study),
+            "Volumetric error over pairs of readings, all other readings as in the worst pose "
+            f"({_pose_words(study)}). Above: 95 % of the machines stay below. Below: share of the "
+            "machines for which a pose is among the worst 5 % of the workspace; 5 % would be "
+            f"chance. {sampled}",
+        ),
+        (
+            "volumetric_rotary.png",
+            draw_rotary(study),
+            "Four points of the workpiece while the table turns and the linear axes follow; a "
+            "point is named by the linear readings that reach it with the table level. Above: "
+            "volumetric error, 95 % quantile. Below: S of errors that matter, at the last of the "
+            f"points. Grey: beyond the travel. {unsampled(study)}",
+        ),
+        (
+            "volumetric_axes.png",
+            _volumetric_axes(study),
+            "Volumetric error against each reading: median over the poses of the mean and of the "
+            f"95 % quantile, with the range that holds 80 % of the poses. {sampled}",
+        ),
+        (
+            "variance_regions.png",
+            *_regions(study, rng),
+        ),
+        (
+            "variance_shares.png",
+            _shares(study),
+            "The same over the whole workspace, with more of the parameters.",
+        ),
+    ]
+    for name, drawn, _ in maps:
+        save(drawn, folder / name)
+    return [(name, caption) for name, _, caption in maps]
+
+
+def _regions(study: Study, rng: np.random.Generator | None) -> tuple[Figure, str]:
+    """Tornado of every region, with its caption."""
+    found = regions(study.population, study.workspace)
+    words = (
+        "Share of the error parameters in the variance of the deviation, region by region: of the "
+        "variance summed over the region, and the range that holds 90 % of its poses. Exact to "
+        "first order."
+    )
+    if rng is None or study.population.dependence is not None:
+        return draw_regions(study.chain, found), words
+    totals = region_totals(study.population, study.workspace, found, rng)
+    return draw_regions(study.chain, found, totals), (
+        f"{words} Diamonds: total effect on the length |d|, interactions included, with twice its "
+        f"standard error (Monte Carlo: {totals.machines} pairs of random machines, seed "
+        f"{totals.seed}, at {totals.poses} poses of every region); these make more than 100 % "
+        "together, because the errors interact in a length."
+    )
+
+
+def unsampled(study: Study) -> str:
+    """What has to stand beside a volumetric error that was not sampled."""
+    mean, worst = study.tail
+    return (
+        "Without sampling, to first order and as if errors were normally distributed: the 95 % "
+        f"quantile that was sampled at {len(study.q)} poses differs from it by {100.0 * mean:+.1f} "
+        f"% on average, {100.0 * worst:+.1f} % at worst."
+    )
+
+
+def _pose_words(study: Study) -> str:
+    """Readings of the pose through which the sections run."""
+    words = []
+    for axis in study.chain.programmed_axes:
+        unit, shown = (1.0, " mm") if study.chain.link(axis).kind == "linear" else (DEG, "°")
+        value = study.worst_pose[study.chain.axis_index(axis)] / unit
+        words.append(f"{axis} {value:.0f}{shown}")
+    return ", ".join(words)
+
+
+def _volumetric_sections(study: Study) -> Figure:
+    """P95 of |d| and recurrence over pairs of readings."""
+    sections = study.sections
+    if not sections:
+        return nothing("Fewer than two readings have room to move.")
+    drawn = figure(3.0 * len(sections) + 0.8, 5.4)
+    grid = drawn.subplots(2, len(sections), squeeze=False)
+    kinds: list[tuple[list[Array], float, str, str]] = [
+        ([s.volumetric.p95 for s in sections], UM, "viridis", "95 % quantile / µm"),
+        ([s.volumetric.recurrence for s in sections], 0.01, "magma", "among the worst 5 % / %"),
+    ]
+    for row, (values, unit, colours, label) in enumerate(kinds):
+        low = min(float(v.min()) for v in values) / unit
+        high = max(float(v.max()) for v in values) / unit
+        for column, (s, v) in enumerate(zip(sections, values, strict=True)):
+            axes = grid[row, column]
+            n = len(s.first)
+            (label_a, unit_a), (label_b, unit_b) = (reading_label(study.chain, a) for a in s.axes)
+            x, y, z = s.first / unit_a, s.second / unit_b, v.reshape(n, n).T / unit
+            mesh = axes.pcolormesh(x, y, z, cmap=colours, vmin=low, vmax=high, shading="gouraud")
+            axes.set(xlabel=label_a, ylabel=label_b)
+        drawn.colorbar(mesh, ax=grid[row], pad=0.01, label=label)
+    return drawn
+
+
+def _volumetric_axes(study: Study) -> Figure:
+    """|d| against every reading."""
+    free = study.workspace.open_axes
+    if not free:
+        return nothing("No reading has room to move.")
+    drawn = figure(2.9 * len(free) + 0.6, 3.2)
+    grid = drawn.subplots(1, len(free), sharey=True, squeeze=False)[0]
+    v = study.volumetric
+    curves = [(v.p95 / UM, SHADES[1], "95 % quantile"), (v.mean / UM, SHADES[0], "mean")]
+    for axes, name in zip(grid, free, strict=True):
+        label, unit = reading_label(study.chain, name)
+        reading = study.q[:, study.chain.axis_index(name)] / unit
+        lots = np.array_split(np.argsort(reading), _BINS)
+        middle = [reading[lot].mean() for lot in lots]
+        for value, colour, what in curves:
+            low, median, high = np.array(
+                [np.quantile(value[lot], (0.1, 0.5, 0.9)) for lot in lots]
+            ).T
+            axes.fill_between(middle, low, high, color=colour, alpha=0.18, lw=0)
+            axes.plot(middle, median, color=colour, lw=1.8, label=what)
+        axes.set_xlabel(label)
+        axes.grid(color=GRID, lw=0.6)
+        axes.spines[["top", "right"]].set_visible(False)
+    grid[0].set_ylabel("volumetric error / µm")
+    grid[0].set_ylim(bottom=0.0)
+    grid[-1].legend(frameon=False, fontsize=8, loc="lower right")
+    return drawn
+
+
+def _shares(study: Study) -> Figure:
+    """Bars of the largest shares of variance, coloured by link."""
+    from matplotlib.patches import Patch
+
+    chain = study.chain
+    mean = study.shares.mean(axis=0)
+    order = np.argsort(-mean, kind="stable")[:_BARS]
+    order = order[mean[order] > 0.0]
+    low, high = np.quantile(study.shares[:, order], (0.05, 0.95), axis=0)
+    colour = {link.name: SHADES[i % len(SHADES)] for i, link in enumerate(chain.links)}
+    drawn = figure(7.0, 0.2 * len(order) + 1.0)
+    axes = drawn.subplots()
+    y = np.arange(len(order))
+    links = [chain.symbols[i].link for i in order]
+    axes.barh(y, 100.0 * mean[order], color=[colour[k] for k in links], height=0.72)
+    axes.hlines(y, 100.0 * low, 100.0 * high, color=INK, lw=1.0)
+    axes.plot(100.0 * low, y, "|", 100.0 * high, y, "|", color=INK, ms=5)
+    axes.set_yticks(y, [chain.symbols[i].name for i in order], fontsize=8)
+    axes.set_ylim(len(order) - 0.4, -0.6)
+    axes.set_xlim(left=0.0)
+    axes.set_xlabel(
+        "share of the variance of the deviation / %   "
+        f"(the {len(order)} shown make {100.0 * mean[order].sum():.0f} % together)"
+    )
+    axes.grid(axis="x", color=GRID, lw=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    present = [link for link in chain.links if link.name in links]
+    axes.legend(
+        handles=[Patch(color=colour[link.name], label=axis_title(link)) for link in present],
+        frameon=False,
+        fontsize=8,
+        loc="lower right",
+    )
+    return drawn

@@ -1,0 +1,180 @@
+"""What the rotary axes do: volumetric error and S of single points of the workpiece, over B and C.
+
+The linear axes follow, as they do under a program, so that the tool point stays at one point of the
+workpiece; where their travel does not let them, nothing is drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from report.maps.canvas import figure, nothing, reading_label
+from sensitivity.first_order import Workspace, covariance, normal_length, sensitivity
+from sensitivity.study import Study, has_volume
+from twin.frames import Array
+from twin.machine import Symbol, inverse_linear, tip
+from twin.units import UM, URAD
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_VALUES = 61  # of each rotary reading
+_SHOWN = 4  # maps in a row
+_STILL = 0.02  # relative range of S below which its map would be one colour
+_ALIKE = 0.98  # correlation of two maps of S that show the same
+_SLACK = 1e-9  # mm
+_BEYOND = "#e3e3e3"
+
+
+@dataclass(frozen=True, eq=False)
+class PointOverRotary:
+    """One point of the workpiece while the table turns.
+
+    Attributes:
+        words: Where it is: linear readings with the rotary axes next to zero.
+        axes: Names of the rotary axes shown, one or two.
+        readings: Their values, an array each, rad.
+        q: Readings with the tool point there, (N, A), the second rotary reading fastest.
+        reached: Whether the travels of the linear axes allow it, (N,).
+    """
+
+    words: str
+    axes: tuple[str, ...]
+    readings: tuple[Array, ...]
+    q: Array
+    reached: Array
+
+    def shown(self, values: Array) -> Array:
+        """Values (N,) on the grid of readings, not a number where out of reach."""
+        return np.where(self.reached, values, np.nan).reshape([len(r) for r in self.readings])
+
+
+def level(workspace: Workspace) -> dict[str, float]:
+    """Rotary readings next to zero within the limits, rad: the table as a workpiece is set up."""
+    return {
+        name: float(np.clip(0.0, *workspace.limit(name))) for name in workspace.chain.rotary_axes
+    }
+
+
+def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
+    """Four points of the workpiece over the one or two rotary axes that move: middle, top, corners.
+
+    Args:
+        workspace: Limits; the points are those of its linear readings with the table level.
+
+    Returns:
+        None where no rotary axis moves, or there are not three linear axes with room.
+    """
+    chain = workspace.chain
+    turning = sorted(a for a in workspace.open_axes if a in chain.rotary_axes)[:2]
+    if not turning or not has_volume(workspace):
+        return ()
+    base = workspace.centre
+    for name, reading in level(workspace).items():
+        base[chain.axis_index(name)] = reading
+    linear = sorted(chain.linear_axes)
+    each = tuple(np.linspace(*workspace.limit(a), _VALUES) for a in turning)
+    mesh = [m.ravel() for m in np.meshgrid(*each, indexing="ij")]
+    out = []
+    for ends in ((0, 0, 0), (0, 0, 1), (1, 0, 0), (1, 1, -1)):
+        start, words = base.copy(), []
+        for name, end in zip(linear, ends, strict=True):
+            low, high = workspace.limit(name)
+            start[chain.axis_index(name)] = 0.5 * (low + high) + 0.5 * end * (high - low)
+            words.append(f"{name} {start[chain.axis_index(name)]:.0f}")
+        target = tip(chain, start[None], workspace.length)
+        q = np.tile(base, (len(mesh[0]), 1))
+        for name, values in zip(turning, mesh, strict=True):
+            q[:, chain.axis_index(name)] = values
+        q = inverse_linear(chain, np.repeat(target, len(q), axis=0), q, workspace.length)
+        reached = np.ones(len(q), dtype=bool)
+        for name in linear:
+            first, last = chain.link(name).range
+            follows = q[:, chain.axis_index(name)]
+            reached &= (follows >= first - _SLACK) & (follows <= last + _SLACK)
+        out.append(PointOverRotary(", ".join(words), tuple(turning), each, q, reached))
+    return tuple(out)
+
+
+def draw_rotary(study: Study) -> Figure:
+    """P95 of the volumetric error, and S of the errors that matter, over the rotary readings."""
+    workspace = study.workspace
+    points = points_over_rotary(workspace)
+    if not any(p.reached.any() for p in points):
+        return nothing("No rotary axis turns a point of the workpiece.")
+    p95 = [
+        p.shown(normal_length(covariance(study.population, p.q, workspace.length)).p95) / UM
+        for p in points
+    ]
+    symbols = _moving(study, points[-1])
+    drawn = figure(2.75 * _SHOWN + 0.5, 2.6 * (1 + bool(symbols)))
+    grid = drawn.subplots(1 + bool(symbols), _SHOWN, squeeze=False)
+    span = (min(np.nanmin(v) for v in p95), max(np.nanmax(v) for v in p95))
+    for axes, point, values in zip(grid[0], points, p95, strict=True):
+        mesh = _map(axes, study, point, values, span)
+        axes.set_title(f"point at {point.words}", fontsize=9)
+    if mesh is not None:
+        bar = drawn.colorbar(mesh, ax=grid[0], pad=0.01)
+        bar.set_label("95 % quantile / µm", fontsize=9)
+        bar.ax.tick_params(labelsize=8)
+    for axes, symbol in zip(grid[-1], symbols, strict=False):
+        unit, words = (UM / URAD, "µm/µrad") if symbol.is_angular else (1.0, "µm/µm")
+        S = sensitivity(workspace.chain, points[-1].q, workspace.length, [symbol])[:, 0]
+        mesh = _map(axes, study, points[-1], points[-1].shown(S) / unit, None)
+        axes.set_title(f"S of {symbol.name} / {words}", fontsize=9)
+        if mesh is not None:
+            drawn.colorbar(mesh, ax=axes, pad=0.02).ax.tick_params(labelsize=8)
+    for axes in grid[1:].ravel()[len(symbols) :]:
+        axes.set_axis_off()
+    return drawn
+
+
+def _map(
+    axes: Any,
+    study: Study,
+    point: PointOverRotary,
+    values: Array,
+    span: tuple[float, float] | None,
+) -> Any:
+    """One map; a curve where one axis turns. Returns what a colour bar belongs to."""
+    label_a, unit_a = reading_label(study.chain, point.axes[0])
+    axes.set_xlabel(label_a, fontsize=9, labelpad=1)
+    axes.tick_params(labelsize=8)
+    if len(point.axes) == 1:
+        axes.plot(point.readings[0] / unit_a, values)
+        axes.set_ylim(bottom=0.0)
+        return None
+    label_b, unit_b = reading_label(study.chain, point.axes[1])
+    axes.set_ylabel(label_b, fontsize=9, labelpad=1)
+    axes.set_facecolor(_BEYOND)
+    low, high = span or (None, None)
+    return axes.pcolormesh(
+        point.readings[0] / unit_a,
+        point.readings[1] / unit_b,
+        values.T,
+        cmap="viridis",
+        vmin=low,
+        vmax=high,
+        shading="nearest",
+    )
+
+
+def _moving(study: Study, point: PointOverRotary) -> list[Symbol]:
+    """Errors of largest share whose S changes as the table turns, no two with the same map."""
+    q = point.q[point.reached]
+    if not len(q):
+        return []
+    S = sensitivity(study.chain, q, study.workspace.length)
+    chosen: list[int] = []
+    for i in np.argsort(-study.shares.mean(axis=0), kind="stable"):
+        if np.ptp(S[:, i]) <= _STILL * max(float(S[:, i].max()), 1e-300):
+            continue
+        alike = (float(np.corrcoef(S[:, i], S[:, k])[0, 1]) for k in chosen)
+        if max(alike, default=0.0) < _ALIKE:
+            chosen.append(int(i))
+        if len(chosen) == _SHOWN:
+            break
+    return [study.chain.symbols[i] for i in chosen]

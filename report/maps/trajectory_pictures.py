@@ -1,0 +1,155 @@
+"""Pictures of trajectories: what the errors of one axis do, and what random machines do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from report.maps.canvas import GRID, INK, SHADES, figure, reading_label, save
+from sensitivity.montecarlo import Volumetric
+from sensitivity.study import AlongPath, Study, Trajectory
+from twin.effects import ComponentError
+from twin.frames import Array
+from twin.machine import Chain
+from twin.units import UM, URAD
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SHOWN = 6  # errors with a line of their own
+
+
+def axis_effect_picture(effect: AlongPath) -> tuple[Figure, str]:
+    """Effect of some errors along a trajectory, all together and each alone.
+
+    Returns:
+        The figure and its caption.
+    """
+    path = effect.trajectory
+    drawn, axes, beside = _sheet(path)
+    axes.plot(path.along, effect.size / UM, color=INK, lw=2.4, label="together")
+    for colour, name in zip(SHADES, effect.dominant[:_SHOWN], strict=False):
+        axes.plot(path.along, effect.each[name] / UM, color=colour, lw=1.4, label=name)
+    _finish(axes)
+    for colour, letter, d in zip(SHADES, "xyz", effect.deviation.T, strict=False):
+        beside.plot(path.along, d / UM, color=colour, lw=1.4, label=letter)
+    _finish(beside)
+    beside.set_ylabel("deviation in x, y, z of the table / µm")
+    first = effect.dominant[0] if effect.dominant else "nothing"
+    caption = (
+        f"Effect of {_words(effect)} along a trajectory ({path.name}, {len(path.q)} poses), exact: "
+        f"at most {effect.size.max() / UM:.1f} µm, {_rms(effect.size) / UM:.1f} µm rms; the "
+        f"largest part is made by {first}."
+    )
+    return drawn, caption
+
+
+def statistics_picture(
+    path: Trajectory, found: Volumetric, closed_p95: Array
+) -> tuple[Figure, str]:
+    """Volumetric error of random machines along a trajectory.
+
+    Args:
+        path: The trajectory.
+        found: Statistics at its poses.
+        closed_p95: The 95 % quantile as if all errors were normal, (N,), mm.
+
+    Returns:
+        The figure and its caption.
+    """
+    drawn, axes, beside = _sheet(path)
+    axes.fill_between(
+        path.along, found.quantile[0] / UM, found.quantile[-1] / UM, color=SHADES[0], alpha=0.18,
+        lw=0, label="P50 to P99",
+    )  # fmt: skip
+    axes.plot(path.along, found.mean / UM, color=SHADES[0], lw=1.8, label="mean")
+    axes.plot(path.along, found.p95 / UM, color=SHADES[1], lw=1.8, label="P95")
+    axes.plot(path.along, closed_p95 / UM, ":", color=INK, lw=1.2, label="P95 if all were normal")
+    _finish(axes)
+    beside.plot(path.along, 100.0 * found.recurrence, color=SHADES[2], lw=1.6,
+                label="among the worst 5 %")  # fmt: skip
+    if np.isfinite(found.tolerance):
+        beside.plot(path.along, 100.0 * found.exceedance, color=SHADES[3], lw=1.6,
+                    label=f"beyond {found.tolerance / UM:.6g} µm")  # fmt: skip
+    _finish(beside)
+    beside.set_ylabel("share of the machines / %")
+    caption = f"Volumetric error along a trajectory ({path.name}, {len(path.q)} poses)."
+    return drawn, f"{caption} {found.statement}."
+
+
+def _sheet(path: Trajectory) -> tuple[Figure, Axes, Axes]:
+    """Two diagrams over the way, and below them the readings."""
+    drawn = figure(9.6, 4.8)
+    grid = drawn.subplots(2, 2, sharex=True, height_ratios=(3.0, 1.0))
+    for below in grid[1]:
+        for colour, name in zip(SHADES, path.moving, strict=False):
+            label, unit = reading_label(path.chain, name)
+            reading = path.q[:, path.chain.axis_index(name)] / unit
+            below.plot(path.along, reading, color=colour, lw=1.2, label=label)
+        below.set_xlabel("share of the way")
+        below.set_ylabel("reading")
+        below.legend(frameon=False, fontsize=7, ncols=3, loc="lower center",
+                     bbox_to_anchor=(0.5, 0.98))  # fmt: skip
+        _plain(below)
+    grid[0, 0].set_ylabel("volumetric error / µm")
+    return drawn, grid[0, 0], grid[0, 1]
+
+
+def _finish(axes: Axes) -> None:
+    low, high = axes.get_ylim()
+    span = max(high, 1e-3)
+    axes.set_ylim(min(low, 0.0), 1.28 * span)
+    axes.legend(frameon=False, fontsize=8, ncols=3, loc="upper center")
+    _plain(axes)
+
+
+def _plain(axes: Axes) -> None:
+    axes.grid(color=GRID, lw=0.6)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.margins(x=0.0)
+
+
+def _rms(size: Array) -> float:
+    return float(np.sqrt(np.mean(size**2)))
+
+
+def _words(effect: AlongPath) -> str:
+    """Errors with shapes and amplitudes, where they are few and of the common kind."""
+    chain = effect.trajectory.chain
+    parts = [_error_words(chain, e, float(np.atleast_1d(a)[0])) for e, a in effect.errors[:8]]
+    return ", ".join(parts) + (" and others" if len(effect.errors) > 8 else "")
+
+
+def _error_words(chain: Chain, effect: object, size: float) -> str:
+    symbol = getattr(effect, "symbol", None)
+    if symbol is None:
+        return str(getattr(effect, "name", effect))
+    value = f"{size / URAD:.3g} µrad" if symbol.is_angular else f"{size / UM:.3g} µm"
+    shape = f", {effect.shape}" if isinstance(effect, ComponentError) else ""
+    return f"{symbol.name} ({value}{shape})"
+
+
+def draw_path(study: Study, folder: Path) -> list[tuple[str, str]]:
+    """Draw what random machines and single axes do along the trajectory of a study.
+
+    Args:
+        study: The study.
+        folder: For the pictures.
+
+    Returns:
+        File name and caption of each; none where nothing moves.
+    """
+    if study.path is None:
+        return []
+    way, out = study.path.trajectory, []
+    for effect in study.path.effects:
+        drawn, caption = axis_effect_picture(effect)
+        out.append((f"trajectory_{effect.axis}.png", caption, drawn))
+    drawn, caption = statistics_picture(way, study.path.volumetric, study.path.closed.p95)
+    out.append(("trajectory.png", caption, drawn))
+    for name, _, drawn in out:
+        save(drawn, folder / name)
+    return [(name, caption) for name, caption, _ in out]

@@ -1,0 +1,16 @@
+"""Self-contained HTML pages."""
+
+from report.pages.compare_page import write_compare_page
+from report.pages.design_page import write_design_page
+from report.pages.design_result import Design, Proven
+from report.pages.diagnosis_page import write_diagnosis_page
+from report.pages.study_page import write_study_page
+
+__all__ = [
+    "Design",
+    "Proven",
+    "write_compare_page",
+    "write_design_page",
+    "write_diagnosis_page",
+    "write_study_page",
+]

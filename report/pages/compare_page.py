@@ -1,0 +1,63 @@
+"""The page of a comparison: what a model leaves of a run, where, and what that varies with."""
+
+from pathlib import Path
+
+import numpy as np
+
+from diagnosis.residual import Comparison
+from report.pages.page import write_page
+from report.pages.residual_section import (
+    Picture,
+    gross_rows,
+    pattern_pictures,
+    residual_pictures,
+    setting,
+)
+from report.plots import draw_on_standard, is_spread
+from report.words import comparison_sentence
+from twin.units import UM
+
+PAGE = "report.html"
+PICTURES = "pictures"
+
+
+def write_compare_page(
+    found: Comparison, folder: str | Path, title: str, rng: np.random.Generator
+) -> Path:
+    """Draw the pictures of a comparison and write its page, which stands alone.
+
+    Args:
+        found: The comparison.
+        folder: Where `report.html` and the folder `pictures` go.
+        title: What was compared: the name of the run file.
+        rng: Shuffles residuals, to show what chance looks like.
+    """
+    folder = Path(folder)
+    place = folder / PICTURES
+    place.mkdir(parents=True, exist_ok=True)
+    on_standard = []
+    if is_spread(found.run.touches):
+        draw_on_standard(place / "on_standard.png", (("measured minus predicted", found.fit),))
+        on_standard.append(Picture("on_standard.png", "Touched points in the standard's frame."))
+    z = found.normalised if found.is_prediction else None
+    worst = found.worst
+    write_page(
+        folder / PAGE,
+        "compare.html",
+        place=place,
+        title=title,
+        found=found,
+        sentence=comparison_sentence(found),
+        um=UM,
+        on_standard=on_standard,
+        pictures=residual_pictures(place, "residual", found.fit, z),
+        patterns=pattern_pictures(place, found.fit, found.structure, rng),
+        gross=gross_rows(found.fit),
+        worst_line=int(found.run.line[worst]),
+        worst_um=float(found.residual[worst]) / UM,
+        worst_normalised=float(found.normalised[worst]),
+        replicates=found.fit.noise.replicates,
+        replicates_dof=found.fit.noise.replicates_dof,
+        **setting(found.run, found.fit),
+    )
+    return folder / PAGE

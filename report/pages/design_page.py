@@ -1,0 +1,218 @@
+"""The page of a design run: pictures, figures and tables of everything that was made."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from artefact.body import FreeformPatch, max_slope, min_concave_radius
+from artefact.worth import CRITERIA, touch_curve
+from report.maps import save
+from report.pages.design_result import Design, Proven
+from report.pages.identifiability_section import known_content
+from report.pages.page import digits, percent, write_page
+from report.pages.study_page import draw_study_volumes, study_content
+from report.pages.time_section import minutes, order_content
+from report.plots import (
+    draw_touch_curves,
+    write_order_picture,
+    write_proof_picture,
+    write_touches_picture,
+)
+from report.scenes import draw_standard
+from twin.errors import DesignError
+from twin.units import DEG, UM
+
+MAPS, CURVES = "sensitivity", "touch_curves.png"
+"""Folder of the maps, file of a picture."""
+
+_EXCERPT = 46  # lines of the first program
+
+
+def write_design_page(design: Design, folder: Path) -> list[str]:
+    """Draw the pictures and write report.html.
+
+    Args:
+        design: What was made; its files lie in the folder.
+        folder: The results.
+
+    Returns:
+        What could not be drawn and why, one line each; the page says it too.
+    """
+    remarks: list[str] = []
+    pictures = _standard_pictures(design, folder, remarks)
+    maps = [*design.maps, *_volumes(design, folder, remarks)]
+    write_touches_picture(folder / "plan_touches.png", design.plan)
+    write_order_picture(folder / "plan_order.png", design.plan)
+    write_proof_picture(folder / "proof.png", [m.proof for m in design.machines])
+    write_page(
+        folder / "report.html",
+        "design.html",
+        folder=folder,
+        project=design.project,
+        standard=design.placement.standard,
+        plan=design.plan,
+        programs=design.programs,
+        pictures=pictures,
+        remarks=remarks,
+        placeholders=(folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER"),
+        curves_caption=_draw_curves(design, folder),
+        **study_content(design.study, maps),
+        **_standard(design),
+        **_proof(design),
+        **order_content(design),
+        **known_content(design, folder),
+        excerpt="\n".join([*design.programs.programs[0].text.splitlines()[:_EXCERPT], "..."]),
+    )
+    return remarks
+
+
+def _standard_pictures(design: Design, folder: Path, remarks: list[str]) -> list[tuple[str, str]]:
+    """Pictures that need OpenGL; without it the rest of the page is written all the same."""
+    standard, stl = design.placement.standard, folder / "standard.stl"
+    made = []
+    try:
+        draw_standard(standard, stl, folder / "standard.png")
+        made.append(("standard.png", "The standard from two sides: patches, spheres, datum plane."))
+    except DesignError as error:
+        remarks.append(f"No pictures of the standard: {error}")
+    return made
+
+
+def _volumes(design: Design, folder: Path, remarks: list[str]) -> list[tuple[str, str]]:
+    """Maps in three dimensions, with the standard in its place."""
+    stands = design.project.setup.T_table_artefact
+    place = folder / MAPS
+    return draw_study_volumes(design.study, place, remarks, folder / "standard.stl", stands)
+
+
+def _draw_curves(design: Design, folder: Path) -> str:
+    """Error left against the number of touches, on every artefact; returns the caption."""
+    placement = design.placement
+    curves = [touch_curve(placement.criterion, r.name, r.touches) for r in placement.rivals]
+    save(draw_touch_curves(curves, design.project.noise), folder / CURVES)
+    return (
+        "Error left against the number of touches, predicted for every artefact by one rule: its "
+        "touches in the order in which each helps most, and beyond their number all of them again. "
+        f"Marked: the {len(placement.requests)} touches of the table above. No machine is drawn "
+        "for it: it is the spread that the touches leave to machines of the stated error ranges."
+    )
+
+
+def _standard(design: Design) -> dict[str, Any]:
+    """Tables of the patches, of other artefacts and of the CAD files."""
+    c, on_machine = design.conformity, minutes(design)
+    faces = max(c.face_deviation.values()) / UM
+    return {
+        "patches": [_patch(p, design) for p in design.placement.standard.patches],
+        "certificate": design.placement.certificate,
+        "criterion": _criterion(design),
+        "comparison": [
+            {
+                "name": r.name,
+                "is_this": r is design.placement.own,
+                "touches": len(design.placement.requests),
+                "rms_um": r.rms / UM,
+                "p95_um": r.p95 / UM,
+                "rms_user_um": r.rms_user / UM,
+                "p95_user_um": r.p95_user / UM,
+                "visible": r.visible,
+                "could_be_visible": r.could_be_visible,
+                "minutes": on_machine[r.name],
+                "rms_random_um": r.rms_random / UM,
+                "estimable": r.estimable,
+            }
+            for r in design.placement.rivals
+        ],
+        "step_deviation": _at_most(faces),
+        "cad": [
+            ("STEP", f"AP242, mm, {c.step_bytes / 1e6:.1f} MB, {len(c.names)} named faces"),
+            ("solid", f"{c.solids} solid, valid: {_yes(c.is_valid)}, closed: {_yes(c.is_closed)}"),
+            ("volume", f"{c.volume / 1e3:.3f} cm³ re-read, {c.volume_built / 1e3:.3f} cm³ built"),
+            ("mass", f"{c.mass:.2f} kg"),
+            (
+                "faces against design",
+                f"{_at_most(faces)}, read without any CAD kernel; 0.01 µm allowed",
+            ),
+            (
+                "STL",
+                f"{c.triangles} triangles, {c.stl_bytes / 1e6:.1f} MB, "
+                f"watertight: {_yes(c.is_watertight)} (trimesh), volume {c.mesh_volume / 1e3:.3f} "
+                f"and {c.manifold_volume / 1e3:.3f} cm³ (trimesh, manifold3d)",
+            ),
+            (
+                "mesh against faces",
+                f"{max(c.chord_error.values()) / UM:.1f} µm at most, "
+                f"{c.chord / UM:.0f} µm asked for",
+            ),
+        ],
+    }
+
+
+def _criterion(design: Design) -> str:
+    """What the touches were chosen for, in words."""
+    wanted = design.project.standard
+    words = [CRITERIA[wanted.criterion]]
+    if wanted.drawn_machines:
+        which = "" if wanted.worst_share == 1.0 else f"the worst {percent(wanted.worst_share)} of "
+        words.append(f"averaged over {which}{wanted.drawn_machines} drawn machines")
+    if wanted.potential and wanted.criterion == "D":
+        words.append("with the effects of the library beside them")
+    elif wanted.potential:
+        words.append(
+            f"with a share of {percent(wanted.potential)} for showing effects of the library"
+        )
+    return ", ".join(words)
+
+
+def _at_most(um: float) -> str:
+    """A deviation that may be nothing but rounding, with no more digits than make sense."""
+    return "< 0.0001 µm" if um < 1e-4 else f"{digits(um, 2)} µm"
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"
+
+
+def _radius(value: float) -> str:
+    """Smallest concave radius; a face that is convex everywhere has none."""
+    return f"{value:.1f}" if np.isfinite(value) else "convex"
+
+
+def _patch(patch: FreeformPatch, design: Design) -> dict[str, Any]:
+    """One row of the table of patches."""
+    x, y, z = patch.point(np.zeros((1, 2)))[0]
+    return {
+        "name": patch.name,
+        "centre": f"{x:.0f}, {y:.0f}, {z:.0f}",
+        "tilt": f"{np.arccos(patch.direction[2]) / DEG:.0f}",
+        "radius": _radius(min_concave_radius(patch)),
+        "slope": f"{max_slope(patch) / DEG:.0f}",
+        "touches": int(np.sum(design.plan.feature == patch.name)),
+        "errors": ", ".join(f"{e.name} {100 * e.share:.0f} %" for e in patch.errors[:5]),
+    }
+
+
+def _proof(design: Design) -> dict[str, Any]:
+    """Table of the machines; the worst one opens the page."""
+    machines = [_machine(m) for m in design.machines]
+    return {
+        "machines": machines,
+        "worst": min(machines, key=lambda m: m["factor"]),
+        "noise_um": design.project.noise / UM,
+        "proof_poses": len(design.machines[0].proof.before),
+        "poses": len({v.pose for v in design.plan.visits}),
+        "minutes": round(design.programs.duration / 60.0),
+    }
+
+
+def _machine(machine: Proven) -> dict[str, Any]:
+    proof = machine.proof
+    return {
+        "number": machine.seed + 1,
+        "rms_before_um": proof.rms_before / UM,
+        "rms_after_um": proof.rms_after / UM,
+        "rms_u_um": proof.rms_u / UM,
+        "factor": proof.factor,
+        "covered": proof.covered,
+    }

@@ -1,0 +1,64 @@
+"""What a design run made: the record that its page shows."""
+
+from dataclasses import dataclass
+
+from artefact.brief import Project
+from artefact.compare import Knowable
+from artefact.place import Placement
+from cad_out.verify import Conformity
+from diagnosis.answer import Proof
+from diagnosis.fit import Fit
+from probe_paths.campaign import Campaign
+from probe_paths.emit import ProgramSet
+from probe_paths.plan import TouchPlan
+from sensitivity.study import Study
+from twin.frames import Array
+from twin.model import Effect
+
+
+@dataclass(frozen=True, eq=False)
+class Proven:
+    """One random machine, probed with the emitted programs and identified.
+
+    Attributes:
+        seed: Of its errors and noise, beside the project's.
+        errors: Its true errors.
+        campaign: The programs run on its twin.
+        fit: The identified model.
+        proof: Predicted against true volumetric error.
+    """
+
+    seed: int
+    errors: list[tuple[Effect, Array]]
+    campaign: Campaign
+    fit: Fit
+    proof: Proof
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Everything that a design run made; the files of the same names hold it.
+
+    Attributes:
+        project: What was asked for.
+        study: Sensitivities and random machines.
+        maps: File and caption of the study's pictures.
+        placement: Standard and touches.
+        conformity: CAD files, measured after they were written.
+        plan: Touches in their order.
+        programs: Text that makes them.
+        machines: Random machines, probed and identified.
+        known: What the touches can and cannot tell apart.
+        effective: Number of parameters that the first machine's data decide rather than the prior.
+    """
+
+    project: Project
+    study: Study
+    maps: list[tuple[str, str]]
+    placement: Placement
+    conformity: Conformity
+    plan: TouchPlan
+    programs: ProgramSet
+    machines: tuple[Proven, ...]
+    known: Knowable
+    effective: float

@@ -1,0 +1,247 @@
+"""The page of a diagnosis: verdict, the error falling, what was tried, what stays open."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
+from diagnosis.fit import Reported, file_unit
+from report.pages.page import write_page
+from report.pages.residual_section import (
+    Picture,
+    gross_rows,
+    pattern_pictures,
+    residual_pictures,
+    setting,
+)
+from report.plots import (
+    CLASSES,
+    draw_candidates,
+    draw_effect,
+    draw_fall,
+    draw_form,
+    draw_on_standard,
+    draw_rivals,
+    is_form,
+    is_spread,
+)
+from report.words import named_value, sizes, values, verdict_sentence
+from twin.files import reading_columns
+from twin.library import kinds
+from twin.record import Touches
+from twin.units import UM
+from twin.words import digits
+
+PAGE = "report.html"
+PICTURES = "pictures"
+
+NEXT = 3
+"""Effects that were told apart, but come next, that are listed."""
+
+SAME = 0.1
+"""Log odds below which two effects are the same as far as a picture can show."""
+
+_PLANNED = 24
+
+
+def write_diagnosis_page(
+    result: Diagnosis, folder: str | Path, title: str, rng: np.random.Generator
+) -> Path:
+    """Draw the pictures of a diagnosis and write its page, which stands alone.
+
+    Args:
+        result: The diagnosis.
+        folder: Where `report.html` and the folder `pictures` go.
+        title: What was diagnosed: the name of the run file.
+        rng: Shuffles residuals, to show what chance looks like.
+    """
+    folder = Path(folder)
+    place = folder / PICTURES
+    place.mkdir(parents=True, exist_ok=True)
+    if len(result.steps) > 1:
+        draw_fall(place / "fall.png", result)
+    if result.candidates:
+        draw_candidates(place / "candidates.png", result)
+    write_page(
+        folder / PAGE,
+        "diagnose.html",
+        place=place,
+        title=title,
+        result=result,
+        sentence=verdict_sentence(result),
+        is_bad=result.verdict is Verdict.UNEXPLAINED,
+        um=UM,
+        steps=[_step(result, i) for i in range(len(result.steps))],
+        effects=[_effect(result, i, place) for i in range(1, len(result.steps))],
+        patterns=pattern_pictures(place, result.fit, result.left, rng),
+        before=residual_pictures(place, "before", result.start),
+        after=residual_pictures(place, "after", result.fit) if len(result.steps) > 1 else [],
+        on_standard=_on_standard(result, place),
+        detectable=_detectable(result.detectable),
+        plans=[_plan(p.tells_apart, p.touches, p.separation) for p in result.plans],
+        gross=gross_rows(result.fit),
+        **setting(result.run, result.fit),
+    )
+    return folder / PAGE
+
+
+def _on_standard(result: Diagnosis, place: Path) -> list[Picture]:
+    """The standard coloured by residual, before and after on one scale."""
+    if not is_spread(result.run.touches):
+        return []
+    fits = [("model to begin with", result.start)]
+    if len(result.steps) > 1:
+        fits.append(("with what was added", result.fit))
+    draw_on_standard(place / "on_standard.png", tuple(fits))
+    return [Picture("on_standard.png", "Touched points in the frame of the standard, by residual.")]
+
+
+def _step(result: Diagnosis, i: int) -> dict[str, Any]:
+    """Row of the table of steps."""
+    step = result.steps[i]
+    return {
+        "effect": step.effect.name if step.effect is not None else "model to begin with",
+        "size": sizes(step, most=2) if step.effect is not None else "",
+        "p": step.p_value if step.effect is not None else None,
+        "rms": step.fit.rms / UM,
+        "test_rms": step.fit.test_rms / UM,
+        "chi2": step.fit.noise.chi2_ratio,
+    }
+
+
+def _effect(result: Diagnosis, i: int, place: Path) -> dict[str, Any]:
+    """What is told of one added effect, with its pictures."""
+    step = result.steps[i]
+    assert step.effect is not None
+    colour = CLASSES[(i - 1) % len(CLASSES)]
+    name = f"effect_{i}.png"
+    form = is_form(result.fit, step.effect)
+    if form:
+        draw_form(place / name, result.fit, step.effect)
+    else:
+        draw_effect(place / name, result.fit, step.effect, colour)
+    kind = next((k for k in kinds() if k.word == step.effect.kind), None)
+    return {
+        "name": step.effect.name,
+        "picture": name,
+        "caption": _FORM if form else _COURSE,
+        "kind": kind,
+        "values": values(step),
+        "more": len(values(step)) < len(step.reported),
+        "alike": _alike(step),
+        "against": _against(step),
+        "by_user": step.is_named,
+        "rivals": _rivals(step, i, place, colour),
+        "p": step.p_value,
+    }
+
+
+_COURSE = (
+    "Left: what the run shows of this effect alone, with its fitted course. Right: the same "
+    "touches once it is in the model. Dots: means with standard errors."
+)
+_FORM = (
+    "Left: what the touches on this feature show of its form, on the fitted form. Right: the same "
+    "touches once it is in the model."
+)
+
+
+def _alike(step: Step) -> list[str]:
+    """Names of what cannot be told from an effect, the likeliest first."""
+    return [r.effect.name for r in step.confusion.rivals] if step.confusion else []
+
+
+def _against(step: Step) -> list[dict[str, Any]]:
+    """Everything that explains the same touches, by the odds against it."""
+    if step.confusion is None:
+        return []
+    rivals = [(r, True) for r in step.confusion.rivals]
+    rivals += [(r, False) for r in step.confusion.told_apart[:NEXT]]
+    return [
+        {
+            "effect": r.effect.name,
+            "odds": odds(r.log_odds),
+            "overlap": r.overlap,
+            "is_confused": is_confused,
+        }
+        for r, is_confused in rivals
+    ]
+
+
+def odds(log_odds: float) -> str:
+    """Odds of a natural logarithm as a reader sees them.
+
+    Example:
+        >>> odds(0.02), odds(2.3), odds(30.0)
+        ('1 : 1', '10 : 1', '10^13 : 1')
+    """
+    ratio = math.exp(min(max(log_odds, 0.0), 700.0))
+    if ratio < 1.05:
+        return "1 : 1"
+    if ratio < 1e4:
+        return f"{digits(ratio, 2)} : 1"
+    return f"10^{math.floor(math.log10(ratio))} : 1"
+
+
+def _rivals(step: Step, i: int, place: Path, colour: str) -> str:
+    """File of the picture of rivals, "" where there is nothing to see."""
+    confusion = step.confusion
+    others = (*confusion.rivals, *confusion.told_apart) if confusion is not None else ()
+    if confusion is None or all(abs(r.log_odds) < SAME for r in others):
+        return ""  # signatures that coincide make a picture of nothing
+    draw_rivals(place / f"rivals_{i}.png", confusion, colour)
+    return f"rivals_{i}.png"
+
+
+def _detectable(found: Sequence[Detectable]) -> list[dict[str, Any]]:
+    """Smallest detectable sizes by kind, each with its effects in order of size."""
+    by_kind: dict[str, list[Detectable]] = {}
+    for d in found:
+        by_kind.setdefault(d.effect.kind, []).append(d)
+    return [_kind_row(kind, by_kind[kind]) for kind in sorted(by_kind)]
+
+
+def _kind_row(kind: str, found: Sequence[Detectable]) -> dict[str, Any]:
+    seen = sorted((d for d in found if d.largest is not None), key=lambda d: d.largest or 0.0)
+    return {
+        "kind": kind,
+        "count": len(found),
+        "best": _sized(seen[0]) if seen else None,
+        "worst": _sized(seen[-1]) if len(seen) > 1 else None,
+        "all": [_sized(d) for d in seen],
+        "hidden": [d.effect.name for d in found if d.largest is None],
+    }
+
+
+def _sized(d: Detectable) -> dict[str, Any]:
+    """Size of one effect in the unit of its file, and the deviation that it causes."""
+    suffix, factor = file_unit(d.unit)
+    unit = named_unit(suffix)
+    return {
+        "effect": d.effect.name,
+        "size": (d.size or 0.0) / factor,
+        "unit": unit,
+        "largest": (d.largest or 0.0) / UM,
+        "survives": d.survives,
+    }
+
+
+def named_unit(suffix: str) -> str:
+    """Unit as a reader sees it, from the suffix of a file: `um_per_K` is µm/K."""
+    return named_value(Reported(f"x_{suffix}", 1.0, None, 1.0))[1].partition(" ")[2]
+
+
+def _plan(names: tuple[str, str], touches: Touches, separation: float) -> dict[str, Any]:
+    """Table of the touches of a plan: where the axes go, and what is touched."""
+    columns = reading_columns(touches.chain)
+    axes = list(touches.chain.programmed_axes)
+    rows = []
+    for i in range(min(len(touches), _PLANNED)):
+        cells = [f"{touches.reading(axis)[i] / columns[axis][1]:.3f}" for axis in axes]
+        where = [str(touches.feature[i]), touches.setups[touches.setup[i]].name]
+        rows.append([*where, *cells, *(f"{v:.3f}" for v in touches.point[i])])
+    head = ["feature", "set-up", *(columns[a][0] for a in axes), "px_mm", "py_mm", "pz_mm"]
+    return {"names": names, "head": head, "rows": rows, "separation": separation}

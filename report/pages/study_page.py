@@ -1,0 +1,194 @@
+"""The sensitivity part of a report: maps in order, maps in three dimensions, regions in words."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from report.maps import level, unsampled
+from report.pages.page import write_page
+from report.scenes import Scene, draw_volumes
+from sensitivity.shares import region_words, regions
+from sensitivity.study import Study, Volume, has_volume, volume
+from twin.errors import DesignError
+from twin.frames import Array
+from twin.machine import Family, Symbol
+from twin.units import DEG, UM, URAD
+
+ERROR_3D, S_3D = "volumetric_3d.png", "sensitivity_3d.png"
+
+_ORDER = (
+    "sensitivity.png",
+    S_3D,
+    "sensitivity_maps.png",
+    ERROR_3D,
+    "volumetric_sections.png",
+    "volumetric_rotary.png",
+    "volumetric_axes.png",
+    "variance_regions.png",
+    "variance_shares.png",
+)
+_S_SCENES = 3
+_STILL = 0.02  # relative range of S in a volume below which its map would be one colour
+_ALIKE = 0.98  # correlation of two maps of S that show the same
+
+Shown = tuple[str, str]
+"""File and caption of a picture."""
+
+
+def write_study_page(
+    study: Study, folder: Path, pictures: Sequence[Shown], project: str = ""
+) -> list[str]:
+    """Write report.html of a study by itself, with its maps in three dimensions.
+
+    Args:
+        study: The study.
+        folder: The results; the pictures lie in it.
+        pictures: File and caption of those that are drawn already, in any order.
+        project: What the study was made from, for the foot of the page.
+
+    Returns:
+        What could not be drawn and why, one line each; the page says it too.
+    """
+    remarks: list[str] = []
+    shown = [*pictures, *draw_study_volumes(study, folder, remarks)]
+    write_page(
+        folder / "report.html",
+        "sensitivity.html",
+        folder=folder,
+        remarks=remarks,
+        source=project,
+        **study_content(study, shown),
+    )
+    return remarks
+
+
+def study_content(study: Study, pictures: Sequence[Shown]) -> dict[str, Any]:
+    """What the template `study.html` shows.
+
+    Args:
+        study: The study.
+        pictures: File and caption of every map.
+    """
+    v, names = study.volumetric, [s.name for s in study.chain.symbols]
+    place = {name: i for i, name in enumerate(_ORDER)}
+    return {
+        "chain": study.chain,
+        "study": study,
+        "study_maps": sorted(pictures, key=lambda shown: place.get(shown[0], len(_ORDER))),
+        "study_poses": len(study.q),
+        "study_mean_um": float(v.mean.mean()) / UM,
+        "study_p95_um": float(v.p95.mean()) / UM,
+        "study_worst_um": float(v.p95.max()) / UM,
+        "exact_um": study.exact.rms / UM,
+        "regions": [
+            {"words": r.words, "rms_um": r.rms / UM, "errors": region_words(r, names)}
+            for r in regions(study.population, study.workspace)
+        ],
+    }
+
+
+def draw_study_volumes(
+    study: Study,
+    folder: Path,
+    remarks: list[str],
+    stl: Path | None = None,
+    T_table_artefact: Array | None = None,
+) -> list[Shown]:
+    """Draw volumetric error and S in three dimensions; without OpenGL say so and go on.
+
+    Args:
+        study: The study.
+        folder: For the pictures.
+        remarks: Takes a line where something cannot be drawn.
+        stl: STL file of the standard; None for none.
+        T_table_artefact: Where it stands, (4, 4).
+    """
+    if not has_volume(study.workspace):
+        remarks.append("No maps in three dimensions: they need three linear axes with room.")
+        return []
+    scenes = {
+        folder / ERROR_3D: error_scenes(study, T_table_artefact),
+        folder / S_3D: sensitivity_scenes(study, T_table_artefact),
+    }
+    try:
+        draw_volumes({path: each for path, each in scenes.items() if each}, stl)
+    except DesignError as error:
+        remarks.append(f"No maps in three dimensions: {error}")
+        return []
+    stands = (
+        "The standard stands where the readings bring the middle of the probe's ball to it. "
+        if T_table_artefact is not None
+        else ""
+    )
+    how = (
+        "Colours on the three far sides and on iso-surfaces between them; every map has a scale of "
+        f"its own. {stands}Dash-dotted: the rotary axes."
+    )
+    out = [
+        (
+            ERROR_3D,
+            "Volumetric error over the linear readings, 95 % of the machines stay below: with the "
+            f"table level, and at the rotary readings of the worst pose. {how} {unsampled(study)}",
+        )
+    ]
+    if scenes[folder / S_3D]:
+        words = "S of angular errors over the linear readings, table level: it is the distance "
+        out.append((S_3D, f"{words} from the axis of the rotation. {how} Exact to first order."))
+    return out
+
+
+def error_scenes(study: Study, T_table_artefact: Array | None = None) -> list[Scene]:
+    """Volumetric error with the table level, and at the rotary readings of the worst pose."""
+    worst = {a: float(study.worst_pose[study.chain.axis_index(a)]) for a in study.chain.rotary_axes}
+    each = [("table level", level(study.workspace))]
+    if worst:
+        each.append(("worst pose", worst))
+    out = []
+    for words, rotary in each:
+        box = volume(study.workspace, rotary)
+        values = box.volumetric(study.population) / UM
+        out.append(_scene(box, words, "95 % quantile / µm", values, T_table_artefact))
+    return out
+
+
+def sensitivity_scenes(study: Study, T_table_artefact: Array | None = None) -> list[Scene]:
+    """S of a few errors of large share whose maps differ, each of another link."""
+    box = volume(study.workspace, level(study.workspace))
+    chosen: list[tuple[Symbol, Array]] = []
+    for i in np.argsort(-study.shares.mean(axis=0), kind="stable"):
+        symbol = study.chain.symbols[int(i)]
+        taken = symbol.link in (other.link for other, _ in chosen)
+        if taken or not symbol.is_angular or symbol.family is Family.SETUP:
+            continue
+        S = box.sensitivity(symbol) / (UM / URAD)
+        seen = np.isfinite(S)
+        if np.ptp(S[seen]) <= _STILL * S[seen].max():
+            continue
+        alike = (float(np.corrcoef(S[seen], other[seen])[0, 1]) for _, other in chosen)
+        if max(alike, default=0.0) < _ALIKE:
+            chosen.append((symbol, S))
+        if len(chosen) == _S_SCENES:
+            break
+    return [
+        _scene(box, f"S of {symbol.name}", "µm/µrad", S, T_table_artefact) for symbol, S in chosen
+    ]
+
+
+def _scene(
+    box: Volume, words: str, unit: str, values: Array, T_table_artefact: Array | None
+) -> Scene:
+    """One map with its readings, axes and standard."""
+    at = ", ".join(f"{name} {reading / DEG:.0f}°" for name, reading in sorted(box.rotary.items()))
+    first, second, third = (f"{name} / mm" for name in box.axes)
+    stands = None if T_table_artefact is None else box.T_readings_table @ T_table_artefact
+    return Scene(
+        title=f"{words}: {at}" if at else words,
+        unit=unit,
+        labels=(first, second, third),
+        readings=box.readings,
+        values=values,
+        T_readings_artefact=stands,
+        lines=box.lines(),
+    )

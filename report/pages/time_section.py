@@ -1,0 +1,60 @@
+"""Time on the machine in the report of a design: of every artefact, and of every order."""
+
+from typing import Any
+
+import numpy as np
+
+from probe_paths.campaign import Order, orders, probing_time
+from probe_paths.plan import Probe
+from report.pages.design_result import Design
+from report.pages.page import percent
+from twin.units import HOUR, MINUTE, UM, URAD
+
+
+def minutes(design: Design) -> dict[str, float]:
+    """Minutes on the machine by artefact, by one planner and one clock; nan without a body."""
+    project, placement = design.project, design.placement
+    probe = Probe(project.probe_radius, project.probe_length)
+    found = {placement.own.name: design.programs.duration / MINUTE}
+    for rival in placement.rivals[1:]:
+        seconds = np.nan
+        if rival.body is not None:
+            seconds = probing_time(rival.body, project.chain, probe, project.setup, rival.touches)
+        found[rival.name] = float(seconds) / MINUTE
+    return found
+
+
+def order_content(design: Design) -> dict[str, Any]:
+    """Table of the orders in which the same touches could be made, and its sentence."""
+    found = orders(design.plan, design.placement.criterion.model, design.project.noise)
+    planned, quickest = found[0], min(found, key=lambda order: order.duration)
+    return {
+        "orders": [_row(order) for order in found],
+        "rotary_axes": design.plan.chain.rotary_axes,
+        "order_words": (
+            f"The order costs {(planned.duration - quickest.duration) / MINUTE:.0f} minutes more "
+            f"than the shortest ways ({percent(planned.duration / quickest.duration - 1.0)}). "
+            f"For that the rate of a drift is known {quickest.drift / planned.drift:.1f} times "
+            f"better"
+            f"{_reversals(planned, quickest, design.plan.chain.rotary_axes)}."
+        ),
+    }
+
+
+def _row(order: Order) -> dict[str, Any]:
+    return {
+        "name": order.name,
+        "touches": order.touches,
+        "minutes": order.duration / MINUTE,
+        "drift_um_h": order.drift / UM,
+        "drift_um": order.drift * order.duration / HOUR / UM,
+        "reversal_urad": [value / URAD for value in order.reversal],
+    }
+
+
+def _reversals(planned: Order, quickest: Order, axes: tuple[str, ...]) -> str:
+    words = [
+        f"the reversal of {axis} {there / here:.1f} times"
+        for axis, here, there in zip(axes, planned.reversal, quickest.reversal, strict=True)
+    ]
+    return ", " + " and ".join(words) if words else ""

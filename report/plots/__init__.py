@@ -1,0 +1,33 @@
+"""Pictures of plans, residuals and effects."""
+
+from report.plots.effect_pictures import draw_candidates, draw_effect, draw_fall, draw_rivals
+from report.plots.form_pictures import draw_form, is_form
+from report.plots.ink import CLASSES
+from report.plots.pattern_pictures import draw_pattern
+from report.plots.plan_pictures import write_order_picture, write_touches_picture
+from report.plots.proof_picture import write_proof_picture
+from report.plots.residual_pictures import draw_normal_plot, draw_over_variables, ranked_variables
+from report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, has_poses, is_spread
+from report.plots.touch_curve_picture import draw_touch_curves
+
+__all__ = [
+    "CLASSES",
+    "draw_candidates",
+    "draw_effect",
+    "draw_fall",
+    "draw_form",
+    "draw_normal_plot",
+    "draw_on_standard",
+    "draw_over_variables",
+    "draw_pattern",
+    "draw_pose_arrows",
+    "draw_rivals",
+    "draw_touch_curves",
+    "has_poses",
+    "is_form",
+    "is_spread",
+    "ranked_variables",
+    "write_order_picture",
+    "write_proof_picture",
+    "write_touches_picture",
+]

@@ -1,0 +1,299 @@
+"""Pictures of what was found: the error falling, rival explanations, and each effect by itself."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
+from diagnosis.fit import BoolArray, Fit
+from diagnosis.residual import Partial, partial
+from report.plots.ink import (
+    BLUE,
+    CLASSES,
+    INK,
+    LINE,
+    ORANGE,
+    RED,
+    SOFT,
+    new_figure,
+    plain,
+    save,
+    tidy,
+)
+from report.plots.residual_pictures import binned, kept
+from report.words import microns
+from twin.frames import Array
+from twin.model import Effect
+from twin.units import UM
+
+MOST_BARS = 14
+"""Rivals or candidates that get a bar."""
+
+TEN = float(np.log(10.0))
+
+SLOW, SCATTERED = 0.01, 0.3
+"""Mean squared step over the variance, up to which a course is slow, and up to which it is one: a
+cycle of a dozen touches is in between."""
+
+RATIO = 12.0
+"""Between the largest and the smallest error of a fall, from which its scale is logarithmic."""
+
+
+def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
+    """Error of fitted and of held-out touches, step by step, against the noise.
+
+    Args:
+        path: PNG.
+        diagnosis: With one step or more.
+    """
+    steps = diagnosis.steps
+    figure = new_figure(3.9)
+    ax = figure.subplots()
+    x = np.arange(len(steps))
+    fitted = np.array([s.fit.rms for s in steps]) / UM
+    held = np.array([s.fit.test_rms for s in steps]) / UM
+    u = float(np.sqrt(np.mean(diagnosis.run.u**2))) / UM
+    low, high = min(fitted.min(), held.min(), u), max(fitted.max(), held.max())
+    _noise_lines(ax, diagnosis.fit, u)
+    for y, colour, marker, word in (
+        (held, ORANGE, "s", _held_words(diagnosis)),
+        (fitted, BLUE, "o", "touches in the fit"),
+    ):
+        ax.step(x, y, where="mid", color=colour, lw=1.0, alpha=0.45)
+        ax.plot(x, y, marker, ms=7, color=colour, label=word)
+    for i in range(len(steps)):
+        # the larger of the two is named above its mark, the smaller below
+        up = held[i] >= fitted[i]
+        _value(ax, i, held[i], up, ORANGE)
+        _value(ax, i, fitted[i], not up, BLUE)
+    if high > RATIO * low:
+        ax.set_yscale("log")
+        ax.yaxis.set_major_formatter("{x:g}")
+        ax.set_ylim(0.55 * low, 1.8 * high)
+    else:
+        ax.set_ylim(0.0, 1.18 * high)
+    ax.set_xlim(-0.5, max(len(steps) - 0.5, 1.5))
+    ax.set_xticks(x, [_step_words(s) for s in steps], fontsize=8.5)
+    ax.set_ylabel("root mean square error in µm")
+    plain(ax)
+    ax.grid(axis="x", visible=False)
+    figure.legend(fontsize=8.5, frameon=False, loc="outside upper center", ncols=4)
+    save(figure, path)
+
+
+def _held_words(diagnosis: Diagnosis) -> str:
+    by_file = bool(diagnosis.fit.test_rows.any())
+    return "rows held out by the file" if by_file else "held out, one table pose after the other"
+
+
+def _step_words(step: Step) -> str:
+    return "model to\nbegin with" if step.effect is None else "+ " + tidy(step.effect.name)
+
+
+def _value(ax: Any, x: float, y: float, above: bool, colour: str) -> None:
+    ax.annotate(
+        f"{y:#.3g}".rstrip("."),
+        (x, y),
+        xytext=(0, 8 if above else -8),
+        textcoords="offset points",
+        ha="center",
+        va="bottom" if above else "top",
+        fontsize=8.5,
+        color=colour,
+    )
+
+
+def _noise_lines(ax: Any, fit: Fit, u: float) -> None:
+    """Noise as stated, and as the last model finds it where that is another."""
+    ax.axhline(u, color=INK, lw=1.1, label=f"noise as stated, {microns(u * UM)}")
+    if fit.noise.is_wrongly_stated:
+        found = u * fit.noise.factor
+        ax.axhline(found, color=INK, lw=1.1, ls="--", label=f"scatter left, {microns(found * UM)}")
+
+
+def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
+    """Evidence of library effects, each by itself added to the model to begin with.
+
+    Those that belong to a found effect, or cannot be told from it, bear its colour.
+
+    Args:
+        path: PNG.
+        diagnosis: With at least one candidate.
+    """
+    shown = [c for c in diagnosis.candidates if np.isfinite(c.log_odds)][:MOST_BARS]
+    figure = new_figure(1.3 + 0.25 * max(len(shown), 3))
+    ax = figure.subplots()
+    odds = np.array([c.log_odds for c in shown]) / TEN
+    y = np.arange(len(shown))[::-1]
+    ax.barh(y, odds, 0.72, color=[_class_colour(diagnosis, c) for c in shown])
+    ax.axvline(0.0, color=INK, lw=0.9)
+    for at, value, candidate in zip(y, odds, shown, strict=True):
+        ax.annotate(
+            f"held-out {candidate.test_rms / UM:.3g} µm",
+            (max(value, 0.0), at),
+            xytext=(4, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=7.5,
+            color=SOFT,
+        )
+    ax.set_yticks(y, [c.effect for c in shown])
+    ax.set_xlabel("evidence for the effect by itself against none: powers of ten of the odds")
+    ax.margins(x=0.14)
+    ax.set_ylim(-0.7, len(shown) - 0.3)
+    plain(ax)
+    ax.grid(axis="y", visible=False)
+    _class_legend(figure, diagnosis)
+    save(figure, path)
+
+
+def _classes(diagnosis: Diagnosis) -> list[tuple[Effect, tuple[str, ...], str]]:
+    """Every found effect with the names that it cannot be told from, and its colour."""
+    out = []
+    for k, step in enumerate(diagnosis.steps[1:]):
+        if step.effect is not None:
+            rivals = step.confusion.rivals if step.confusion else ()
+            names = (step.effect.name, *(r.effect.name for r in rivals))
+            out.append((step.effect, names, CLASSES[k % len(CLASSES)]))
+    return out
+
+
+def _class_colour(diagnosis: Diagnosis, candidate: Candidate) -> str:
+    """Colour of the found effect that a candidate is, or cannot be told from."""
+    return next((c for _, names, c in _classes(diagnosis) if candidate.effect in names), "#c3cad3")
+
+
+def _class_legend(figure: Any, diagnosis: Diagnosis) -> None:
+    from matplotlib.patches import Patch
+
+    classes = _classes(diagnosis)
+    handles = [
+        Patch(color=colour, label=effect.name + (" and what looks the same" if names[1:] else ""))
+        for effect, names, colour in classes
+    ]
+    if handles:
+        handles.append(Patch(color="#c3cad3", label="other effects"))
+        figure.legend(
+            handles=handles, fontsize=8, frameon=False, loc="outside lower center", ncols=2
+        )
+
+
+def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE) -> None:
+    """A found effect against everything that explains the same touches, by its odds.
+
+    Args:
+        path: PNG.
+        confusion: The class of the effect.
+        colour: Of what cannot be told apart.
+    """
+    told = confusion.told_apart[: max(2, MOST_BARS - len(confusion.rivals))]
+    rows = [*confusion.rivals[:MOST_BARS], *told]
+    names = [confusion.effect.name, *(r.effect.name for r in rows)]
+    behind = np.array([0.0, *(max(r.log_odds, -CONFUSED) for r in rows)]) / TEN
+    alike = 1 + min(len(confusion.rivals), MOST_BARS)
+    figure = new_figure(1.1 + 0.25 * len(names))
+    ax = figure.subplots()
+    y = np.arange(len(names))[::-1]
+    ax.axvspan(-CONFUSED / TEN, CONFUSED / TEN, color=LINE, alpha=0.45, lw=0)
+    ax.axvline(0.0, color=INK, lw=0.9)
+    colours = np.array([colour] * alike + [SOFT] * (len(names) - alike))
+    ax.scatter(behind, y, s=48, c=colours, zorder=3)
+    ax.hlines(y, 0.0, behind, color=colours, lw=1.6)
+    for at, value, rival in zip(y[1:], behind[1:], rows, strict=True):
+        ax.annotate(
+            f"overlap {100.0 * rival.overlap:.1f} %",
+            (max(value, 0.0), at),
+            xytext=(7, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=7.5,
+            color=SOFT,
+        )
+    ax.set_yticks(y, names)
+    ax.set_xlabel(
+        "odds in favour of the first, powers of ten (shaded: below 1 : 100, not told apart)"
+    )
+    ax.margins(x=0.12)
+    ax.set_ylim(-0.7, len(names) - 0.3)
+    plain(ax)
+    ax.grid(axis="y", visible=False)
+    save(figure, path)
+
+
+def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) -> None:
+    """One effect as the run shows it: its course, the touches it explains, and what is left.
+
+    Args:
+        path: PNG.
+        fit: The model with everything in it.
+        effect: As it stands in the fit.
+        colour: Of its course.
+    """
+    found = partial(fit, effect)
+    figure = new_figure(3.9)
+    left, right = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
+    tested = np.ones(len(found.rows), dtype=bool)
+    tested[: int(fit.used.sum())] = False
+    for ax, y, title in (
+        (left, found.observed, "residual with the effect put back"),
+        (right, found.observed - found.explained, "residual with the effect in the model"),
+    ):
+        _touches(ax, found, y, tested)
+        ax.set_title(title, fontsize=9.5, loc="left", color=INK)
+        ax.set_xlabel(found.variable or f"explained: {found.quantity}", fontsize=9)
+        plain(ax)
+    _course(left, found, effect, colour)
+    right.axhline(0.0, color=colour, lw=1.6, zorder=4)
+    low, high = _limits(found)
+    left.set_ylim(low, high)
+    right.set_ylim(0.5 * (low - high), 0.5 * (high - low))  # about zero, as large a scale
+    left.set_ylabel(found.quantity)
+    left.legend(fontsize=8, frameon=False)
+    save(figure, path)
+
+
+def _limits(found: Partial) -> tuple[float, float]:
+    """Ends of a scale that holds the course and all but a few touches, and what is left besides."""
+    low, high = np.quantile(found.observed[found.shown], (0.003, 0.997))
+    low, high = min(low, float(found.explained.min())), max(high, float(found.explained.max()))
+    spread = 2.0 * float(np.quantile(np.abs(found.observed - found.explained)[found.shown], 0.99))
+    margin = max(0.06 * (high - low), 0.5 * (spread - (high - low)))
+    return float(low - margin), float(high + margin)
+
+
+def _course(ax: Any, found: Partial, effect: Effect, colour: str) -> None:
+    """What the effect explains, as a line where it is a function, else as marks."""
+    order = np.argsort(found.x, kind="stable")
+    x, y = found.x[order], found.explained[order]
+    if not found.variable:
+        ax.plot(x[[0, -1]], x[[0, -1]], color=colour, lw=1.8, zorder=4, label=effect.name)
+        return
+    if len(np.unique(x)) > 12 and _roughness(found) < SCATTERED:
+        ax.plot(x, y, color=colour, lw=1.8, zorder=4, label=effect.name)
+    else:
+        ax.plot(x, y, "_", ms=7, mew=1.6, color=colour, zorder=4, label=effect.name)
+
+
+def _roughness(found: Partial) -> float:
+    """Mean squared step of the course from touch to touch over its variance; 2 where it is none."""
+    y = found.explained[np.argsort(found.x, kind="stable")]
+    return float(np.mean(np.diff(y) ** 2)) / max(float(np.var(y)), 1e-30)
+
+
+def _touches(ax: Any, found: Partial, y: Array, tested: BoolArray) -> None:
+    """Touches as points, held-out ones apart, and means with standard errors."""
+    for rows, colour, word in (
+        (found.shown[~tested[found.shown]], "#9aa4b1", "touches"),
+        (found.shown[tested[found.shown]], "#d9b26a", "touches held out"),
+    ):
+        if len(rows):
+            part = rows[kept(len(rows))]
+            ax.plot(found.x[part], y[part], ".", ms=2.4, color=colour, alpha=0.7, label=word)
+    for which, colour in ((~tested, INK), (tested, RED)):
+        if which.sum() > 1:
+            most = 24 if _roughness(found) < SLOW else 72
+            x, mean, error = binned(found.x[which], y[which], found.weight[which], most)
+            style = {"ms": 4.2, "lw": 1.2, "color": colour, "zorder": 5}
+            ax.errorbar(x, mean, error, fmt="o", **style)
+    ax.axhline(0.0, color=SOFT, lw=0.8)

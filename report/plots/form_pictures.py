@@ -1,0 +1,66 @@
+"""Picture of the form of one patch of the standard, as the touches show it."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.fit import BoolArray, Fit
+from report.plots.ink import DIVERGING, INK, new_figure, plain, robust_limit, save
+from twin.frames import Array
+from twin.model import Effect, columns
+from twin.units import UM
+
+LEVELS = 15
+
+
+def is_form(fit: Fit, effect: Effect) -> bool:
+    """Whether an effect is the form of one feature, with touches enough to draw a map of it."""
+    return effect.kind == "artefact-form" and int(_on_patch(fit, effect).sum()) > 3
+
+
+def draw_form(path: str | Path, fit: Fit, effect: Effect) -> None:
+    """Form of a patch: touches on the fitted form, and what is left of them.
+
+    Args:
+        path: PNG.
+        fit: The model with the effect in it.
+        effect: The form of one feature, as it stands in the fit.
+    """
+    rows = _on_patch(fit, effect)
+    touches = fit.run.touches
+    explained = (columns([effect], touches) @ fit.theta[fit.of_effect(effect.name)])[rows] / UM
+    left_over = fit.residual[rows] / UM
+    place = _flat(touches.point[rows])
+    figure = new_figure(3.9)
+    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    limit = robust_limit(explained + left_over, 0.98)
+    style: dict[str, Any] = {"cmap": DIVERGING, "vmin": -limit, "vmax": limit}
+    if np.linalg.matrix_rank(place - place.mean(axis=0)) == 2:
+        levels = np.linspace(-limit, limit, LEVELS)
+        axes[0].tricontourf(*place.T, explained, levels=levels, extend="both", alpha=0.75, **style)
+    for ax, values, title in (
+        (axes[0], explained + left_over, "touches with the effect put back, on the fitted form"),
+        (axes[1], left_over, "the same touches with the effect in the model"),
+    ):
+        marks = ax.scatter(*place.T, c=values, s=34.0, edgecolors=INK, linewidths=0.5, **style)
+        ax.set_title(title, fontsize=9.5, loc="left", color=INK)
+        ax.set(xlabel="along the patch in mm", aspect="equal")
+        ax.margins(0.06)
+        plain(ax)
+    axes[0].set_ylabel("across the patch in mm")
+    bar = figure.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.9, extend="both")
+    bar.set_label("deviation along the normal, µm", fontsize=8.5)
+    save(figure, path)
+
+
+def _on_patch(fit: Fit, effect: Effect) -> BoolArray:
+    """Touches in use that the effect moves, (N,)."""
+    moved = np.any(columns([effect], fit.run.touches) != 0.0, axis=1)
+    return np.asarray(moved & fit.used)
+
+
+def _flat(point: Array) -> Array:
+    """Places of points (M, 3) in the plane of their two longest directions, (M, 2), mm."""
+    centred = point - point.mean(axis=0)
+    return np.asarray(centred @ np.linalg.svd(centred, full_matrices=False)[2][:2].T)

@@ -1,0 +1,126 @@
+"""Picture of a pattern without a name: a residual over one or two variables, beside pure chance."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.fit import Fit
+from diagnosis.residual import SEES, Structure, directions, groups, variables
+from report.plots.ink import (
+    BLUE,
+    DIVERGING,
+    INK,
+    SOFT,
+    axis_of,
+    new_figure,
+    plain,
+    robust_limit,
+    save,
+)
+from report.plots.residual_pictures import binned, kept
+from twin.frames import Array
+from twin.record import IntArray
+from twin.units import UM
+from twin.words import span, time_unit
+
+NEIGHBOURS = 14
+"""Touches over which a map of two variables is averaged."""
+
+BINS = 24
+
+
+def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Generator) -> bool:
+    """What a residual does over the variables of a pattern, and the same residual shuffled.
+
+    The second half is what the first would look like if there were nothing but noise of this size.
+
+    Args:
+        path: PNG.
+        fit: The model whose residual it is.
+        found: The pattern, of one or two variables.
+        rng: Shuffles.
+
+    Returns:
+        Whether there was something to draw: some tests name no variables of their own.
+    """
+    known = variables(fit.run.touches)
+    known |= {k: v.astype(float) for k, v in groups(fit.run.touches).items()}
+    if not 1 <= len(found.variables) <= 2 or not set(found.variables) <= set(known):
+        return False
+    rows, r, weight = _seen(fit, found.direction)
+    names, x = _axes(found, {name: known[name][rows] for name in found.variables})
+    word = "the normal" if found.direction == "normal" else found.direction
+    figure = new_figure(3.7 if len(x) == 1 else 4.3)
+    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    both = (r, rng.permutation(r))
+    if len(x) == 1:
+        limit = robust_limit(r, 0.99)
+        for ax, values in zip(axes, both, strict=True):
+            _course(ax, x[0], values, weight, limit)
+        axes[0].set_ylabel(f"residual along {word} in µm")
+    else:
+        label = f"mean residual of {NEIGHBOURS} neighbours along {word}, µm"
+        _maps(figure, axes, x, [_map(x, values, weight) for values in both], label)
+        axes[0].set_ylabel(names[1])
+    for ax, title in zip(axes, ("as measured", "shuffled: what chance makes"), strict=True):
+        ax.set_xlabel(names[0])
+        ax.set_title(title, fontsize=9.5, loc="left", color=INK)
+        plain(ax)
+    save(figure, path)
+    return True
+
+
+def _axes(found: Structure, known: dict[str, Array]) -> tuple[list[str], Array]:
+    """Labels of the variables of a pattern, and their values, (1 or 2, M)."""
+    if found.period > 0.0:
+        factor, unit = time_unit(found.period)
+        label = f"time within a wave of {span(found.period)}, in {unit}"
+        return [label], (known[found.variables[0]] % found.period)[None] / factor
+    labelled = [axis_of(name, values) for name, values in known.items()]
+    return [label for label, _ in labelled], np.stack([values for _, values in labelled])
+
+
+def _seen(fit: Fit, direction: str) -> tuple[IntArray, Array, Array]:
+    """Touches that see a direction, (M,), with their residuals along it, µm, and weights."""
+    rows = np.flatnonzero(fit.used)
+    along = directions(fit.run.touches)
+    seen = along.get(direction, along["normal"])[rows]
+    clear = np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99))
+    rows, seen = rows[clear], seen[clear]
+    return rows, fit.residual[rows] / (seen * UM), (seen / fit.run.u[rows]) ** 2
+
+
+def _maps(figure: Any, axes: Array, x: Array, values: Sequence[Array], label: str) -> None:
+    """Touches over two variables, coloured by values, on one scale."""
+    limit = robust_limit(values[0], 1.0)
+    style: dict[str, Any] = {"s": 17, "lw": 0.3, "ec": "#00000030", "cmap": DIVERGING}
+    for ax, colour in zip(axes, values, strict=True):
+        marks = ax.scatter(*x, c=colour, vmin=-limit, vmax=limit, **style)
+    figure.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.85).set_label(label, fontsize=8.5)
+
+
+def _map(x: Array, r: Array, weight: Array) -> Array:
+    """Mean residual of the nearest touches, variables scaled to their ranges, (N,).
+
+    Args:
+        x: Two variables, (2, N).
+        r: Residuals, (N,).
+        weight: Of each, (N,).
+    """
+    from scipy.spatial import cKDTree
+
+    scaled = (x / np.ptp(x, axis=1)[:, None]).T
+    near = cKDTree(scaled).query(scaled, k=min(NEIGHBOURS, len(r)))[1].reshape(len(r), -1)
+    return np.asarray((weight[near] * r[near]).sum(axis=1) / weight[near].sum(axis=1))
+
+
+def _course(ax: Any, x: Array, r: Array, weight: Array, limit: float) -> None:
+    """Touches and means over one variable."""
+    shown = kept(len(r))
+    ax.axhline(0.0, color=SOFT, lw=0.8)
+    ax.plot(x[shown], np.clip(r[shown], -limit, limit), ".", ms=2.0, color="#9aa4b1", alpha=0.6)
+    at, mean, error = binned(x, r, weight, BINS)
+    ax.errorbar(at, mean, error, fmt="o-", ms=4, lw=1.2, color=BLUE, zorder=3)
+    ax.set_ylim(-1.05 * limit, 1.05 * limit)

@@ -1,0 +1,67 @@
+"""Picture of the proof: volumetric error before and after, pose by pose."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.answer import Proof
+from twin.files import written_whole
+from twin.units import UM
+
+_BEFORE, _AFTER = "#b3261e", "#14558f"
+
+
+def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
+    """Distributions of |error| before and after, and after against its stated uncertainty.
+
+    Args:
+        path: PNG.
+        proofs: One a simulated machine.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.5, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
+    edges = np.geomspace(0.05, 1000.0, 81)
+    for k, proof in enumerate(proofs):
+        for vectors, colour, word in (
+            (proof.before, _BEFORE, "without a model"),
+            (proof.after, _AFTER, "not predicted by the identified model"),
+        ):
+            size = np.linalg.norm(vectors, axis=1) / UM
+            left.hist(
+                size,
+                edges,
+                histtype="stepfilled",
+                color=colour,
+                alpha=0.28,
+                label=word if k == 0 else None,
+            )
+            rms = np.sqrt(np.mean(size**2))
+            left.axvline(rms, color=colour, lw=1.2)
+    left.set_xscale("log")
+    left.set_xlabel("volumetric error at a pose in µm (lines: root mean square)")
+    left.set_ylabel("poses")
+    left.legend(fontsize=8, loc="upper left", frameon=False)
+    left.set_title(f"{len(proofs)} random machine{'s' * (len(proofs) > 1)}", loc="left")
+    _uncertainty(right, proofs)
+    with written_whole(path) as part:
+        figure.savefig(part, dpi=140, format="png")
+
+
+def _uncertainty(ax: Any, proofs: Sequence[Proof]) -> None:
+    """Unpredicted error over its stated standard uncertainty, cumulated."""
+    for k, proof in enumerate(proofs):
+        ratio = np.sort(np.linalg.norm(proof.after, axis=1) / proof.u)
+        share = np.arange(1, len(ratio) + 1) / len(ratio)
+        ax.plot(ratio, 100.0 * share, lw=1.4, label=f"machine {k + 1}")
+    ax.axvline(2.0, color="#7d8794", lw=0.8, ls="--")
+    ax.set_xlim(0.0, 4.0)
+    ax.set_ylim(0.0, 101.0)
+    ax.set_xlabel("unpredicted error over its stated standard uncertainty")
+    ax.set_ylabel("poses in %")
+    ax.set_title("is the stated uncertainty honest?", loc="left")
+    ax.legend(fontsize=8, loc="lower right", frameon=False)
+    ax.grid(alpha=0.25)

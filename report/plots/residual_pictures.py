@@ -1,0 +1,289 @@
+"""Pictures of a residual as a sample: over every variable, and against the normal distribution."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.fit import Fit
+from diagnosis.residual import variables
+from report.plots.ink import (
+    BLUE,
+    INK,
+    LINE,
+    RED,
+    SOFT,
+    axis_of,
+    new_figure,
+    plain,
+    robust_limit,
+    save,
+)
+from twin.frames import Array
+from twin.record import IntArray, Touches
+from twin.units import UM
+
+MOST_BINS = 12
+"""Bins of a variable, of equally many touches each."""
+
+FEWEST = 6
+"""Touches of a bin, at least."""
+
+MOST_LABELS = 16
+"""Labels of a feature that are shown one by one."""
+
+MOST_DRAWN = 4000
+"""Touches that are drawn as points; means are always over all."""
+
+COLUMNS = 4
+
+
+def standardised(fit: Fit) -> Array:
+    """Residuals over their own standard deviation with the noise as stated, (N,).
+
+    A row that the fit rests upon has ``u sqrt(1 - h)`` with its leverage h, since it drew the fit
+    towards itself; a row left out has ``u sqrt(1 + s^2)`` with the uncertainty s of its prediction.
+    If the model is right and the noise as stated they are standard normal.
+    """
+    own = (fit.solution.spread(fit.X) ** 2).sum(axis=1)
+    variance = np.where(fit.used, 1.0 - own, 1.0 + own)
+    return np.asarray(fit.residual / (fit.run.u * np.sqrt(np.maximum(variance, 1e-6))))
+
+
+def kept(n: int) -> IntArray:
+    """Rows that are drawn, evenly chosen where there are many."""
+    return np.unique(np.linspace(0, n - 1, min(n, MOST_DRAWN)).astype(int))
+
+
+def binned(
+    values: Array, r: Array, weight: Array, most: int = MOST_BINS
+) -> tuple[Array, Array, Array]:
+    """Means of residuals in bins of a variable that hold equally many touches.
+
+    Values that occur often keep a bin of their own. The standard error is that of the scatter
+    within the bin.
+
+    Args:
+        values: Of the variable, (N,).
+        r: Residuals, (N,).
+        weight: Of each, such as one over its variance, (N,).
+        most: Number of bins.
+
+    Returns:
+        Mean value, mean residual and its standard error of every bin, (B,) each.
+    """
+    distinct = np.unique(values)
+    if len(distinct) <= most:
+        label = np.searchsorted(distinct, values)
+    else:
+        count = int(np.clip(len(values) // FEWEST, 1, most))
+        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, count + 1)[1:-1]))
+        label = np.searchsorted(edges, values, side="right")
+    w = np.bincount(label, weight)
+    n = np.bincount(label)
+    full = n >= 2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        x = np.bincount(label, weight * values) / w
+        mean = np.bincount(label, weight * r) / w
+        squares = np.bincount(label, weight * (r - mean[label]) ** 2) / w
+        error = np.sqrt(squares / np.maximum(n - 1, 1))
+    return x[full], mean[full], error[full]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """A variable of a run with what the residual does over it.
+
+    Attributes:
+        name: Column of the run file, or what parts the touches.
+        values: Of the touches in use, (N,).
+        labels: Names of the values 0, 1, ... of a variable that parts touches in few groups.
+        strength: Mean squared ratio of a bin's mean to its standard error; 1 in pure noise.
+    """
+
+    name: str
+    values: Array
+    labels: tuple[str, ...] | None
+    strength: float
+
+
+def ranked_variables(fit: Fit) -> tuple[Panel, ...]:
+    """Everything that was recorded and varies, the one on which the residual depends most first."""
+    rows = fit.used
+    r, weight = fit.residual[rows], 1.0 / fit.run.u[rows] ** 2
+    known: list[tuple[str, Array, tuple[str, ...] | None]] = [
+        (k, v[rows], None) for k, v in variables(fit.run.touches).items()
+    ]
+    known += [(k, v[rows], names) for k, v, names in labelled(fit.run.touches)]
+    out = []
+    for name, values, labels in known:
+        if np.ptp(values) > 0.0:
+            _, mean, error = binned(values, r, weight)
+            strength = float(np.mean((mean / np.maximum(error, 1e-12)) ** 2)) if len(mean) else 0.0
+            out.append(Panel(name, values, labels, strength))
+    return tuple(sorted(out, key=lambda p: -p.strength))
+
+
+def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[Panel]) -> None:
+    """Residual against variables: small multiples with one scale.
+
+    Grey points are touches, blue ones means with their standard errors; the right-hand scale is in
+    units of the stated uncertainty (the median one where rows differ). Means beyond three standard
+    errors are red.
+
+    Args:
+        path: PNG.
+        fit: Any fit.
+        panels: Some of `ranked_variables(fit)`.
+    """
+    rows = fit.used
+    r, weight = fit.residual[rows] / UM, 1.0 / fit.run.u[rows] ** 2
+    count = max(1, -(-len(panels) // COLUMNS))
+    figure = new_figure(0.3 + 1.95 * count)
+    axes = figure.subplots(count, COLUMNS, sharey=True, squeeze=False)
+    limit = robust_limit(r, 0.995)
+    for ax, panel in zip(axes.flat, panels, strict=False):
+        label, values = axis_of(panel.name, panel.values)
+        _panel(ax, values, r, weight, limit)
+        ax.set_xlabel(label, fontsize=8.5, labelpad=1)
+        if panel.labels is not None:
+            turned = 90 if len(panel.labels) > 4 else 0
+            ax.set_xticks(np.arange(len(panel.labels)), panel.labels, rotation=turned)
+            ax.set_xlim(-0.5, len(panel.labels) - 0.5)
+            ax.tick_params(axis="x", labelsize=7.5)
+    for ax in axes.flat[len(panels) :]:
+        ax.set_visible(False)
+    for row in axes:
+        row[0].set_ylabel("residual in µm", fontsize=8.5)
+    last = [row[min(COLUMNS, len(panels) - k * COLUMNS) - 1] for k, row in enumerate(axes)]
+    _normalised_scale(last, fit)
+    save(figure, path)
+
+
+def labelled(touches: Touches) -> list[tuple[str, Array, tuple[str, ...] | None]]:
+    """What parts the touches in groups: last motion of every axis, feature, set-up, pose.
+
+    Returns:
+        Name, number of the group of every touch (N,), and the names of few enough groups.
+    """
+    known = [(f"last move of {a}", np.sign(touches.last_move(a))) for a in touches.chain.axes]
+    out: list[tuple[str, Array, tuple[str, ...] | None]] = []
+    for name, sign in known:
+        present, label = np.unique(sign, return_inverse=True)
+        words = tuple({-1.0: "minus", 0.0: "unknown", 1.0: "plus"}[s] for s in present)
+        out.append((name, label.astype(float), words))
+    names, label = np.unique(touches.feature, return_inverse=True)
+    shown = tuple(str(n) for n in names) if len(names) <= MOST_LABELS else None
+    out.append(("feature", label.astype(float), shown))
+    out.append(("set-up", touches.setup.astype(float), tuple(s.name for s in touches.setups)))
+    out.append(("pose", touches.pose.astype(float), None))
+    return out
+
+
+def _panel(ax: Any, values: Array, r: Array, weight: Array, limit: float) -> None:
+    """One variable: touches, means, the zero line."""
+    shown = kept(len(r))
+    ax.axhline(0.0, color=SOFT, lw=0.8)
+    ax.plot(
+        values[shown], np.clip(r[shown], -limit, limit), ".", ms=1.6, color="#9aa4b1", alpha=0.6
+    )
+    x, mean, error = binned(values, r, weight)
+    far = np.abs(mean) > 3.0 * np.maximum(error, 1e-12)
+    for which, colour in ((~far, BLUE), (far, RED)):
+        ax.errorbar(
+            x[which],
+            mean[which],
+            error[which],
+            fmt="o",
+            ms=3.6,
+            lw=1.2,
+            color=colour,
+            capsize=0,
+            zorder=3,
+        )
+    ax.set_ylim(-1.05 * limit, 1.05 * limit)
+    plain(ax)
+
+
+def _normalised_scale(axes: list[Any], fit: Fit) -> None:
+    """Scale in units of the stated uncertainty on the right of some panels."""
+    u = float(np.median(fit.run.u[fit.used])) / UM
+    for ax in axes:
+        right = ax.secondary_yaxis("right", functions=(lambda v: v / u, lambda v: v * u))
+        right.set_ylabel("in stated u", fontsize=8.5, color=SOFT)
+        right.tick_params(labelsize=8, colors=SOFT)
+        right.spines["right"].set_color(LINE)
+
+
+def draw_normal_plot(path: str | Path, fit: Fit, z: Array | None = None) -> None:
+    """Histogram and normal plot of residuals in units of their uncertainty, outliers by line.
+
+    Args:
+        path: PNG.
+        fit: Any fit.
+        z: Residuals over their standard uncertainty, (N,); None for `standardised(fit)`.
+    """
+    z = standardised(fit) if z is None else z
+    figure = new_figure(4.0)
+    left, right = figure.subplots(1, 2)
+    _histogram(left, z[fit.used], fit.noise.factor)
+    _normal_plot(right, fit, z)
+    for ax in (left, right):
+        plain(ax)
+    save(figure, path)
+
+
+def _histogram(ax: Any, z: Array, factor: float) -> None:
+    edge = 4.5 * max(factor, 1.0)
+    edges = np.linspace(-edge, edge, 46)
+    ax.hist(np.clip(z, -edge, edge), edges, color=BLUE, alpha=0.35, density=True)
+    x = np.linspace(-edge, edge, 400)
+    for sd, style, word in ((1.0, "-", "noise as stated"), (factor, "--", "noise as found")):
+        density = np.exp(-0.5 * (x / sd) ** 2) / (sd * np.sqrt(2.0 * np.pi))
+        ax.plot(x, density, style, color=INK, lw=1.2, label=word)
+    ax.set_xlabel("residual over its stated standard uncertainty")
+    ax.set_ylabel("density")
+    ax.legend(fontsize=8, frameon=False)
+
+
+def _normal_plot(ax: Any, fit: Fit, z: Array) -> None:
+    """Order statistics against those expected; gross errors at the edge of the scale."""
+    from scipy.special import ndtri
+
+    rows = np.flatnonzero(fit.used | fit.gross.rows)
+    rows = rows[np.argsort(z[rows])]
+    expected = ndtri((np.arange(len(rows)) + 0.5) / len(rows))
+    gross = fit.gross.rows[rows]
+    edge = 1.08 * max(4.0, float(np.abs(z[fit.used]).max()))
+    for sd, style in ((1.0, "-"), (fit.noise.factor, "--")):
+        ax.plot(expected[[0, -1]], sd * expected[[0, -1]], style, color=INK, lw=1.0)
+    shown = np.flatnonzero(~gross)[kept(int((~gross).sum()))]
+    ax.plot(expected[shown], z[rows[shown]], ".", ms=3.0, color=BLUE)
+    if gross.any():
+        at = np.clip(z[rows[gross]], -0.96 * edge, 0.96 * edge)
+        ax.plot(expected[gross], at, "D", ms=5.0, color=RED, mfc="none", clip_on=False)
+        _list_gross(ax, fit)
+    ax.set_ylim(-edge, edge)
+    ax.set_xlabel("expected of a normal distribution")
+    ax.set_ylabel("residual over its stated standard uncertainty")
+
+
+def _list_gross(ax: Any, fit: Fit, most: int = 12) -> None:
+    """Lines of the run file with the largest gross errors, as text beside their marks."""
+    rows = np.flatnonzero(fit.gross.rows)
+    rows = rows[np.argsort(-np.abs(fit.residual[rows]))]
+    text = [f"line {fit.run.line[i]}: {fit.residual[i] / UM:+.1f} µm" for i in rows[:most]]
+    if len(rows) > most:
+        text.append(f"and {len(rows) - most} more")
+    ax.text(
+        0.98,
+        0.03,
+        "\n".join(["left out, off the scale:", *text]),
+        transform=ax.transAxes,
+        ha="right",
+        va="bottom",
+        fontsize=7.5,
+        color=RED,
+    )

@@ -1,0 +1,269 @@
+"""Pictures of a residual in space: on the standard, and table pose by table pose."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.fit import BoolArray, Fit
+from report.plots.ink import (
+    BLUE,
+    DIVERGING,
+    GREEN,
+    INK,
+    LINE,
+    ORANGE,
+    SOFT,
+    new_figure,
+    plain,
+    robust_limit,
+    save,
+)
+from twin.frames import Array
+from twin.record import IntArray, Touches
+from twin.units import DEG, UM
+
+EXTENT = 1.0
+"""Touched points closer together than this (mm) are a place, not a standard."""
+
+SEEN = 0.05
+"""Smallest singular value of the normals, over the root of their number, of touches from all
+sides."""
+
+
+UNSURE = 3.0
+"""Times the usual uncertainty of a pose's vector from which no arrow is drawn of it."""
+
+MOST_NAMED = 24
+"""Features whose names are written on the standard."""
+
+
+def is_spread(touches: Touches) -> bool:
+    """Whether the touched points cover something that can be drawn."""
+    return bool(np.sort(np.ptp(touches.point, axis=0))[1] > EXTENT)
+
+
+def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> None:
+    """Touched points of the standard in space, coloured by residual on one common scale.
+
+    Args:
+        path: PNG.
+        fits: One model, seen in space and from above; or two models of the same run with a title
+            each, such as before and after.
+    """
+    figure = new_figure(4.2, layout=None)  # what lays out by itself cuts axes in space
+    limit = robust_limit(np.concatenate([f.residual[f.used] / UM for _, f in fits]))
+    for (title, fit), left in zip(fits, (0.0, 0.435), strict=False):
+        ax = figure.add_axes((left, 0.03, 0.43, 0.9), projection="3d")
+        marks = _points(ax, fit, limit, fit.run.touches.point)
+        _standing(ax, fit.run.touches)
+        ax.set_title(title, fontsize=10, color=INK, y=0.86)
+    if len(fits) == 1:
+        flat = figure.add_axes((0.54, 0.13, 0.33, 0.78))
+        _points(flat, fits[0][1], limit, fits[0][1].run.touches.point[:, :2])
+        flat.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
+        flat.set_title("from above", fontsize=10, color=INK)
+        plain(flat)
+        _name_features(flat, fits[0][1].run.touches)
+    bar = figure.colorbar(marks, cax=figure.add_axes((0.905, 0.14, 0.014, 0.72)), extend="both")
+    bar.set_label("residual in µm (positive: outside)", fontsize=9)
+    bar.ax.tick_params(labelsize=8.5)
+    if any(f.gross.rows.any() for _, f in fits):
+        handles = figure.axes[0].get_legend_handles_labels()
+        figure.legend(*handles, loc="lower left", fontsize=8.5, frameon=False)
+    save(figure, path)
+
+
+def _name_features(ax: Any, touches: Touches) -> None:
+    """Name of every feature at its middle, seen from above; features too many to read have none."""
+    names = np.unique(touches.feature)
+    if not 1 < len(names) <= MOST_NAMED:
+        return
+    for name in names:
+        at = touches.point[touches.feature == name, :2].mean(axis=0)
+        box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75}
+        ax.text(*at, str(name), fontsize=7.5, color=INK, ha="center", va="center", bbox=box)
+
+
+def _points(ax: Any, fit: Fit, limit: float, p: Array) -> Any:
+    """Touches of one fit, the largest residuals in front; gross errors as empty diamonds."""
+    r = fit.residual / UM
+    in_space = {"depthshade": False} if p.shape[1] == 3 else {}
+    rows = np.flatnonzero(~fit.gross.rows)
+    rows = rows[np.argsort(np.abs(r[rows]), kind="stable")]
+    marks = ax.scatter(
+        *p[rows].T,
+        c=r[rows],
+        s=15.0,
+        cmap=DIVERGING,
+        vmin=-limit,
+        vmax=limit,
+        edgecolors="#00000040",
+        linewidths=0.35,
+        **in_space,
+    )
+    if fit.gross.rows.any():
+        ax.scatter(
+            *p[fit.gross.rows].T,
+            s=46.0,
+            marker="D",
+            facecolors="none",
+            edgecolors=INK,
+            linewidths=1.1,
+            label="gross error, left out",
+            **in_space,
+        )
+    return marks
+
+
+def _standing(ax: Any, touches: Touches) -> None:
+    """Equal scales, a view, and axes that do not shout."""
+    low, high = touches.point.min(axis=0), touches.point.max(axis=0)
+    size = np.maximum(high - low, 0.12 * float((high - low).max()))
+    middle = 0.5 * (low + high)
+    for set_limit, m, s in zip((ax.set_xlim, ax.set_ylim, ax.set_zlim), middle, size, strict=True):
+        set_limit(m - 0.5 * s, m + 0.5 * s)
+    ax.patch.set_visible(False)  # else it covers the label of the axes to its left
+    ax.set_box_aspect(size, zoom=1.0)
+    ax.view_init(26.0, -58.0)
+    for letter, axis in zip("xyz", (ax.xaxis, ax.yaxis, ax.zaxis), strict=True):
+        axis.set_label_text(f"{letter} in mm", fontsize=8)
+        axis.labelpad = 0.0 if letter != "z" else -3.0  # else it runs into the axes to the right
+        axis.set_major_locator(_few_ticks())
+        axis.pane.set_facecolor("#f4f6f9")
+        axis.pane.set_edgecolor(LINE)
+        axis._axinfo["grid"].update(color=LINE, linewidth=0.6)
+    ax.tick_params(labelsize=7.5, pad=0)
+
+
+def _few_ticks() -> Any:
+    from matplotlib.ticker import MaxNLocator
+
+    return MaxNLocator(5)
+
+
+def pose_vectors(fit: Fit) -> tuple[IntArray, Array, Array]:
+    """Mean displacement of the tool that the residuals of every table pose ask for.
+
+    Least squares of ``r = a . d`` over the touches of a pose, with a the deviation along the normal
+    per unit of tool displacement in machine directions; a prior as wide as the residual keeps
+    near zero what the touches of a pose do not show.
+
+    Returns:
+        Rows of every pose by its first touch (M,), vectors (M, 3) and their standard uncertainties
+        (M, 3), mm, in the order of probing.
+    """
+    t = fit.run.touches
+    first = next(i for i, link in enumerate(t.chain.links) if not link.carries_workpiece)
+    a = t.signature.twist[:, first, :3]
+    key = np.unique(np.column_stack([t.setup, t.pose]), axis=0, return_inverse=True)[1].reshape(-1)
+    rms = max(fit.rms, 1e-12)
+    starts, vectors, spreads = [], [], []
+    for k in np.unique(key[fit.used]):
+        rows = np.flatnonzero((key == k) & fit.used)
+        w = 1.0 / fit.u[rows]
+        information = (a[rows] * w[:, None]).T @ (a[rows] * w[:, None]) + np.eye(3) / (
+            10 * rms
+        ) ** 2
+        vectors.append(np.linalg.solve(information, a[rows].T @ (w**2 * fit.residual[rows])))
+        spreads.append(np.sqrt(np.diag(np.linalg.inv(information))))
+        starts.append(rows[np.argmin(t.time[rows])])
+    order = np.argsort(t.time[starts], kind="stable")
+    return np.array(starts)[order], np.array(vectors)[order], np.array(spreads)[order]
+
+
+def has_poses(fit: Fit) -> bool:
+    """Whether there are several table poses, each touched from all sides."""
+    t = fit.run.touches
+    n = t.normal_table[fit.used]
+    turned = np.unique(np.column_stack([t.setup, t.pose])[fit.used], axis=0)
+    return len(turned) > 2 and bool(np.linalg.svd(n, compute_uv=False)[-1] > SEEN * len(n) ** 0.5)
+
+
+def draw_pose_arrows(path: str | Path, fit: Fit) -> None:
+    """Mean residual vector of every table pose: an arrow at its rotary readings, and in order.
+
+    Args:
+        path: PNG.
+        fit: A fit of which `has_poses` is true.
+    """
+    rows, vectors, spread = pose_vectors(fit)
+    figure = new_figure(4.4)
+    left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
+    _arrows(figure, left, fit, rows, vectors / UM, _is_sure(spread))
+    number = np.arange(1, len(rows) + 1)
+    for k, (letter, colour) in enumerate(zip("XYZ", (BLUE, ORANGE, GREEN), strict=True)):
+        right.errorbar(
+            number + 0.16 * (k - 1),
+            vectors[:, k] / UM,
+            spread[:, k] / UM,
+            fmt="o",
+            ms=3.5,
+            lw=1.1,
+            color=colour,
+            label=letter,
+        )
+    right.axhline(0.0, color=SOFT, lw=0.8)
+    right.set_xlabel("table pose, in the order of probing")
+    right.set_ylabel("mean residual in machine directions, µm")
+    right.legend(fontsize=8, frameon=False, ncols=3)
+    plain(right)
+    save(figure, path)
+
+
+def _where(touches: Touches, rows: IntArray) -> tuple[Array, Array, str, str]:
+    """Two coordinates in which the poses of a machine lie apart, with their names."""
+    known = [
+        (f"{axis} in °", touches.reading(axis)[rows] / DEG)
+        for axis in touches.chain.programmed_axes
+        if touches.chain.link(axis).kind == "rotary"
+    ]
+    known += [
+        (f"{c} of the table in mm", touches.point_table[rows, i]) for i, c in enumerate("xyz")
+    ]
+    moved = [k for k in known if np.ptp(k[1]) > 1e-6][:2]
+    if not moved:
+        number = np.arange(1.0, len(rows) + 1.0)
+        moved = [("all at one place", np.zeros(len(rows))), ("table pose, in order", number)]
+    (y_name, y), (x_name, x) = (moved[0], moved[-1])
+    return x, y, x_name, y_name
+
+
+def _is_sure(spread: Array) -> BoolArray:
+    """Poses whose vectors are not much less certain than those of the others, (M,)."""
+    largest = spread.max(axis=1)
+    return np.asarray(largest <= UNSURE * np.median(largest))
+
+
+def _arrows(
+    figure: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure: BoolArray
+) -> None:
+    """Arrows in X and Y at the rotary readings, coloured by Z; their longest marks the scale."""
+    x, y, x_name, y_name = _where(fit.run.touches, rows)
+    limit = robust_limit(vectors[sure, 2], 1.0)
+    length = float(np.linalg.norm(vectors[sure, :2], axis=1).max()) or 1.0
+    marks = ax.quiver(
+        x[sure],
+        y[sure],
+        *vectors[sure, :2].T,
+        vectors[sure, 2],
+        cmap=DIVERGING,
+        clim=(-limit, limit),
+        angles="uv",
+        scale=7.0 * length,
+        width=0.007,
+        edgecolor=INK,
+        linewidth=0.3,
+    )
+    ax.plot(x[sure], y[sure], ".", ms=3, color=SOFT)
+    title = f"longest arrow: {length:.2g} µm"
+    if not sure.all():
+        ax.plot(x[~sure], y[~sure], "o", ms=4.5, mfc="none", color=SOFT)
+        title += "; circle: too few touches for one"
+    ax.set_title(title, fontsize=9, loc="left", color=INK)
+    ax.set_xlabel(x_name)
+    ax.set_ylabel(y_name)
+    ax.margins(0.22)
+    plain(ax)
+    bar = figure.colorbar(marks, ax=ax, shrink=0.85)
+    bar.set_label("along Z, µm (arrow: along X and Y)", fontsize=8.5)

@@ -1,0 +1,67 @@
+"""Picture of the error left against the number of touches, for several artefacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from artefact.worth import TouchCurve
+from report.maps import GRID, INK, SHADES, figure
+from twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_MARKERS = "osD^vPX*"
+_NOT_A_BODY = "ideal"  # first word of scatter that nobody can touch: dashed
+
+
+def draw_touch_curves(curves: Sequence[TouchCurve], noise: float) -> Figure:
+    """Curves on logarithmic scales, the value at the designed number marked.
+
+    Args:
+        curves: One an artefact, the standard first: it is drawn heavier.
+        noise: Standard deviation of one touch, mm.
+    """
+    drawn = figure(10.5, 4.4)
+    left, right = drawn.subplots(1, 2, sharey=True)
+    for axes, title, user in ((left, "probed volume", False), (right, "your workspace", True)):
+        for k, curve in enumerate(curves):
+            _curve(axes, k, curve, (curve.rms_user if user else curve.rms) / UM)
+        axes.set(xscale="log", yscale="log", xlabel=f"touches of {noise / UM:.3g} µm noise")
+        axes.set_title(title, loc="left", fontsize=10.5, color=INK)
+        axes.grid(which="both", color=GRID, lw=0.6)
+        axes.spines[["top", "right"]].set_visible(False)
+        _plain_numbers(axes)
+    left.set_ylabel("tool point not predicted / µm rms")
+    handles, labels = left.get_legend_handles_labels()
+    drawn.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
+    return drawn
+
+
+def _curve(axes: Any, k: int, curve: TouchCurve, values: Any) -> None:
+    """One artefact; a mark at the number of touches it was designed with."""
+    own = k == 0
+    axes.plot(
+        curve.counts,
+        values,
+        marker=_MARKERS[k % len(_MARKERS)],
+        markevery=[curve.counts.index(curve.designed)],
+        ms=9 if own else 6.5,
+        markeredgecolor="white",
+        color=SHADES[k % len(SHADES)],
+        lw=2.6 if own else 1.5,
+        ls="--" if curve.name.startswith(_NOT_A_BODY) else "-",
+        zorder=5 if own else 3,
+        label=curve.name,
+    )
+
+
+def _plain_numbers(axes: Any) -> None:
+    """100 and 0.5 instead of powers of ten."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    for axis, steps in ((axes.xaxis, (1.0, 2.0, 5.0)), (axes.yaxis, (1.0, 2.0, 5.0))):
+        axis.set_major_locator(LogLocator(subs=steps, numticks=20))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())

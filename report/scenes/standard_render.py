@@ -1,0 +1,309 @@
+"""Drawing itself, in the renderer's own process; reached through `standard_scene` alone."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from artefact.body import DatumSphere, FreeformPatch, Standard, read_standard
+from cad_out.build import note_refusal, owners, read_stl
+from report.scenes.standard_scene import PICTURE, STANDARD, STL, VALUES
+from twin.errors import DesignError
+from twin.frames import Array, apply
+
+SIZE = (2000, 860)
+SIZE_WITH_BAR = (2200, 860)
+_BODY = "#b9bec4"
+_SPHERE = "#c0392b"
+_PLANE = "#8fae8b"
+_BARE = "#dfe3e6"
+_FACES = (
+    "#2f6fb0", "#e08e2b", "#4f9d57", "#8a62a8", "#3aa6a6",
+    "#b5627b", "#7a8f2a", "#5b79c9", "#a6763f", "#4b8fa8",
+)  # fmt: skip
+_NAME_ROOM = 14.0  # mm in the picture between two names, one over the other
+_PITCH = 0.8  # mm, of the drawn grid of a face
+_VIEWS = ((38.0, 33.0), (218.0, 33.0))  # azimuth and elevation of the eye, deg
+
+
+def draw_body(folder: str) -> None:
+    """Two views of the standard, faces and spheres coloured and named."""
+    _answered(Path(folder), coloured=False)
+
+
+def draw_coloured(folder: str) -> None:
+    """Two views of the standard, faces coloured by the values of the folder."""
+    _answered(Path(folder), coloured=True)
+
+
+def _answered(place: Path, coloured: bool) -> None:
+    try:
+        _render(place, coloured)
+    except DesignError as refusal:
+        note_refusal(place, refusal)
+
+
+def _render(place: Path, coloured: bool) -> None:
+    import pyvista as pv
+
+    standard = read_standard(place / STANDARD)
+    corners, triangles = read_stl(place / STL)
+    owner = owners(standard, corners, triangles)
+    plotter = pv.Plotter(
+        off_screen=True,
+        shape=(1, 3 if coloured else 2),
+        col_weights=[10, 10, 2] if coloured else None,
+        window_size=SIZE_WITH_BAR if coloured else SIZE,
+        border=False,
+    )
+    with np.load(place / VALUES) as values:
+        facts = dict(values)
+    faces = [_face(patch, facts) for patch in standard.patches]
+    for column, view in enumerate(_VIEWS):
+        plotter.subplot(0, column)
+        _add_body(plotter, standard, corners, triangles, owner, _BODY if coloured else _SPHERE)
+        if coloured:
+            _add_values(plotter, faces, facts)
+        else:
+            _add_faces(plotter, faces)
+        _add_labels(plotter, standard, _eye(view))
+        _aim(plotter, standard, _eye(view))
+    if coloured:
+        plotter.subplot(0, len(_VIEWS))
+        _add_bar(plotter, facts)
+    plotter.set_background("white", all_renderers=True)
+    plotter.enable_anti_aliasing("ssaa", all_renderers=True)
+    image = plotter.screenshot(None, return_img=True)
+    if image.std() < 1.0:
+        raise DesignError("no picture: the renderer gives an empty image")
+    plotter.screenshot(str(place / PICTURE))
+
+
+def _add_body(
+    plotter: Any,
+    standard: Standard,
+    corners: Array,
+    triangles: np.ndarray,
+    owner: np.ndarray,
+    sphere_colour: str,
+) -> None:
+    """Body in grey, spheres in their colour, the datum plane in green, from the STL file."""
+    sphere_names = [sphere.name for sphere in standard.spheres]
+    spheres = np.isin(owner, sphere_names)
+    heights = corners[triangles][:, :, 2]
+    top = np.all(np.abs(heights - standard.base.thickness) < 1e-3, axis=1)
+    patches = (owner != "") & ~spheres
+    for mine, colour in (
+        (~patches & ~spheres & ~top, _BODY),
+        (top & ~patches, _PLANE),
+        (spheres, sphere_colour),
+    ):
+        if mine.any():
+            plotter.add_mesh(
+                _surface(corners, triangles[mine]),
+                color=colour,
+                smooth_shading=True,
+                split_sharp_edges=True,
+                feature_angle=25.0,
+                specular=0.15,
+                ambient=0.22,
+            )
+
+
+def _add_faces(plotter: Any, faces: list[Any]) -> None:
+    for k, mesh in enumerate(faces):
+        plotter.add_mesh(
+            mesh,
+            color=_FACES[k % len(_FACES)],
+            smooth_shading=True,
+            specular=0.3,
+            specular_power=12,
+            ambient=0.15,
+        )
+
+
+def _add_values(plotter: Any, faces: list[Any], facts: dict[str, Any]) -> None:
+    """Faces in the colours of interpolated values, the touched points as dots of their own."""
+    import pyvista as pv
+
+    limit = float(facts["limit"])
+    points, values = facts["points"], facts["values"]
+    shown = {"cmap": "RdBu_r", "clim": (-limit, limit), "show_scalar_bar": False, "ambient": 0.2}
+    for mesh in faces:
+        plotter.add_mesh(mesh, scalars="value", nan_color=_BARE, smooth_shading=True, **shown)
+    dots = pv.PolyData(np.asarray(points, dtype=float))
+    dots["value"] = values
+    balls = dots.glyph(geom=pv.Sphere(radius=1.1), scale=False, orient=False)
+    plotter.add_mesh(balls, scalars="value", **shown)
+
+
+def _add_bar(plotter: Any, facts: dict[str, Any]) -> None:
+    """The scale of the values, in a room of its own."""
+    import pyvista as pv
+
+    limit = float(facts["limit"])
+    # The bar belongs to a mesh: a dot too small to be seen.
+    dot = pv.PolyData(np.zeros((1, 3)))
+    dot["value"] = np.zeros(1)
+    plotter.add_mesh(
+        dot,
+        scalars="value",
+        cmap="RdBu_r",
+        clim=(-limit, limit),
+        point_size=1,
+        opacity=0.0,
+        scalar_bar_args={
+            "title": str(facts["title"]) + "\n",
+            "n_labels": 5,
+            "fmt": "%.3g",
+            "color": "black",
+            "vertical": True,
+            "position_x": 0.25,
+            "position_y": 0.12,
+            "height": 0.74,
+            "width": 0.35,
+            "title_font_size": 24,
+            "label_font_size": 22,
+        },
+    )
+
+
+def _interpolated(patch: FreeformPatch, uv: Array, points: Array, values: Array) -> Array:
+    """Values at uv (K, 2) from those at points on this face; nan outside their hull."""
+    from scipy.interpolate import LinearNDInterpolator
+    from scipy.spatial import QhullError
+
+    local = apply(patch.T_patch_artefact, points)
+    off = np.abs(local[:, 2] - patch.height(local[:, :2]))
+    mine = patch.contains(local[:, :2]) & (off < 0.5)
+    if mine.sum() < 3:
+        return np.full(len(uv), np.nan)
+    try:
+        found: Array = LinearNDInterpolator(local[mine, :2], values[mine])(uv)
+    except QhullError:  # all in one line
+        return np.full(len(uv), np.nan)
+    return found
+
+
+def _face(patch: FreeformPatch, facts: dict[str, Any]) -> Any:
+    """Fine grid over the exact face with its exact normals, and the values if there are any."""
+    import pyvista as pv
+
+    a, b = patch.half_size
+    u = np.linspace(-a, a, int(2 * a / _PITCH) + 2)
+    v = np.linspace(-b, b, int(2 * b / _PITCH) + 2)
+    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    node = np.arange(len(uv)).reshape(len(u), len(v))
+    quads = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], axis=-1)
+    cells = np.column_stack([np.full(quads.size // 4, 4), quads.reshape(-1, 4)])
+    mesh = pv.PolyData(patch.point(uv), cells.ravel())
+    mesh.point_data.active_normals = patch.normal(uv).astype(np.float32)
+    if "values" in facts:
+        mesh["value"] = _interpolated(patch, uv, facts["points"], facts["values"])
+    return mesh
+
+
+def _add_labels(plotter: Any, standard: Standard, eye: Array) -> None:
+    """Names beside whatever faces the eye, above it in the picture."""
+    right, up = _picture_axes(eye)
+    places, names = [], []
+    for patch in standard.patches:
+        a, b = patch.half_size
+        border = np.array([[a, 0.0], [-a, 0.0], [0.0, b], [0.0, -b]])
+        if patch.normal(np.zeros((1, 2)))[0] @ eye > 0.15:
+            sides = patch.point(border)
+            places.append(sides[np.argmax(sides @ up)] + 5.0 * up)
+            names.append(patch.name)
+    for sphere in standard.spheres:
+        places.append(_beside(sphere, places, right, up))
+        names.append(sphere.name)
+    places.append(_free_corner(standard, eye))
+    names.append(standard.plane.name)
+    plotter.add_point_labels(
+        # Before everything else, or a label would be half sunk in the part.
+        np.array(places) + 400.0 * eye - 6.0 * right,
+        names,
+        font_size=20,
+        bold=True,
+        text_color="black",
+        shape_color="white",
+        shape_opacity=0.7,
+        margin=3,
+        show_points=False,
+        always_visible=True,
+    )
+
+
+def _beside(sphere: DatumSphere, taken: list[Array], right: Array, up: Array) -> Array:
+    """A place for the name of a ball: above it, or where no other name is."""
+    r = sphere.radius
+    around = [(r + 6.0) * up, (r + 20.0) * right, -(r + 20.0) * right, -(r + 14.0) * up]
+    tried = sphere.centre + np.array(around)
+    if not taken:
+        return np.asarray(tried[0])
+    # names are three times as wide as they are high
+    across = (tried[:, None] - np.array(taken)) @ np.stack([right / 3.0, up], axis=-1)
+    room = np.linalg.norm(across, axis=-1).min(axis=1)
+    free: Array = tried[np.argmax(np.minimum(room, _NAME_ROOM))]
+    return free
+
+
+def _free_corner(standard: Standard, eye: Array) -> Array:
+    """A place on the datum plane near the eye with nothing over it."""
+    half = 0.86 * np.array(standard.base.half_size)
+    sides = np.array([[sx, sy] for sx in (-1, -0.5, 0, 0.5, 1) for sy in (-1, -0.5, 0, 0.5, 1)])
+    flat = np.column_stack([half * sides, np.full(len(sides), standard.base.thickness)])
+    bodies = [body for name, body in standard.bodies.items() if name != "BASE"]
+    room = np.min([body.distance(flat + 8.0 * eye) for body in bodies], axis=0)
+    holes = np.array([[hole.x, hole.y] for hole in standard.holes]).reshape(-1, 2)
+    for hole in holes:
+        room = np.minimum(room, np.linalg.norm(flat[:, :2] - hole, axis=1) - 12.0)
+    best: Array = flat[np.argmax(np.minimum(room, 15.0) + 0.1 * flat @ eye)]
+    return best
+
+
+def _aim(plotter: Any, standard: Standard, eye: Array) -> None:
+    """Parallel view that just holds the whole standard with its labels."""
+    right, up = _picture_axes(eye)
+    (a, b), top = standard.base.half_size, standard.base.thickness
+    outline = np.array([[sx * a, sy * b, z] for sx in (-1, 1) for sy in (-1, 1) for z in (0, top)])
+    spheres = [
+        s.centre + (s.radius + 22.0) * side
+        for s in standard.spheres
+        for side in (up, right, -right)
+    ]
+    faces = [patch.point(patch.grid(10.0)) + 18.0 * up for patch in standard.patches]
+    points = np.concatenate([outline, np.array(spheres).reshape(-1, 3), *faces])
+    x, y = points @ right, points @ up
+    middle = 0.5 * (x.max() + x.min()) * right + 0.5 * (y.max() + y.min()) * up
+    plotter.camera.position = tuple(middle + 1000.0 * eye)
+    plotter.camera.focal_point = tuple(middle)
+    plotter.camera.up = (0.0, 0.0, 1.0)
+    plotter.camera.parallel_projection = True
+    width = 1000.0 / 860.0  # of a view against its height
+    plotter.camera.parallel_scale = 0.52 * max(np.ptp(y), np.ptp(x) / width)
+    plotter.add_axes(line_width=4, color="black", viewport=(0.0, 0.0, 0.16, 0.2))
+
+
+def _picture_axes(eye: Array) -> tuple[Array, Array]:
+    """Directions to the right and upwards in a picture seen from `eye`."""
+    right = np.cross([0.0, 0.0, 1.0], eye)
+    right = right / np.linalg.norm(right)
+    return right, np.cross(eye, right)
+
+
+def _eye(view: tuple[float, float]) -> Array:
+    azimuth, elevation = np.radians(view)
+    return np.array(
+        [
+            np.cos(elevation) * np.cos(azimuth),
+            np.cos(elevation) * np.sin(azimuth),
+            np.sin(elevation),
+        ]
+    )
+
+
+def _surface(corners: Array, triangles: np.ndarray) -> Any:
+    import pyvista as pv
+
+    return pv.PolyData(corners, np.column_stack([np.full(len(triangles), 3), triangles]).ravel())

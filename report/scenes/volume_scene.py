@@ -1,0 +1,244 @@
+"""Maps in three dimensions: values over three linear readings, drawn without a screen.
+
+The scene itself is rendered in a process of its own, as pictures of a standard are; ticks, names
+and colour bars are put on it here, where the view is one linear map.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cad_out.build import run_apart
+from twin.errors import DesignError, MissingLibrary, ShapeMismatch
+from twin.files import written_whole
+from twin.frames import Array
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FACTS, STL, IMAGE = "scenes.npz", "standard.stl", "image.npy"
+"""Names of the files through which the two processes speak."""
+
+PIXELS = 900
+"""Height and width of one rendered scene."""
+
+COLOURS = "viridis"
+"""Even in lightness, and told apart without red and green."""
+
+_VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
+_INK, _AXIS = "#22303c", "#a3243b"
+_INCH = 4.4  # of one scene
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Values over a box of three readings.
+
+    Attributes:
+        title: What is shown, and at which other readings.
+        unit: Label of the colour bar.
+        labels: Of the three readings, with their unit.
+        readings: Their values, three arrays, growing.
+        values: In the unit of the label, one for every point, (n1, n2, n3); not a number where
+            there is none.
+        T_readings_artefact: Where the standard stands in the map, (4, 4); None to leave it out.
+        lines: Lines of rotary axes by name: a point and a unit direction each, (2, 3).
+    """
+
+    title: str
+    unit: str
+    labels: tuple[str, str, str]
+    readings: tuple[Array, ...]
+    values: Array
+    T_readings_artefact: Array | None = None
+    lines: Mapping[str, Array] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        shape = tuple(len(r) for r in self.readings)
+        if self.values.shape != shape:
+            raise ShapeMismatch(f"values of shape {self.values.shape}, expected {shape}")
+        if not np.isfinite(self.values).any():
+            raise DesignError(f"no picture: '{self.title}' has no value")
+
+    @property
+    def box(self) -> Array:
+        """Lowest and highest corner, (2, 3)."""
+        return np.array([[r[0] for r in self.readings], [r[-1] for r in self.readings]])
+
+
+def eye() -> Array:
+    """Unit vector from the middle of a picture towards who looks at it, (3,)."""
+    view = np.array(_VIEW)
+    return view / np.linalg.norm(view)
+
+
+def draw_volumes(pictures: Mapping[Path, Sequence[Scene]], stl: str | Path | None = None) -> None:
+    """PNGs of scenes side by side: sections on the far sides, iso-surfaces, standard, axes.
+
+    Every scene has its own colour bar. All scenes are rendered together, because starting the
+    renderer takes longer than rendering.
+
+    Args:
+        pictures: The scenes of every file to be written; each whole or not at all.
+        stl: STL file of the standard; None to draw none.
+
+    Raises:
+        MissingLibrary: No OpenGL without a screen on this machine; names the system package.
+        DesignError: The renderer fails otherwise.
+    """
+    scenes = [scene for each in pictures.values() for scene in each]
+    images = _rendered(scenes, None if stl is None else Path(stl))
+    start = 0
+    for path, own in pictures.items():
+        drawn = composed(own, images[start : start + len(own)])
+        start += len(own)
+        with written_whole(path) as part:
+            drawn.savefig(part, dpi=150, format="png", facecolor="white")
+
+
+def _camera(scene: Scene) -> Array:
+    """Middle of the picture and half its height, (4,)."""
+    middle = scene.box.mean(axis=0)
+    half = 0.5 * float(np.linalg.norm(np.ptp(scene.box, axis=0)))
+    return np.append(middle, 1.02 * half)
+
+
+def _rendered(scenes: Sequence[Scene], stl: Path | None) -> list[Array]:
+    """Images of the scenes without text, each (PIXELS, PIXELS, 3)."""
+    place = Path(tempfile.mkdtemp(prefix="volumes-"))
+    try:
+        facts: dict[str, Any] = {"count": len(scenes)}
+        for k, scene in enumerate(scenes):
+            T = scene.T_readings_artefact
+            facts |= {f"{name}_{k}": r for name, r in zip("xyz", scene.readings, strict=True)}
+            facts |= {f"values_{k}": scene.values, f"camera_{k}": _camera(scene)}
+            facts[f"T_{k}"] = np.full((4, 4), np.nan) if T is None else T
+        np.savez(place / FACTS, **facts)
+        if stl is not None:
+            try:
+                shutil.copyfile(stl, place / STL)
+            except OSError as error:
+                raise DesignError(f"{stl}: cannot be read ({error.strerror})") from error
+        # Without this the renderer looks for an X server and complains when there is none.
+        egl = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
+        ending = run_apart(
+            "report.scenes.volume_render", "render", place, timeout=90.0, environment=egl
+        )
+        if ending.refusal:
+            raise DesignError(ending.refusal)
+        if not ending.is_good:
+            raise MissingLibrary(
+                f"no map in three dimensions: the renderer {str(ending).split(':', 1)[0]}; it "
+                "needs OpenGL without a screen, on Debian and Ubuntu: "
+                "apt-get install libegl1 libgl1-mesa-dri",
+                exit_code=ending.code,
+            )
+        image = np.load(place / IMAGE)
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+    return [image[:, k * PIXELS : (k + 1) * PIXELS] for k in range(len(scenes))]
+
+
+def composed(scenes: Sequence[Scene], images: Sequence[Array]) -> Figure:
+    """Rendered scenes side by side with everything that is written on them."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    n = len(scenes)
+    drawn = Figure(figsize=(_INCH * n, _INCH * 1.2))
+    FigureCanvasAgg(drawn)
+    for k, (scene, image) in enumerate(zip(scenes, images, strict=True)):
+        axes = drawn.add_axes((k / n, 0.2 / 1.2, 1.0 / n, 1.0 / 1.2))
+        axes.imshow(image, extent=(-1.0, 1.0, -1.0, 1.0), interpolation="antialiased")
+        axes.set(xlim=(-1.12, 0.98), ylim=(-1.08, 1.02))  # room for ticks on the left, below
+        axes.set_axis_off()
+        axes.text(0.0, 0.96, scene.title, ha="center", va="top", fontsize=10.5, color=_INK)
+        _ticks(axes, scene)
+        _axis_lines(axes, scene)
+        _bar(drawn.add_axes(((k + 0.14) / n, 0.125, 0.72 / n, 0.022)), scene)
+    return drawn
+
+
+def _on_picture(scene: Scene, points: Array) -> Array:
+    """Where points (N, 3) lie in a picture from -1 to 1 each way, (N, 2)."""
+    right = np.cross([0.0, 0.0, 1.0], eye())
+    right /= np.linalg.norm(right)
+    camera = _camera(scene)
+    off = (points - camera[:3]) / camera[3]
+    return np.stack([off @ right, off @ np.cross(eye(), right)], axis=1)
+
+
+def _ticks(axes: Any, scene: Scene) -> None:
+    """Readings along the outer edges of the box."""
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = scene.box
+    nice = MaxNLocator(4, steps=[1, 2, 2.5, 5, 10])
+    # each edge starts where the box shows it free of the faces: below in front, right and left
+    edges = ((0, (0, low[1], low[2])), (1, (high[0], 0, low[2])), (2, (low[0], low[1], 0)))
+    centre = _on_picture(scene, scene.box.mean(axis=0)[None])[0]
+    for i, start in edges:
+        ticks = [t for t in nice.tick_values(low[i], high[i]) if low[i] <= t <= high[i]]
+        points = np.tile(np.array(start, dtype=float), (len(ticks) + 1, 1))
+        points[:, i] = [*ticks, 0.5 * (low[i] + high[i])]
+        places = _on_picture(scene, points)
+        along = np.diff(_on_picture(scene, np.stack([np.zeros(3), np.eye(3)[i]])), axis=0)[0]
+        across = np.array([along[1], -along[0]]) / np.linalg.norm(along)
+        across *= np.sign(across @ (places[-1] - centre)) or 1.0
+        for tick, place in zip(ticks, places[:-1], strict=True):
+            axes.plot(*np.stack([place, place + 0.02 * across], axis=1), color=_INK, lw=0.9)
+            x, y = place + (0.09 if i == 2 else 0.065) * across
+            axes.text(x, y, f"{tick:g}", ha="center", va="center", fontsize=8.5, color=_INK)
+        x, y = places[-1] + (0.19 if i == 2 else 0.15) * across
+        turn = np.degrees(np.arctan2(along[1], along[0]))
+        axes.text(
+            x,
+            y,
+            scene.labels[i],
+            ha="center",
+            va="center",
+            fontsize=9.5,
+            color=_INK,
+            rotation=turn,
+            rotation_mode="anchor",
+        )
+
+
+def _axis_lines(axes: Any, scene: Scene) -> None:
+    """Rotary axes as dash-dotted lines through the box, as on a drawing."""
+    from matplotlib.patheffects import withStroke
+
+    size = 0.5 * np.linalg.norm(np.ptp(scene.box, axis=0))
+    middle = scene.box.mean(axis=0)
+    for name, (point, direction) in scene.lines.items():
+        foot = point + ((middle - point) @ direction) * direction
+        ends = _on_picture(scene, foot + np.outer([-0.75, 0.75], size * direction))
+        if np.linalg.norm(ends[1] - ends[0]) < 0.05:
+            continue  # seen along itself
+        halo = [withStroke(linewidth=2.5, foreground="white")]
+        axes.plot(ends[:, 0], ends[:, 1], color=_AXIS, lw=1.3, ls=(0, (8, 2, 1.5, 2)))
+        x, y = ends[1] + 0.05 * (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+        look = {"color": _AXIS, "fontsize": 10.5, "weight": "bold", "path_effects": halo}
+        axes.text(x, y, name, ha="center", va="center", **look)
+
+
+def _bar(axes: Any, scene: Scene) -> None:
+    """Colour bar of one scene."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+    from matplotlib.ticker import MaxNLocator
+
+    shown = Normalize(float(np.nanmin(scene.values)), float(np.nanmax(scene.values)))
+    bar = axes.figure.colorbar(
+        ScalarMappable(shown, COLOURS), cax=axes, orientation="horizontal", label=scene.unit
+    )
+    bar.ax.tick_params(labelsize=8.5)
+    bar.ax.xaxis.label.set_size(9.5)
+    bar.ax.xaxis.set_major_locator(MaxNLocator(5))

@@ -1,0 +1,23 @@
+"""Sentences made from results."""
+
+from report.words.diagnosis_words import (
+    comparison_sentence,
+    microns,
+    named_value,
+    rivals_words,
+    sizes,
+    stated_noise,
+    values,
+    verdict_sentence,
+)
+
+__all__ = [
+    "comparison_sentence",
+    "microns",
+    "named_value",
+    "rivals_words",
+    "sizes",
+    "stated_noise",
+    "values",
+    "verdict_sentence",
+]

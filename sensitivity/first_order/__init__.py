@@ -1,0 +1,23 @@
+"""What needs no sampling: Jacobians, variance shares, lengths over a workspace, first order."""
+
+from sensitivity.first_order.by_parameter import jacobian_by_parameter
+from sensitivity.first_order.indices import covariance, parts, rms, variance_shares
+from sensitivity.first_order.jacobian import jacobian, sensitivity
+from sensitivity.first_order.normal_length import NormalLength, normal_length
+from sensitivity.first_order.workspace import Box, Workspace, latin_hypercube, section
+
+__all__ = [
+    "Box",
+    "NormalLength",
+    "Workspace",
+    "covariance",
+    "jacobian",
+    "jacobian_by_parameter",
+    "latin_hypercube",
+    "normal_length",
+    "parts",
+    "rms",
+    "section",
+    "sensitivity",
+    "variance_shares",
+]

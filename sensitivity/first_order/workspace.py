@@ -1,0 +1,193 @@
+"""Poses over which sensitivities are looked at: grids, Latin hypercubes and sections."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
+from twin.frames import Array
+from twin.machine import Chain, inverse_linear, tip
+from twin.units import DEG
+
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+_ROUNDS = 40
+_MOST_POSES = 2_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """Where a user works.
+
+    Attributes:
+        chain: The machine.
+        limits: Smallest and largest reading by axis, mm or rad; an axis left out has its whole
+            range, a spindle that is not programmed stands at zero.
+        length: Tool length, mm.
+        volume: Lowest and highest corner of a box of the table frame in which the tool point has to
+            stay, mm; None where the readings alone say what is meant.
+    """
+
+    chain: Chain
+    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    length: float = 0.0
+    volume: Box | None = None
+
+    def __post_init__(self) -> None:
+        for name, (low, high) in self.limits.items():
+            if name not in self.chain.programmed_axes:
+                raise UnknownAxis(name, self.chain.programmed_axes)
+            if not low <= high:
+                raise DesignError(f"workspace of {name}: {low:g} to {high:g}, smaller one first")
+            reach = self.chain.link(name).range
+            slack = 1e-9 * (reach[1] - reach[0])
+            if low < reach[0] - slack or high > reach[1] + slack:
+                unit = 1.0 if self.chain.link(name).kind == "linear" else DEG
+                raise OutsideTravel(
+                    f"workspace of {name}: {low / unit:g} to {high / unit:g}, beyond the travel "
+                    f"{reach[0] / unit:g} to {reach[1] / unit:g}"
+                )
+
+    def limit(self, axis: str) -> tuple[float, float]:
+        """Smallest and largest reading of an axis."""
+        if not self.chain.link(axis).programmed:
+            return 0.0, 0.0
+        return self.limits.get(axis, self.chain.link(axis).range)
+
+    @property
+    def centre(self) -> Array:
+        """Readings in the middle of all limits, (A,)."""
+        return np.array([np.mean(self.limit(name)) for name in self.chain.axes])
+
+    @property
+    def open_axes(self) -> tuple[str, ...]:
+        """Programmed axes whose limits leave them room to move."""
+        return tuple(a for a in self.chain.programmed_axes if np.ptp(self.limit(a)) > 0.0)
+
+
+def _inside(workspace: Workspace, q: Array) -> Array:
+    """Rows of readings within limits and volume."""
+    keep = np.ones(len(q), dtype=bool)
+    for i, name in enumerate(workspace.chain.axes):
+        low, high = workspace.limit(name)
+        slack = 1e-9 * max(high - low, 1.0)
+        keep &= (q[:, i] >= low - slack) & (q[:, i] <= high + slack)
+    if workspace.volume is not None:
+        p = tip(workspace.chain, q, workspace.length)
+        low_corner, high_corner = np.array(workspace.volume)
+        keep &= np.all((p >= low_corner) & (p <= high_corner), axis=1)
+    return q[keep]
+
+
+def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
+    """Regular grid of readings, those outside the volume left out.
+
+    Args:
+        workspace: Limits.
+        counts: Values of each axis, or one number for all; an axis without room, or not named, has
+            one value, the middle.
+
+    Returns:
+        Shape (N, A); the axes run in chain order, the last one fastest.
+
+    Raises:
+        NotReachable: No pose lies in the volume.
+    """
+    chain = workspace.chain
+    each = []
+    for name in chain.axes:
+        count = counts if isinstance(counts, int) else counts.get(name, 1)
+        low, high = workspace.limit(name)
+        single = count == 1 or low == high
+        each.append(np.array([0.5 * (low + high)]) if single else np.linspace(low, high, count))
+    total = int(np.prod([len(v) for v in each], dtype=float))
+    if total > _MOST_POSES:
+        raise DesignError(f"a grid of {total} poses, expected at most {_MOST_POSES}")
+    mesh = np.meshgrid(*each, indexing="ij")
+    q = _inside(workspace, np.stack([m.ravel() for m in mesh], axis=-1))
+    if not len(q):
+        raise NotReachable(
+            f"no pose of the workspace has its tool point in {_box(workspace.volume)}"
+        )
+    return q
+
+
+def _hypercube(low: Array, high: Array, count: int, rng: np.random.Generator) -> Array:
+    """Latin hypercube: every one of `count` strata of every variable once, (count, len(low))."""
+    strata = np.stack([rng.permutation(count) for _ in low], axis=-1)
+    return low + (high - low) * (strata + rng.random(strata.shape)) / count
+
+
+def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) -> Array:
+    """Poses that fill a workspace evenly.
+
+    Without a volume it is a Latin hypercube of the readings. With one, tool points and rotary
+    readings are drawn so, the linear readings follow, and what lies beyond the limits is drawn
+    again.
+
+    Args:
+        workspace: Limits and volume.
+        count: N.
+        rng: Source of the random numbers.
+
+    Returns:
+        Readings, shape (N, A).
+
+    Raises:
+        NotReachable: Hardly any pose is within limits and volume at once.
+    """
+    chain = workspace.chain
+    low, high = np.array([workspace.limit(name) for name in chain.axes]).T
+    if workspace.volume is None:
+        return _hypercube(low, high, count, rng)
+    rotary = [chain.axis_index(a) for a in chain.axes if a not in chain.linear_axes]
+    corner_low, corner_high = np.array(workspace.volume)
+    found = np.zeros((0, len(chain.axes)))
+    for _ in range(_ROUNDS):
+        cube = _hypercube(
+            np.concatenate([corner_low, low[rotary]]),
+            np.concatenate([corner_high, high[rotary]]),
+            count,
+            rng,
+        )
+        q = np.zeros((count, len(chain.axes)))
+        q[:, rotary] = cube[:, 3:]
+        q = inverse_linear(chain, cube[:, :3], q, workspace.length)
+        found = np.concatenate([found, _inside(workspace, q)])
+        if len(found) >= count:
+            return found[:count]
+    raise NotReachable(
+        f"only {len(found)} of {_ROUNDS * count} poses have their tool point in "
+        f"{_box(workspace.volume)} with every axis within its limits"
+    )
+
+
+def _box(volume: Box | None) -> str:
+    """A box in the table frame in words."""
+    if volume is None:
+        return "the workspace"
+    spans = (f"{a} {lo:.0f} to {hi:.0f}" for a, lo, hi in zip("xyz", *volume, strict=True))
+    return f"{', '.join(spans)} mm of the table"
+
+
+def section(
+    workspace: Workspace, first: str, second: str, count: int, base: Array | None = None
+) -> tuple[Array, Array, Array]:
+    """Readings over two axes with the others held.
+
+    Args:
+        workspace: Limits.
+        first: Axis along the rows.
+        second: Axis along the columns.
+        count: Values of each.
+        base: Readings of the other axes, (A,); None for the middle of their limits.
+
+    Returns:
+        Values of the first axis (n,), of the second (n,), readings (n n, A), the second fastest.
+    """
+    chain = workspace.chain
+    a, b = (np.linspace(*workspace.limit(name), count) for name in (first, second))
+    q = np.tile(workspace.centre if base is None else base, (count * count, 1))
+    q[:, chain.axis_index(first)] = np.repeat(a, count)
+    q[:, chain.axis_index(second)] = np.tile(b, count)
+    return a, b, q

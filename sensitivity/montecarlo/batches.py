@@ -1,0 +1,113 @@
+"""Batches of random machines: the unit of work that any crew can take, and how it is counted."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from sensitivity.montecarlo.lengths import BINS, Lengths, count_lengths
+from sensitivity.population import DRAWS_A_CHILD, Population, coefficients, draw
+from twin.compute import blocks
+from twin.frames import Array
+from twin.model import Model
+from twin.record import at_poses
+
+MACHINES_A_BATCH = 20 * DRAWS_A_CHILD
+"""10 240: as many as JCGM 101, 7.9.4 b) wants for a coverage of up to 99 %."""
+
+_SPAN = 5.0
+"""The histogram of |d| at a pose reaches to this multiple of its root mean square. A sum of many
+independent errors exceeds it in less than one case of a million, and then sits in the last bin."""
+_NOTHING = 1e-12  # mm: scale of the histogram where no machine has an error
+
+
+class Batch(NamedTuple):
+    """Random machines to be drawn, 512 from each generator."""
+
+    children: tuple[np.random.Generator, ...]
+    machines: int
+
+
+class Ground(NamedTuple):
+    """What all batches share; made once, by whoever counts.
+
+    Attributes:
+        population: What to draw from.
+        G: Deviation of the tip per unit of every parameter, (N, 3, K), mm.
+        width: Of a bin of the histogram at every pose, (N,), mm.
+        tolerance: mm.
+        worst: Among how many of the first poses the worst are looked for, and how many they are.
+        threads: Of one batch; None for one a core.
+    """
+
+    population: Population
+    G: Array
+    width: Array
+    tolerance: float
+    worst: tuple[int, int]
+    threads: int | None
+
+
+def ground(
+    population: Population,
+    q: Array,
+    length: Array | float,
+    width: Array,
+    tolerance: float,
+    worst: tuple[int, int],
+    threads: int | None,
+) -> Ground:
+    """Columns of all poses, and what else the batches share."""
+    G = first_order(population.model, q, length)
+    return Ground(population, G, width, tolerance, worst, threads)
+
+
+def bin_width(rms: Array) -> Array:
+    """Width of a bin of the histogram for a root mean square of |d|, (N,), mm."""
+    return np.maximum(rms, _NOTHING) * (_SPAN / BINS)
+
+
+def batches(count: int, rng: np.random.Generator) -> Iterator[Batch]:
+    """Cut machines into batches; the children of `rng` are spawned as the batches are asked for."""
+    for lot in blocks(count, MACHINES_A_BATCH):
+        machines = lot.stop - lot.start
+        yield Batch(tuple(rng.spawn(-(-machines // DRAWS_A_CHILD))), machines)
+
+
+def counted(shared: Ground, batch: Batch) -> Lengths:
+    """Draw the machines of a batch and count the lengths of their deviations at all poses."""
+    lots, left = [], batch.machines
+    for child in batch.children:
+        machines = draw(shared.population, min(DRAWS_A_CHILD, left), child)
+        lots.append(coefficients(shared.population, machines))
+        left -= len(machines)
+    theta = np.concatenate(lots).T
+    return count_lengths(
+        shared.G, theta, shared.width, shared.tolerance, shared.worst, threads=shared.threads
+    )
+
+
+def first_order(model: Model, q: Array, length: Array | float) -> Array:
+    """Deviation of the tip per unit of every parameter, (N, 3, K), in blocks."""
+    length = np.broadcast_to(np.asarray(length, dtype=float), (len(q),))
+    G = np.empty((len(q), 3, len(model.parameters)))
+    for rows in blocks(len(q), 1000):
+        G[rows] = model.tip_columns(at_poses(model.chain, q[rows], length[rows]))
+    return G
+
+
+def seed_words(rng: np.random.Generator) -> str:
+    """Seed of a generator and the path of its children: `600/1.0` is child 0 of child 1 of 600.
+
+    Children that it has spawned already, and their number, follow after a plus.
+
+    Example:
+        >>> seed_words(np.random.default_rng(600).spawn(2)[1])
+        '600/1'
+    """
+    source = rng.bit_generator.seed_seq
+    assert isinstance(source, np.random.SeedSequence)
+    words = str(source.entropy)
+    if source.spawn_key:
+        words += "/" + ".".join(str(k) for k in source.spawn_key)
+    return words + (f"+{source.n_children_spawned}" if source.n_children_spawned else "")

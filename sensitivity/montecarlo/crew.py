@@ -1,0 +1,116 @@
+"""Who does the work: this process, the workers of an executor, or those of a Dask cluster.
+
+One interface for all three. What is shared is made where it is used, jobs go out a few at a time,
+and results come back in the order of the jobs, so that sums are the same whoever counted.
+"""
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, Executor
+from os import cpu_count
+from typing import Any, Protocol, TypeVar
+
+from sensitivity.montecarlo.cluster import awaited, is_cluster
+from twin.errors import DesignError
+
+Shared = TypeVar("Shared")
+Job = TypeVar("Job")
+Result = TypeVar("Result")
+
+
+class Client(Protocol):
+    """As much of `dask.distributed.Client` as is used."""
+
+    def submit(self, func: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+        """A future of ``func(*args)`` on some worker."""
+
+    def nthreads(self) -> dict[str, int]:
+        """Threads of every worker."""
+
+
+Crew = Executor | Client | None
+"""`None` for this process alone."""
+
+
+def in_order(
+    crew: Crew,
+    prepare: Callable[[], Shared],
+    work: Callable[[Shared, Job], Result],
+    jobs: Iterable[Job],
+) -> Iterator[Result]:
+    """Results of ``work(prepare(), job)`` for every job, in the order of the jobs.
+
+    Only a few jobs are under way at once, so jobs may be an endless iterator; those that nobody
+    wants any more are cancelled when the iterator is closed. A Dask cluster repeats the work of a
+    worker that is lost, what it shared included.
+
+    Args:
+        crew: Who does it.
+        prepare: Makes what all jobs share; called once in this process, or once on a cluster.
+        work: A function of a module, so that other processes find it.
+        jobs: What there is to do.
+
+    Raises:
+        DesignError: The crew is gone.
+    """
+    if crew is None:
+        shared = prepare()
+        yield from (work(shared, job) for job in jobs)
+    elif isinstance(crew, Executor):
+        yield from _by_executor(crew, prepare(), work, jobs)
+    elif is_cluster(crew):
+        yield from _by_cluster(crew, prepare, work, jobs)
+    else:
+        raise DesignError(f"{type(crew).__name__} is neither an executor nor a Dask client")
+
+
+def _by_executor(
+    crew: Executor, shared: Shared, work: Callable[[Shared, Job], Result], jobs: Iterable[Job]
+) -> Iterator[Result]:
+    most = 2 * (getattr(crew, "_max_workers", None) or cpu_count() or 1)
+    try:
+        yield from _window(lambda job: crew.submit(work, shared, job), jobs, most, _plain_result)
+    except BrokenExecutor as error:
+        raise DesignError(f"a worker process ended before its work was done ({error})") from error
+
+
+def _by_cluster(
+    crew: Any,
+    prepare: Callable[[], Shared],
+    work: Callable[[Shared, Job], Result],
+    jobs: Iterable[Job],
+) -> Iterator[Result]:
+    shared = crew.submit(prepare, pure=False)
+    most = 2 * max(1, sum(crew.nthreads().values()))
+    yield from _window(
+        lambda job: crew.submit(work, shared, job, pure=False),
+        jobs,
+        most,
+        lambda future: awaited(crew, future),
+    )
+
+
+def _plain_result(future: Any) -> Any:
+    return future.result()
+
+
+def _window(
+    submit: Callable[[Job], Any],
+    jobs: Iterable[Job],
+    most: int,
+    result: Callable[[Any], Result],
+) -> Iterator[Result]:
+    """Keep at most so many jobs under way; results in order."""
+    todo = iter(jobs)
+    waiting: deque[Any] = deque()
+    try:
+        while True:
+            while len(waiting) < most and (job := next(todo, None)) is not None:
+                waiting.append(submit(job))
+            if not waiting:
+                return
+            yield result(waiting[0])
+            waiting.popleft()
+    finally:
+        for future in waiting:
+            future.cancel()

@@ -1,0 +1,62 @@
+"""How far the first order is from the exact product, on some machines and poses."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sensitivity.population import Population, coefficients, draw
+from twin.frames import Array
+from twin.record import at_poses
+
+
+@dataclass(frozen=True, eq=False)
+class ExactCheck:
+    """How far first order is from the exact product, on some machines and poses.
+
+    Attributes:
+        machines: Number of machines looked at.
+        poses: Number of poses looked at.
+        rms: Root mean square of the difference between the deviation vectors, mm.
+        worst: Largest difference, mm.
+        rms_deviation: Root mean square of the deviations themselves, mm.
+    """
+
+    machines: int
+    poses: int
+    rms: float
+    worst: float
+    rms_deviation: float
+
+
+def exact_check(
+    population: Population,
+    q: Array,
+    length: Array | float,
+    machines: int,
+    rng: np.random.Generator,
+) -> ExactCheck:
+    """Compare first-order deviations of a few random machines with the exact product.
+
+    Args:
+        population: What to draw from.
+        q: Readings of the poses to look at, shape (N, A).
+        length: Tool length, mm.
+        machines: Number of random machines.
+        rng: Source of the random numbers.
+    """
+    model = population.model
+    touches = at_poses(population.chain, q, length)
+    G = model.tip_columns(touches)
+    off, all_of_it = [], []
+    for theta in coefficients(population, draw(population, machines, rng)):
+        exact = model.tip_deviation(touches, theta)
+        off.append(np.linalg.norm(exact - G @ theta, axis=1))
+        all_of_it.append(np.linalg.norm(exact, axis=1))
+    difference, size = np.array(off), np.array(all_of_it)
+    return ExactCheck(
+        machines=machines,
+        poses=len(q),
+        rms=float(np.sqrt(np.mean(difference**2))),
+        worst=float(difference.max()),
+        rms_deviation=float(np.sqrt(np.mean(size**2))),
+    )

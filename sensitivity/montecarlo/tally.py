@@ -1,0 +1,173 @@
+"""Statistics of the volumetric error over random machines, from counted lengths."""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sensitivity.montecarlo.lengths import BINS, Lengths
+from sensitivity.montecarlo.stability import Stability
+from twin.compute import blocks
+from twin.frames import Array
+from twin.units import UM
+
+QUANTILES = (0.5, 0.95, 0.99)
+_ROWS = 1000  # poses whose histograms are summed at once
+
+
+@dataclass(frozen=True, eq=False)
+class Volumetric:
+    """Volumetric error |d| of S random machines at N poses, first order, mm.
+
+    Attributes:
+        draws: S.
+        seed: Where the random numbers came from: the seed, and the path of its children.
+        mean: Shape (N,).
+        sd: Shape (N,).
+        levels: Probabilities of the quantiles, (Q,).
+        quantile: Shape (Q, N).
+        recurrence: Share of the machines for which the pose is among the worst 5 %, (N,).
+        mean_u: Standard error of the mean by sampling, (N,).
+        quantile_u: Standard error of the quantiles by sampling, (Q, N).
+        recurrence_u: Standard error of the recurrence by sampling, (N,).
+        tolerance: Volumetric error that users allow, mm; infinite where they said nothing.
+        exceedance: Share of the machines beyond the tolerance, (N,).
+        exceedance_u: Standard error of the exceedance by sampling, (N,).
+        stability: Whether the digits that were asked for are stable; None if none were.
+    """
+
+    draws: int
+    seed: str
+    mean: Array
+    sd: Array
+    levels: tuple[float, ...]
+    quantile: Array
+    recurrence: Array
+    mean_u: Array
+    quantile_u: Array
+    recurrence_u: Array
+    tolerance: float
+    exceedance: Array
+    exceedance_u: Array
+    stability: Stability | None
+
+    def __getitem__(self, rows: slice) -> "Volumetric":
+        """The statistics of some poses."""
+        each = {
+            f.name: getattr(self, f.name)[..., rows]
+            for f in fields(self)
+            if isinstance(getattr(self, f.name), np.ndarray)
+        }
+        return replace(self, **each)
+
+    @property
+    def p95(self) -> Array:
+        """95 % of the machines stay below this, (N,), mm."""
+        return self.quantile[self.levels.index(0.95)]
+
+    @property
+    def p95_u(self) -> Array:
+        """Standard error of `p95`, (N,), mm."""
+        return self.quantile_u[self.levels.index(0.95)]
+
+    @property
+    def achieved(self) -> float:
+        """Twice the largest standard error of mean and 95 % quantile at any pose, mm."""
+        return 2.0 * float(max(self.mean_u.max(), self.p95_u.max()))
+
+    @property
+    def statement(self) -> str:
+        """What has to stand beside every figure: draws, seed, precision."""
+        words = (
+            f"{self.draws} random machines, seed {self.seed}, mean and P95 to "
+            f"± {self.achieved / UM:.2g} µm (95 %) at every pose"
+        )
+        return words if self.stability is None else f"{words}; {self.stability.words}"
+
+
+class Tally:
+    """Sums, histogram and worst poses of |d|, batch by batch, for N poses."""
+
+    def __init__(self, width: Array, tolerance: float) -> None:
+        n = len(width)
+        self.width, self.tolerance = width, tolerance
+        self.count = 0
+        self.sum, self.squares, self.above = np.zeros(n), np.zeros(n), np.zeros(n)
+        self.worst = np.zeros(n, dtype=np.int64)
+        self.histogram = np.zeros((n, BINS), dtype=np.int32)
+
+    def add(self, found: Lengths) -> None:
+        """Add what was counted of some machines."""
+        self.count += found.draws
+        self.sum += found.sum
+        self.squares += found.squares
+        self.above += found.above
+        self.worst += found.worst
+        self.histogram += found.histogram
+
+    def result(
+        self, seed: str, recurrence_known: bool, stability: Stability | None = None
+    ) -> Volumetric:
+        """Statistics of all that was counted."""
+        s = self.count
+        mean, sd = moments(s, self.sum, self.squares)
+        quantile, spread = [], []
+        levels = []
+        for level in QUANTILES:
+            # a quantile is as unsure as the count below it: binomial, read back over the histogram
+            half = np.sqrt(level * (1.0 - level) / s)
+            levels += list(np.clip([level - half, level, level + half], 0.5 / s, 1.0 - 0.5 / s))
+        for low, middle, high in quantiles(self.histogram, self.width, levels).reshape(
+            len(QUANTILES), 3, -1
+        ):
+            quantile.append(middle)
+            spread.append(0.5 * (high - low))
+        recurrence = self.worst / s if recurrence_known else np.full(len(mean), np.nan)
+        exceedance = self.above / s
+        return Volumetric(
+            draws=s,
+            seed=seed,
+            mean=mean,
+            sd=sd,
+            levels=QUANTILES,
+            quantile=np.stack(quantile),
+            recurrence=recurrence,
+            mean_u=sd / np.sqrt(s),
+            quantile_u=np.stack(spread),
+            recurrence_u=np.sqrt(recurrence * (1.0 - recurrence) / s),
+            tolerance=self.tolerance,
+            exceedance=exceedance,
+            exceedance_u=np.sqrt(exceedance * (1.0 - exceedance) / s),
+            stability=stability,
+        )
+
+
+def moments(count: int, total: Array, squares: Array) -> tuple[Array, Array]:
+    """Mean and standard deviation from sums, (N,) each."""
+    mean = total / count
+    spread = np.maximum(squares / count - mean**2, 0.0)
+    return mean, np.sqrt(spread * count / (count - 1))
+
+
+def quantiles(
+    histogram: NDArray[np.integer], width: Array, levels: list[float] | tuple[float, ...]
+) -> Array:
+    """Quantiles of every row of a histogram, linear within their bin, (Q, N), mm.
+
+    Args:
+        histogram: Counts from zero up, (N, BINS).
+        width: Of a bin in each row, (N,), mm.
+        levels: Q probabilities.
+    """
+    out = np.empty((len(levels), len(histogram)))
+    for rows in blocks(len(histogram), _ROWS):
+        below = np.cumsum(histogram[rows], axis=1, dtype=np.int64)
+        total, each = below[:, -1], np.arange(len(below))
+        for i, level in enumerate(levels):
+            wanted = level * total
+            k = np.argmax(below >= (wanted - 1e-9 * total)[:, None], axis=1)
+            before = np.where(k > 0, below[each, np.maximum(k - 1, 0)], 0)
+            inside = below[each, k] - before
+            share = (wanted - before) / np.where(inside > 0, inside, 1)
+            out[i, rows] = (k + np.clip(share, 0.0, 1.0)) * width[rows]
+    return out

@@ -1,0 +1,33 @@
+"""Random machines: distributions of errors, their dependence, and draws from them."""
+
+from sensitivity.population.dependence import Dependence, Group, grouped, product_moment
+from sensitivity.population.distributions import CLASSES, CONSTANT, Distributions, Mix
+from sensitivity.population.sampling import (
+    DRAWS_A_CHILD,
+    Population,
+    coefficients,
+    draw,
+    drawn_errors,
+    drawn_in_chunks,
+    shape_columns,
+)
+from sensitivity.population.scales import drawn_scales
+
+__all__ = [
+    "CLASSES",
+    "CONSTANT",
+    "DRAWS_A_CHILD",
+    "Dependence",
+    "Distributions",
+    "Group",
+    "Mix",
+    "Population",
+    "coefficients",
+    "draw",
+    "drawn_errors",
+    "drawn_in_chunks",
+    "drawn_scales",
+    "grouped",
+    "product_moment",
+    "shape_columns",
+]

@@ -1,0 +1,39 @@
+"""How large the errors of drawn machines are against what is expected of them."""
+
+import numpy as np
+
+from sensitivity.population.sampling import Population, draw
+from twin.frames import Array
+from twin.machine import Symbol
+from twin.model import Model
+
+LEAST = 1e-3
+"""A drawn error is taken to be at least this part of its expected size: none is known to be nil."""
+
+
+def drawn_scales(
+    population: Population, count: int, rng: np.random.Generator, model: Model | None = None
+) -> Array:
+    """Size of every parameter of drawn machines over its expected size, (S, P).
+
+    All distributions of one error of one machine share its drawn amplitude, so a machine whose EXX
+    is large has it large as prior, whichever shape it will turn out to have. The mean of the
+    squares over many machines is one.
+
+    Args:
+        population: What to draw from.
+        count: S.
+        rng: Source of the random numbers.
+        model: Whose parameters the columns are; None for those of `Population.model`.
+    """
+    chain = population.chain
+    place = {symbol: p for p, symbol in enumerate(chain.symbols)}
+    column = []
+    for effect, _ in (model or population.model).parameters:
+        symbol = getattr(effect, "symbol", None)
+        assert isinstance(symbol, Symbol)  # every effect of a population is an error parameter
+        column.append(place[symbol])
+    expected = np.array([population.ranges.sd(chain, symbol) for symbol in chain.symbols])
+    size = np.abs(draw(population, count, rng).amplitude) / np.where(expected > 0.0, expected, 1.0)
+    scale: Array = np.maximum(size, LEAST)[:, column]
+    return scale

@@ -1,0 +1,244 @@
+"""Parts of a workspace with names in words, and which errors make the deviation in each.
+
+The shares are those of `sensitivity.first_order.indices`: exact for the deviation to first order.
+What is
+sampled are only the poses of a region, evenly and without chance; the range of the shares over them
+is real and no uncertainty. What an error does to the length |d|, interactions included, is another
+matter and takes random machines.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sensitivity.first_order import Workspace, parts
+from sensitivity.population import Population
+from sensitivity.shares.total_effects import MACHINES, norm_shares
+from twin.frames import Array
+from twin.machine import tip
+from twin.units import DEG
+
+POSES = 256
+"""Poses that stand for a region."""
+
+_TOTAL_POSES = 16  # of a region, at which random machines are looked at
+_OUTER = 1.0 / 6.0  # of a travel at either end that counts as its end
+_MIDDLE = (1.0 / 3.0, 2.0 / 3.0)
+_TURN = 350.0 * DEG  # travel of a rotary axis that has no ends: they meet
+_AROUND = 15.0 * DEG
+_TRIES = 20
+
+Squeeze = Callable[[Array], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Part of a workspace.
+
+    Attributes:
+        words: What it is, for a user.
+        q: Poses in it, (N, A).
+        shares: Share of every error parameter in the variance of the deviation, (N, P).
+        mean_shares: The same in the variance summed over the region, (P,).
+        rms: Root mean square of the volumetric error over machines and poses, mm.
+    """
+
+    words: str
+    q: Array
+    shares: Array
+    mean_shares: Array
+    rms: float
+
+    def largest(self, count: int) -> list[int]:
+        """Indices of the parameters with the largest shares, largest first."""
+        order = np.argsort(-self.mean_shares, kind="stable")[:count]
+        return [int(i) for i in order if self.mean_shares[i] > 0.0]
+
+
+def regions(population: Population, workspace: Workspace) -> tuple[Region, ...]:
+    """The whole workspace, middle and corners of its linear axes, ends of its rotary ones.
+
+    A rotary axis that turns all round has no ends; two quarters and the opposite side are looked
+    at instead.
+
+    Args:
+        population: Errors that are expected.
+        workspace: Limits.
+    """
+    out = []
+    for words, readings in _named(workspace):
+        q = _poses(workspace, readings)
+        if not len(q):
+            continue
+        each = parts(population, q, workspace.length)
+        total = each.sum(axis=1, keepdims=True)
+        shares = each / np.where(total > 0.0, total, 1.0)
+        whole = float(each.sum())
+        of_all = each.sum(axis=0) / (whole if whole > 0.0 else 1.0)
+        out.append(Region(words, q, shares, of_all, float(np.sqrt(total.mean()))))
+    return tuple(out)
+
+
+@dataclass(frozen=True, eq=False)
+class RegionTotals:
+    """Total effect of every error on the length |d|, region by region.
+
+    Attributes:
+        total: Index of every error, mean over poses of the region, (R, P).
+        u: Its standard error by sampling, (R, P).
+        machines: Pairs of random machines.
+        poses: Of each region.
+        seed: Where the machines came from.
+    """
+
+    total: Array
+    u: Array
+    machines: int
+    poses: int
+    seed: str
+
+
+def region_totals(
+    population: Population,
+    workspace: Workspace,
+    found: Sequence[Region],
+    rng: np.random.Generator,
+    machines: int = MACHINES,
+) -> RegionTotals:
+    """What the errors do to the length |d| in each region, by Monte Carlo.
+
+    The same machines stand at all poses, so the standard error of a mean over poses is taken as the
+    mean of theirs, which errs to the safe side.
+
+    Args:
+        population: Errors that are expected, independent ones.
+        workspace: Limits, tool length.
+        found: The regions.
+        rng: Source of the random numbers.
+        machines: Pairs of random machines.
+
+    Raises:
+        DesignError: The errors depend on each other.
+    """
+    some = [r.q[:_TOTAL_POSES] for r in found]
+    # so few poses are done before a compiler has begun
+    each = norm_shares(
+        population, np.concatenate(some), workspace.length, rng, machines, compiled=False
+    )
+    ends = np.cumsum([len(q) for q in some])[:-1]
+    total, u = (
+        np.stack([part.mean(axis=1) for part in np.split(values, ends, axis=1)])
+        for values in (each.total, each.u)
+    )
+    return RegionTotals(total, u, each.machines, _TOTAL_POSES, each.seed)
+
+
+def region_words(region: Region, names: Sequence[str], enough: float = 0.5) -> str:
+    """Which errors make most of the deviation in a region, in one sentence.
+
+    Args:
+        region: The region.
+        names: Of the parameters.
+        enough: Share that the named errors make together, at least.
+    """
+    shares = region.mean_shares
+    order = region.largest(len(shares))
+    if not order:
+        return f"{region.words}: no error moves the tool point."
+    count = int(np.searchsorted(np.cumsum(shares[order]), enough)) + 1
+    kept = order[:count]
+    if count == 1:
+        return f"{names[kept[0]]} makes {100.0 * shares[kept[0]]:.0f} % of the variance"
+    named = ", ".join(f"{names[i]} {100.0 * shares[i]:.0f} %" for i in kept)
+    return f"{named} make {100.0 * shares[kept].sum():.0f} % of the variance together"
+
+
+def _named(workspace: Workspace) -> list[tuple[str, dict[str, Squeeze]]]:
+    """Names of regions with the readings that differ from the whole: unit interval to reading."""
+    chain, free = workspace.chain, workspace.open_axes
+    linear = sorted(a for a in free if a in chain.linear_axes)
+    letters = ", ".join(linear[:-1]) + (" and " if len(linear) > 1 else "") + "".join(linear[-1:])
+    out: list[tuple[str, dict[str, Squeeze]]] = [("whole workspace", {})]
+    if linear:
+        middle = {a: _between(workspace, a, *_MIDDLE) for a in linear}
+        ends = {a: _outer(workspace, a) for a in linear}
+        out.append((f"middle: {letters} in their middle third", middle))
+        out.append((f"corners: {letters} in their outer sixths", ends))
+    for axis in sorted(a for a in free if a in chain.rotary_axes):
+        out += _of_rotary(workspace, axis)
+    return out
+
+
+def _of_rotary(workspace: Workspace, axis: str) -> list[tuple[str, dict[str, Squeeze]]]:
+    """Ends and level of a rotary axis, or its quarters where it turns all round."""
+    low, high = workspace.limit(axis)
+    if high - low < _TURN:
+        step = _OUTER * (high - low)
+        spans = [(low, low + step), (high - step, high)]
+        return [
+            (f"{axis} from {a / DEG:.0f}° to {b / DEG:.0f}°", {axis: _interval(a, b)})
+            for a, b in spans
+        ]
+    out = []
+    for around in (0.0, 0.5 * np.pi, np.pi):
+        if low <= around <= high:
+            a, b = max(around - _AROUND, low), min(around + _AROUND, high)
+            words = f"{axis} within {_AROUND / DEG:.0f}° of {around / DEG:.0f}°"
+            out.append((words, {axis: _interval(a, b)}))
+    return out
+
+
+def _between(workspace: Workspace, axis: str, first: float, last: float) -> Squeeze:
+    low, high = workspace.limit(axis)
+    return _interval(low + first * (high - low), low + last * (high - low))
+
+
+def _interval(low: float, high: float) -> Squeeze:
+    return lambda t: low + t * (high - low)
+
+
+def _outer(workspace: Workspace, axis: str) -> Squeeze:
+    """Unit interval to both ends of a travel."""
+    low, high = workspace.limit(axis)
+
+    def squeeze(t: Array) -> Array:
+        side = np.where(t < 0.5, 2.0 * _OUTER * t, 1.0 - 2.0 * _OUTER * (1.0 - t))
+        return low + side * (high - low)
+
+    return squeeze
+
+
+def _poses(workspace: Workspace, readings: dict[str, Squeeze]) -> Array:
+    """Poses of a region, spread evenly without chance, (N, A); none where nothing is in reach."""
+    chain = workspace.chain
+    found = np.zeros((0, len(chain.axes)))
+    for attempt in range(_TRIES):
+        unit = _even(POSES, len(chain.axes), attempt * POSES)
+        q = np.empty_like(unit)
+        for i, name in enumerate(chain.axes):
+            low, high = workspace.limit(name)
+            q[:, i] = readings.get(name, _interval(low, high))(unit[:, i])
+        if workspace.volume is not None:
+            p = tip(chain, q, workspace.length)
+            box = np.array(workspace.volume)
+            q = q[np.all((p >= box[0]) & (p <= box[1]), axis=1)]
+        found = np.concatenate([found, q])[:POSES]
+        if len(found) == POSES:
+            break
+    return found
+
+
+def _even(count: int, dimensions: int, start: int) -> Array:
+    """Points that fill the unit cube evenly, (count, dimensions).
+
+    Reference:
+        M. Roberts, "The unreasonable effectiveness of quasirandom sequences" (2018): multiples of
+        the powers of 1/g, with g the root of ``g^(d+1) = g + 1``.
+    """
+    g = 1.5
+    for _ in range(60):
+        g = (1.0 + g) ** (1.0 / (dimensions + 1))
+    steps = g ** -np.arange(1.0, dimensions + 1.0)
+    points: Array = (0.5 + np.outer(np.arange(start + 1, start + count + 1), steps)) % 1.0
+    return points

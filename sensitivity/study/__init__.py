@@ -1,0 +1,19 @@
+"""One machine over one workspace: everything computed once, and written as files."""
+
+from sensitivity.study.machine_study import Study, run_study
+from sensitivity.study.study_file import write_study
+from sensitivity.study.trajectory import AlongPath, Trajectory, along_path, paper_trajectory
+from sensitivity.study.volume import Volume, has_volume, volume
+
+__all__ = [
+    "AlongPath",
+    "Study",
+    "Trajectory",
+    "Volume",
+    "along_path",
+    "has_volume",
+    "paper_trajectory",
+    "run_study",
+    "volume",
+    "write_study",
+]

@@ -1,0 +1,231 @@
+"""The sensitivities of one machine over one workspace, computed once."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+
+from sensitivity.first_order import (
+    NormalLength,
+    Workspace,
+    covariance,
+    latin_hypercube,
+    normal_length,
+    rms,
+    section,
+    sensitivity,
+    variance_shares,
+)
+from sensitivity.montecarlo import Crew, ExactCheck, Volumetric, exact_check, volumetric
+from sensitivity.population import Population
+from sensitivity.shares import TotalEffects, norm_shares
+from sensitivity.study.trajectory import AlongPath, Trajectory, axis_effect, paper_trajectory
+from twin.compute import Progress, silent
+from twin.frames import Array
+from twin.machine import Chain
+
+SECTION = 25
+"""Values of each of the two readings of a section."""
+
+_TOTAL_POSES = 300  # at which total effects are taken: their mean over a workspace needs no more
+_CHECKED = (20, 60)  # machines and poses on which first order is compared with the exact product
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """Volumetric error over two readings, the others as in the worst pose of the study.
+
+    Attributes:
+        axes: Names of the two axes.
+        first: Values of the first reading, (n,), mm or rad.
+        second: Values of the second one, (n,).
+        q: Readings, (n n, A), the second reading fastest.
+        volumetric: Statistics at these poses.
+    """
+
+    axes: tuple[str, str]
+    first: Array
+    second: Array
+    q: Array
+    volumetric: Volumetric
+
+
+@dataclass(frozen=True, eq=False)
+class PathStudy:
+    """Volumetric error along a trajectory.
+
+    Attributes:
+        trajectory: The path.
+        volumetric: Statistics at its poses; the worst ones are those of the workspace.
+        closed: The same without sampling, as if every error were normally distributed.
+        effects: What the error motions of single axes do on the way.
+    """
+
+    trajectory: Trajectory
+    volumetric: Volumetric
+    closed: NormalLength
+    effects: tuple[AlongPath, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """Where errors show on a machine.
+
+    Attributes:
+        population: Machines that were drawn from.
+        workspace: Where was looked.
+        q: Poses, (N, A), a Latin hypercube of the workspace.
+        sensitivity: S of every error parameter, (N, P), mm/mm and mm/rad.
+        shares: Share of every parameter in the variance of the deviation, (N, P).
+        rms: Root mean square of the volumetric error without sampling, (N,), mm.
+        volumetric: Its statistics over random machines.
+        sections: The same over pairs of readings.
+        exact: How far first order is from the exact product.
+        total: Total effects of the errors on the length |d| at the first poses; None for errors
+            that depend on each other.
+        path: Volumetric error along a trajectory; None where nothing moves.
+    """
+
+    population: Population
+    workspace: Workspace
+    q: Array
+    sensitivity: Array
+    shares: Array
+    rms: Array
+    volumetric: Volumetric
+    sections: tuple[Section, ...]
+    exact: ExactCheck
+    total: TotalEffects | None
+    path: PathStudy | None
+
+    @property
+    def chain(self) -> Chain:
+        """The machine."""
+        return self.population.chain
+
+    @property
+    def worst_pose(self) -> Array:
+        """Readings of the pose with the largest root mean square, (A,)."""
+        worst: Array = self.q[np.argmax(self.rms)]
+        return worst
+
+    @cached_property
+    def closed(self) -> NormalLength:
+        """The volumetric error without sampling, as if every error were normally distributed."""
+        return normal_length(covariance(self.population, self.q, self.workspace.length))
+
+    @property
+    def tail(self) -> tuple[float, float]:
+        """By how much the sampled 95 % quantile differs from the closed one: mean and worst.
+
+        As shares of the closed one; what is beyond the sampling error is not normal in its shape.
+        """
+        closed, sampled = self.closed.p95, self.volumetric.p95
+        seen = closed > 0.0
+        if not seen.any():
+            return 0.0, 0.0
+        off = sampled[seen] / closed[seen] - 1.0
+        return float(off.mean()), float(off[np.argmax(np.abs(off))])
+
+    def ranking(self) -> list[tuple[str, float]]:
+        """Error parameters by their mean share of the variance over the workspace."""
+        mean = self.shares.mean(axis=0)
+        order = np.argsort(-mean, kind="stable")
+        return [(self.chain.symbols[i].name, float(mean[i])) for i in order]
+
+
+def run_study(
+    population: Population,
+    workspace: Workspace,
+    poses: int | Array,
+    draws: int,
+    rng: np.random.Generator,
+    progress: Progress = silent,
+    tolerance: float = np.inf,
+    digits: int = 0,
+    crew: Crew = None,
+) -> Study:
+    """Sensitivities, shares of variance and Monte Carlo over a workspace and along a trajectory.
+
+    Args:
+        population: Machines to draw from.
+        workspace: Where to look.
+        poses: Number of poses, or their readings, shape (N, A).
+        draws: Number of random machines, at most so many with digits.
+        rng: Source of the random numbers.
+        progress: Told what is being done.
+        tolerance: For the exceedance, mm.
+        digits: Significant digits that have to be stable (JCGM 101); 0 for none.
+        crew: Who draws the machines (`sensitivity.montecarlo.crew`).
+
+    Raises:
+        NotReachable: The workspace has no pose.
+        DesignError: Too few draws or poses.
+    """
+    rng_poses, rng_draws, rng_check, rng_total = rng.spawn(4)
+    length = workspace.length
+    q = latin_hypercube(workspace, poses, rng_poses) if isinstance(poses, int) else poses
+    spread = rms(population, q, length)
+    worst = q[np.argmax(spread)]
+    planes = [
+        (pair, *section(workspace, *pair, SECTION, worst)) for pair in section_pairs(workspace)
+    ]
+    way = paper_trajectory(workspace) if workspace.open_axes else None
+    everywhere = np.concatenate([q, *(plane[3] for plane in planes), *([way.q] if way else [])])
+    found = volumetric(
+        population,
+        everywhere,
+        length,
+        draws,
+        rng_draws,
+        progress,
+        reference=len(q),
+        tolerance=tolerance,
+        digits=digits,
+        crew=crew,
+    )
+    sections = []
+    start = len(q)
+    for pair, first, second, q_plane in planes:
+        rows = slice(start, start + len(q_plane))
+        sections.append(Section(pair, first, second, q_plane, found[rows]))
+        start = rows.stop
+    machines, checked = _CHECKED
+    return Study(
+        population=population,
+        workspace=workspace,
+        q=q,
+        sensitivity=sensitivity(population.chain, q, length),
+        shares=variance_shares(population, q, length),
+        rms=spread,
+        volumetric=found[slice(0, len(q))],
+        sections=tuple(sections),
+        exact=exact_check(population, q[:checked], length, machines, rng_check),
+        total=None
+        if population.dependence
+        else norm_shares(population, q[:_TOTAL_POSES], length, rng_total),
+        path=_along(population, way, found[slice(start, None)]) if way else None,
+    )
+
+
+def _along(population: Population, way: Trajectory, found: Volumetric) -> PathStudy:
+    """What random machines and single axes do along a trajectory."""
+    closed = normal_length(covariance(population, way.q, way.length))
+    span = dict(zip(way.chain.axes, np.ptp(way.q, axis=0), strict=True))
+    linear = [a for a in way.moving if a in way.chain.linear_axes]
+    rotary = sorted((a for a in way.moving if a in way.chain.rotary_axes), key=lambda a: -span[a])
+    effects = tuple(axis_effect(way, axis) for axis in (*linear[:1], *rotary[:1]))
+    return PathStudy(way, found, closed, effects)
+
+
+def section_pairs(workspace: Workspace) -> list[tuple[str, str]]:
+    """Pairs of readings to show: every pair of linear axes, the rotary ones, at most six in all."""
+    chain = workspace.chain
+    free = workspace.open_axes
+    linear = sorted(a for a in free if a in chain.linear_axes)
+    rotary = sorted(a for a in free if a in chain.rotary_axes)
+    pairs = list(combinations(linear[:3], 2)) + list(combinations(rotary[:3], 2))
+    if len(rotary) == 1:
+        pairs += [(a, rotary[0]) for a in linear[:3]]
+    return pairs[:6]

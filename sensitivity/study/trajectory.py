@@ -1,0 +1,227 @@
+"""Poses in the order in which a machine passes them, and what errors do to the tool on its way.
+
+The D-MT paper shows the effect of the error motions of one axis along a path on which X and C run
+linearly and B swings (its figures 2 and 3). Everything that takes poses takes the readings of a
+trajectory too: `montecarlo.volumetric(population, path.q, path.length, ...)`.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sensitivity.first_order import Workspace
+from twin.effects import ComponentError, component
+from twin.errors import DesignError, OutsideTravel, UnknownAxis
+from twin.frames import Array
+from twin.machine import DEFAULT_RANGES, Chain, error_class
+from twin.model import Effect, Model
+from twin.record import at_poses
+from twin.units import UM, URAD
+
+POSES = 361
+_QUARTER = 0.5 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A path through readings.
+
+    Attributes:
+        chain: The machine.
+        q: Readings, (N, A), mm and rad.
+        length: Tool length, mm.
+        name: What it is, in words.
+    """
+
+    chain: Chain
+    q: Array
+    length: float
+    name: str
+
+    @property
+    def along(self) -> Array:
+        """Share of the way, 0 to 1, (N,)."""
+        return np.linspace(0.0, 1.0, len(self.q))
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Axes that move on the way."""
+        return tuple(a for a, span in zip(self.chain.axes, np.ptp(self.q, axis=0), strict=True)
+                     if span > 0.0)  # fmt: skip
+
+
+def paper_trajectory(
+    workspace: Workspace,
+    linear: Sequence[str] | None = None,
+    swinging: str | None = None,
+    periods: float = 2.0,
+    count: int = POSES,
+    held: Mapping[str, float] | None = None,
+) -> Trajectory:
+    """The path of the D-MT paper: some axes run linearly over their limits, another one swings.
+
+    ``q = low + s (high - low)`` and ``q = middle + half sin(2 pi n s)`` with s from 0 to 1.
+
+    Args:
+        workspace: Limits of the readings, and the tool length.
+        linear: Axes that run linearly; None for the first linear axis and the rotary axis with the
+            widest limits, X and C on the machine of the paper.
+        swinging: Axis that swings; None for the other rotary axis, B there, or else a second
+            linear one.
+        periods: Of the swing.
+        count: N.
+        held: Readings of other axes; those left out stay in the middle of their limits.
+
+    Raises:
+        UnknownAxis: An axis that the machine does not have, or that is not programmed.
+        OutsideTravel: A held reading beyond the travel.
+        DesignError: Contradictory wishes, fewer than two poses, or a path on which nothing moves.
+
+    Reference:
+        D-MT paper, figures 2 and 3.
+    """
+    chain, held = workspace.chain, held or {}
+    chosen, swing = _roles(workspace)
+    linear = chosen if linear is None else tuple(linear)
+    swinging = swing if swinging is None else swinging
+    named = [*linear, *([swinging] if swinging else []), *held]
+    for name in named:
+        if name not in chain.programmed_axes:
+            raise UnknownAxis(name, chain.programmed_axes)
+    if len(set(named)) < len(named):
+        raise DesignError(f"a path of {', '.join(named)}: expected every axis in one role")
+    if count < 2:
+        raise DesignError(f"a path of {count} poses: expected two at least")
+    s = np.linspace(0.0, 1.0, count)
+    q = np.tile(workspace.centre, (count, 1))
+    for name, value in held.items():
+        low, high = chain.link(name).range
+        if not low <= value <= high:
+            raise OutsideTravel(f"{name} held at {value:g}: beyond its travel {low:g} to {high:g}")
+        q[:, chain.axis_index(name)] = value
+    for name in linear:
+        low, high = workspace.limit(name)
+        q[:, chain.axis_index(name)] = low + s * (high - low)
+    if swinging:
+        low, high = workspace.limit(swinging)
+        wave = np.sin(2.0 * np.pi * periods * s)
+        q[:, chain.axis_index(swinging)] = 0.5 * (low + high) + 0.5 * (high - low) * wave
+    made = Trajectory(chain, q, workspace.length, _name(linear, swinging))
+    if not made.moving:
+        raise DesignError(f"{made.name}: no axis has room to move within its limits")
+    return made
+
+
+def _name(linear: Sequence[str], swinging: str | None) -> str:
+    words = [f"{' and '.join(linear)} linear"] if linear else []
+    return ", ".join(words + ([f"{swinging} sinusoidal"] if swinging else []))
+
+
+def _roles(workspace: Workspace) -> tuple[tuple[str, ...], str | None]:
+    """Axes that run and the one that swings, where nobody says."""
+    chain = workspace.chain
+    moves = [a for a in chain.programmed_axes if np.ptp(workspace.limit(a)) > 0.0]
+    linear = sorted(a for a in moves if a in chain.linear_axes)
+    rotary = sorted(
+        (a for a in moves if a not in chain.linear_axes),
+        key=lambda a: -float(np.ptp(workspace.limit(a))),
+    )
+    spare = rotary[1:] or rotary or linear[1:]
+    swinging = spare[0] if spare else None
+    return tuple(a for a in (*linear[:1], *rotary[:1]) if a != swinging), swinging
+
+
+@dataclass(frozen=True, eq=False)
+class AlongPath:
+    """What some errors do to the tool point along a trajectory.
+
+    Attributes:
+        trajectory: The path.
+        errors: Effects with their amplitudes, mm and rad.
+        deviation: Exact deviation of the tool point in the table frame, (N, 3), mm.
+        each: Length of the deviation that each error makes alone, by its name, (N,) each, mm.
+        axis: Whose error motions they are; empty for any others.
+    """
+
+    trajectory: Trajectory
+    errors: tuple[tuple[Effect, Array], ...]
+    deviation: Array
+    each: Mapping[str, Array] = field(default_factory=dict)
+    axis: str = ""
+
+    @property
+    def size(self) -> Array:
+        """Volumetric error, (N,), mm."""
+        return np.linalg.norm(self.deviation, axis=1)
+
+    @property
+    def dominant(self) -> list[str]:
+        """Errors by the root mean square of what they make alone, the largest first."""
+        return sorted(self.each, key=lambda name: -float(np.mean(self.each[name] ** 2)))
+
+
+def along_path(trajectory: Trajectory, errors: Sequence[tuple[Effect, Array]]) -> AlongPath:
+    """Deviation of the tool point along a trajectory, all errors together and each alone.
+
+    Args:
+        trajectory: The path.
+        errors: Effects with their amplitudes, as an error file holds them.
+    """
+    chain = trajectory.chain
+    poses = at_poses(chain, trajectory.q, trajectory.length)
+
+    def deviation(some: Sequence[tuple[Effect, Array]]) -> Array:
+        theta = np.concatenate([np.atleast_1d(a) for _, a in some]) if some else np.zeros(0)
+        return Model(chain, tuple(e for e, _ in some)).tip_deviation(poses, theta)
+
+    each: dict[str, Array] = {}
+    names = [_short(effect) for effect, _ in errors]
+    for name in dict.fromkeys(names):
+        own = [pair for pair, n in zip(errors, names, strict=True) if n == name]
+        each[name] = np.linalg.norm(deviation(own), axis=1)
+    return AlongPath(trajectory, tuple(errors), deviation(errors), each)
+
+
+def _short(effect: Effect) -> str:
+    """Symbol of an error parameter; the whole name of anything else."""
+    symbol = getattr(effect, "symbol", None)
+    return symbol.name if symbol is not None else effect.name
+
+
+def axis_errors(chain: Chain, axis: str) -> list[tuple[ComponentError, Array]]:
+    """Error motions of one axis as the D-MT paper draws them.
+
+    A linear axis (figure 2): all six linear, translations of 50, 75 and 100 µm, rotations of as
+    many µrad, over which the paper is silent. A rotary axis (figure 3): all six sinusoidal; the two
+    radial ones of 10 µm, a quarter turn apart, the others at the lower end of what random machines
+    have, so that the radial ones dominate as in the paper.
+
+    Raises:
+        UnknownAxis: An axis that the machine does not have, or that is not programmed.
+    """
+    if axis not in chain.programmed_axes:
+        raise UnknownAxis(axis, chain.programmed_axes)
+    link, out = chain.link(axis), []
+    radial = [i for i in range(3) if i != link.own]
+    for i, letter in enumerate("XYZABC"):
+        name = f"E{letter}{axis}"
+        unit = UM if i < 3 else URAD
+        if link.kind == "linear":
+            size = (50.0, 75.0, 100.0)[i % 3] * unit
+            out.append((component(chain, name, "linear"), np.array([size])))
+            continue
+        phase = _QUARTER if i == radial[1] else 0.0
+        low = DEFAULT_RANGES[error_class(chain, chain.symbol(name))][0]
+        size = 10.0 * UM if i in radial else low
+        out.append((component(chain, name, "sinusoidal", phase=phase), np.array([size])))
+    return out
+
+
+def axis_effect(trajectory: Trajectory, axis: str) -> AlongPath:
+    """Effect of the error motions of one axis along a trajectory.
+
+    Reference:
+        D-MT paper, figure 2 (X) and figure 3 (C).
+    """
+    return replace(along_path(trajectory, axis_errors(trajectory.chain, axis)), axis=axis)

@@ -1,0 +1,139 @@
+"""The box of the linear readings at fixed rotary readings: what a map in three dimensions shows.
+
+The map is drawn over readings, because these are what a user sets. At fixed rotary readings the
+tool point is an affine function of them, so whatever stands on the table, and every rotary axis,
+has its place in the map: where the readings bring the tool point to it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sensitivity.first_order import Workspace, covariance, normal_length, sensitivity
+from sensitivity.population import Population
+from twin.errors import NotReachable
+from twin.frames import Array, apply
+from twin.machine import Symbol, inverse_linear, reach, tip
+
+POINTS = (19, 19, 17)
+"""Readings of each axis in a volume."""
+
+
+@dataclass(frozen=True, eq=False)
+class Volume:
+    """Poses that fill the box of three linear readings.
+
+    Attributes:
+        workspace: Limits, tool length.
+        axes: Names of the three linear axes, in alphabetical order.
+        readings: Their values, three arrays, mm.
+        q: Readings of all axes at every point, (N, A); the last of the three runs fastest.
+        T_readings_table: Takes a point of the table frame to the linear readings that bring the
+            tool point there, (4, 4).
+    """
+
+    workspace: Workspace
+    axes: tuple[str, ...]
+    readings: tuple[Array, ...]
+    q: Array
+    T_readings_table: Array
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of each reading."""
+        return tuple(len(r) for r in self.readings)
+
+    @property
+    def rotary(self) -> dict[str, float]:
+        """Rotary readings at which the table stands still, rad."""
+        chain = self.workspace.chain
+        return {a: float(self.q[0, chain.axis_index(a)]) for a in chain.rotary_axes}
+
+    def volumetric(self, population: Population) -> Array:
+        """95 % quantile of the volumetric error at every point, `shape`, mm, without sampling.
+
+        First order, and as if the errors were normally distributed
+        (`sensitivity.first_order.normal_length`);
+        not a number where the tool point leaves the volume of the workspace.
+        """
+        C = covariance(population, self.q, self.workspace.length)
+        return self._shown(normal_length(C).p95)
+
+    def sensitivity(self, symbol: Symbol) -> Array:
+        """S of one error parameter at every point, `shape`, mm/mm or mm/rad."""
+        workspace = self.workspace
+        return self._shown(sensitivity(workspace.chain, self.q, workspace.length, [symbol])[:, 0])
+
+    def _shown(self, values: Array) -> Array:
+        """Values on the grid, without the points that are no poses of the workspace."""
+        box = self.workspace.volume
+        if box is not None:
+            p = tip(self.workspace.chain, self.q, self.workspace.length)
+            inside = np.all((p >= np.array(box[0])) & (p <= np.array(box[1])), axis=1)
+            values = np.where(inside, values, np.nan)
+        return values.reshape(self.shape)
+
+    def lines(self) -> dict[str, Array]:
+        """Lines of the rotary axes in the map: a point and a unit direction each, (2, 3).
+
+        The columns of an axis for three translations e_i and three rotations are ``e_i`` and
+        ``e_i x a`` with a its arm to the tool point; ``sum_i (e_i x a) x e_i = 2 a`` gives the arm.
+        """
+        chain = self.workspace.chain
+        twist = reach(chain, self.q[:1], self.workspace.length).twist[0]
+        here = tip(chain, self.q[:1], self.workspace.length)[0]
+        linear = self.T_readings_table[:3, :3]
+        out = {}
+        for name in chain.rotary_axes:
+            i = chain.link_index(name)
+            axes, across = twist[i, :3], twist[i, 3:]
+            arm = 0.5 * np.cross(across, axes).sum(axis=0)
+            direction = linear @ (axes.T @ chain.link(name).direction)
+            point = apply(self.T_readings_table, (here - arm)[None])[0]
+            out[name] = np.stack([point, direction / np.linalg.norm(direction)])
+        return out
+
+
+def has_volume(workspace: Workspace) -> bool:
+    """Whether there are three linear axes and each has room to move."""
+    linear = workspace.chain.linear_axes
+    return len(linear) == 3 and set(linear) <= set(workspace.open_axes)
+
+
+def volume(
+    workspace: Workspace, rotary: Mapping[str, float], points: tuple[int, int, int] = POINTS
+) -> Volume:
+    """Poses that fill the box of the linear readings.
+
+    Args:
+        workspace: Limits.
+        rotary: Readings of the rotary axes, rad; an axis left out stands in the middle.
+        points: Values of each linear reading.
+
+    Raises:
+        NotReachable: There are not three linear axes with room to move.
+    """
+    chain = workspace.chain
+    if not has_volume(workspace):
+        raise NotReachable(
+            f"no volume: the workspace of {chain.name} has room along "
+            f"{', '.join(workspace.open_axes) or 'no axis'}, expected three linear axes"
+        )
+    base = workspace.centre
+    for name, reading in rotary.items():
+        base[chain.axis_index(name)] = reading
+    names = tuple(sorted(chain.linear_axes))
+    columns = [chain.axis_index(name) for name in names]
+    each = tuple(
+        np.linspace(*workspace.limit(name), n) for name, n in zip(names, points, strict=True)
+    )
+    mesh = np.meshgrid(*each, indexing="ij")
+    q = np.tile(base, (mesh[0].size, 1))
+    q[:, columns] = np.stack([m.ravel() for m in mesh], axis=1)
+    # where the tool point is to be, at the table's origin and one step along each of its axes
+    corners = np.concatenate([np.zeros((1, 3)), np.eye(3)])
+    found = inverse_linear(chain, corners, np.tile(base, (4, 1)), workspace.length)[:, columns]
+    T = np.eye(4)
+    T[:3, 3], T[:3, :3] = found[0], (found[1:] - found[0]).T
+    return Volume(workspace, names, each, q, T)

@@ -1,0 +1,52 @@
+"""The ordinary geometric model: what everybody models before asking what is missing."""
+
+import math
+
+from twin.effects import ComponentError, LocationError
+from twin.machine import Chain, Family, Ranges, Symbol
+from twin.model import Effect, Model
+
+
+def component_errors(chain: Chain, symbol: Symbol, sd: float) -> list[Effect]:
+    """One component error in the ordinary distributions.
+
+    On a linear axis linear and parabolic over its range, and sinusoidal with free phase (sine and
+    cosine, one period over the range); on a rotary axis, whose errors repeat every turn, harmonic 1
+    with free phase. A spindle that is not programmed stays at one angle, where an error can only be
+    constant.
+    """
+    link = chain.link(symbol.link)
+    if not link.programmed:
+        return [ComponentError(symbol, "constant", sd=sd)]
+    waves: list[Effect] = [
+        ComponentError(symbol, "sinusoidal", sd=sd),
+        ComponentError(symbol, "sinusoidal", phase=math.pi / 2.0, sd=sd),
+    ]
+    if link.kind == "rotary":
+        return waves
+    return [
+        ComponentError(symbol, "linear", sd=sd),
+        ComponentError(symbol, "parabolic", sd=sd),
+        *waves,
+    ]
+
+
+def ordinary_model(chain: Chain, ranges: Ranges | None = None) -> Model:
+    """Every component error in its ordinary distributions and every location error.
+
+    Set-ups of the standard are not in it: they belong to a run (`diagnosis`). The prior standard
+    deviations are those of amplitudes drawn from the ranges with random sign.
+
+    Args:
+        chain: The machine.
+        ranges: Expected amplitudes; None for the default ones.
+    """
+    ranges = ranges or Ranges()
+    effects: list[Effect] = []
+    for symbol in chain.symbols:
+        sd = ranges.sd(chain, symbol)
+        if symbol.family is Family.COMPONENT:
+            effects += component_errors(chain, symbol, sd)
+        else:
+            effects.append(LocationError(symbol, sd))
+    return Model(chain, tuple(effects))

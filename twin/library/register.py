@@ -1,0 +1,251 @@
+"""The library of effects by name: what can be added to a model, proposed, and written by a user.
+
+A user's own effect is a `Kind` in a Python file (`load_user_effects`) or behind the entry point
+group `material_standard.effects`; from then on it is named, proposed and diagnosed like the rest.
+"""
+
+import importlib.util
+import inspect
+import re
+from collections.abc import Sequence
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import numpy as np
+
+from twin.effects import (
+    artefact,
+    artefact_form,
+    backlash,
+    column_bending,
+    coupling,
+    geometric,
+    gravity,
+    location,
+    periodic,
+    probe,
+    stiffness,
+    thermal_expansion,
+    thermal_lag,
+)
+from twin.errors import BadFile, DesignError, UnknownEffect
+from twin.library.trial import fault
+from twin.machine import Chain
+from twin.model import Effect, Kind, Tunable, columns
+from twin.record import Touches
+from twin.units import NM
+from twin.words import listed, nearest
+
+__all__ = [
+    "ENTRY_POINT_GROUP",
+    "Kind",
+    "kinds",
+    "load_installed_effects",
+    "load_user_effects",
+    "parse_effect",
+    "proposals",
+    "register",
+    "users_files",
+]
+
+ENTRY_POINT_GROUP = "material_standard.effects"
+
+ROUNDING = 1e-3 * NM
+"""Deviations below this are those of floating-point numbers, mm."""
+
+_NAME = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\((.*)\))?\s*\Z")
+
+_REGISTER: dict[str, Kind] = {}
+
+_FILES: dict[str, Path] = {}
+"""The users' files that kinds come from, so that a file can be read again when it has changed."""
+
+
+def register(kind: Kind) -> Kind:
+    """Make a kind known by its word, which must be new.
+
+    Raises:
+        DesignError: The word is taken by another kind, or is no word.
+    """
+    if _NAME.match(kind.word) is None or "(" in kind.word:
+        raise DesignError(f"kind '{kind.word}': expected letters, digits and hyphens")
+    known = _REGISTER.get(kind.word)
+    if known is not None and known != kind:
+        raise DesignError(f"kind '{kind.word}' is already in the library, expected another word")
+    _REGISTER[kind.word] = kind
+    return kind
+
+
+def _register_from(kind: Kind, path: Path) -> Kind:
+    """Register a kind of a user's file, in the place of what this file said before.
+
+    Raises:
+        BadFile: The word is taken, or is no word.
+    """
+    place = path.resolve()
+    if _FILES.get(kind.word) == place:
+        del _REGISTER[kind.word]
+    try:
+        register(kind)
+    except DesignError as error:
+        taken = str(_FILES.get(kind.word, "the library")) if kind.word in _REGISTER else ""
+        found = f"a word that {taken} has already" if taken else "a word that is no name"
+        expected = "another word" if taken else "letters, digits and hyphens"
+        raise BadFile(path, f"Kind '{kind.word}'", found, expected) from error
+    _FILES[kind.word] = place
+    return kind
+
+
+def kinds() -> tuple[Kind, ...]:
+    """Every kind of the library, in the order of registration."""
+    return tuple(_REGISTER.values())
+
+
+def parse_effect(text: str, chain: Chain) -> Effect:
+    """Effect of a name such as `backlash(X)`, `thermal-lag(EZZ,spindle_rpm)`, `probe-lobing`.
+
+    Raises:
+        UnknownEffect: No such kind, or arguments that it does not take.
+        UnknownAxis, UnknownSymbol: An axis or error parameter that the machine does not have.
+    """
+    match = _NAME.match(text)
+    kind = _REGISTER.get(match.group(1)) if match else None
+    if match is None or kind is None:
+        raise _unknown(text, chain)
+    inside = match.group(2)
+    arguments = [a.strip() for a in inside.split(",")] if inside and inside.strip() else []
+    return kind.make(chain, arguments)
+
+
+def _unknown(text: str, chain: Chain) -> UnknownEffect:
+    """What an unknown name may have meant, and what is available."""
+    word, bracket, inside = (part.strip() for part in text.partition("("))
+    near = nearest(word.replace("_", "-"), _REGISTER)
+    written = [f"{k.word}({word})" for k in kinds() if _is_taken(k, chain, word)]
+    meant = ""
+    if word in _REGISTER:
+        meant = ", whose bracket does not end"
+    elif written:
+        meant = f", an error parameter; did you mean {listed(written, 'or')}?"
+    elif near:
+        meant = f"; did you mean {near}{bracket}{inside}?"
+    available = ", ".join(k.word for k in kinds())
+    return UnknownEffect(
+        f"unknown effect '{text}'{meant}; available: {available} (matstd effects tells all)"
+    )
+
+
+def _is_taken(kind: Kind, chain: Chain, symbol: str) -> bool:
+    """Whether a kind acts on an error parameter of the machine."""
+    if symbol not in {s.name for s in chain.symbols} or not kind.arguments.startswith("symbol"):
+        return False
+    try:
+        kind.make(chain, [symbol])
+    except DesignError:
+        return False
+    return True
+
+
+def proposals(touches: Touches, only: Sequence[str] | None = None) -> list[Effect]:
+    """Every effect of the library that makes sense for some touches, each name once.
+
+    One that moves nothing at these touches, such as the roll of a spindle ram about the axis on
+    which the ball hangs, is left out.
+
+    Args:
+        touches: The touches, all of the run.
+        only: Words of the kinds to propose; None for all.
+    """
+    wanted = [k for k in kinds() if only is None or k.word in only]
+    by_name = {effect.name: effect for kind in wanted for effect in kind.propose(touches)}
+    return [effect for effect in by_name.values() if is_seen(effect, touches)]
+
+
+def is_seen(effect: Effect, touches: Touches) -> bool:
+    """Whether an effect of its expected size changes any deviation beyond rounding."""
+    if isinstance(effect, Tunable):
+        effect = effect.tuned(
+            *(inner.grid[len(inner.grid) // 2] for inner in effect.inner(touches))
+        )
+    sd = np.array([p.sd for p in effect.parameters])
+    return bool(np.any(np.abs(columns([effect], touches) * sd) > ROUNDING))
+
+
+def load_user_effects(path: Path) -> tuple[Kind, ...]:
+    """Register every `Kind` that stands at the top level of a user's Python file.
+
+    Args:
+        path: The file. It is run: load only what you trust.
+
+    Raises:
+        BadFile: It is no Python file, fails when run, or has no `Kind` in it.
+    """
+    spec = importlib.util.spec_from_file_location(f"matstd_user_{path.stem}", path)
+    if spec is None or spec.loader is None or not path.is_file():
+        found = "nothing that Python can load" if path.is_file() else "no such file"
+        raise BadFile(path, "file", found, "a .py file with a Kind in it")
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except SyntaxError as cause:
+        found = f"{(cause.text or '').strip()!r} ({cause.msg})"
+        raise BadFile(path, f"line {cause.lineno}", found, "Python") from cause
+    except Exception as cause:  # whatever a user's file does wrong is one line about that file
+        raise fault(cause, path, "file", "a Python file that runs") from cause
+    own = {id(k): k for k in vars(module).values() if isinstance(k, Kind)}
+    if not own:
+        raise BadFile(path, "file", "no Kind", "at least one twin.library.Kind at its top level")
+    return tuple(_register_from(kind, path) for kind in own.values())
+
+
+def users_files() -> dict[str, Path]:
+    """The users' files, loaded or installed, by the word of each kind that comes from them."""
+    return dict(_FILES)
+
+
+def load_installed_effects() -> tuple[Kind, ...]:
+    """Register the kinds that installed packages offer under `material_standard.effects`.
+
+    Raises:
+        DesignError: An entry point that cannot be loaded or is no `Kind`.
+    """
+    loaded = []
+    for point in entry_points(group=ENTRY_POINT_GROUP):
+        try:
+            found = point.load()
+        except Exception as cause:  # a stranger's package may fail in any way
+            raise DesignError(f"entry point '{point.name}' ({point.value}): {cause}") from cause
+        if not isinstance(found, Kind):
+            raise DesignError(f"entry point '{point.name}' ({point.value}): expected a Kind")
+        if found not in _REGISTER.values():
+            _FILES[register(found).word] = _source(found)
+        loaded.append(found)
+    return tuple(loaded)
+
+
+def _source(kind: Kind) -> Path:
+    """The file that the effects of an installed kind are made in."""
+    maker = kind.classes[0] if kind.classes else kind.make
+    return Path(inspect.getsourcefile(maker) or "").resolve()
+
+
+for _kind in (
+    geometric.KIND,
+    location.KIND,
+    coupling.KIND,
+    backlash.KIND,
+    periodic.KIND,
+    thermal_expansion.KIND,
+    thermal_lag.KIND,
+    column_bending.KIND,
+    gravity.KIND,
+    stiffness.KIND,
+    probe.LOBING,
+    probe.RADIUS,
+    probe.BENDING,
+    artefact.EXPANSION,
+    artefact.SLIP,
+    artefact_form.KIND,
+    artefact.DRIFT,
+):
+    register(_kind)

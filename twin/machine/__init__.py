@@ -1,0 +1,47 @@
+"""Machines in ISO chain notation, error parameters by their ISO 230-1 names, and kinematics."""
+
+from twin.machine.chain import DIRECTIONS, Axis, Chain, Link, difference, make_chain
+from twin.machine.contribution import Contribution
+from twin.machine.kinematics import (
+    Reach,
+    checked_readings,
+    exact_tip,
+    inverse_linear,
+    linear_directions,
+    reach,
+    table_to_tool,
+    tip,
+)
+from twin.machine.ranges import DEFAULT_RANGES, Ranges, error_class
+from twin.machine.shapes import SHAPES, ShapeName, scaled, shape, sine_argument
+from twin.machine.symbols import LETTERS, Family, Symbol, parse_symbol
+
+__all__ = [
+    "DEFAULT_RANGES",
+    "DIRECTIONS",
+    "LETTERS",
+    "SHAPES",
+    "Axis",
+    "Chain",
+    "Contribution",
+    "Family",
+    "Link",
+    "Ranges",
+    "Reach",
+    "ShapeName",
+    "Symbol",
+    "checked_readings",
+    "difference",
+    "error_class",
+    "exact_tip",
+    "inverse_linear",
+    "linear_directions",
+    "make_chain",
+    "parse_symbol",
+    "reach",
+    "scaled",
+    "shape",
+    "sine_argument",
+    "table_to_tool",
+    "tip",
+]

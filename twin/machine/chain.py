@@ -1,0 +1,287 @@
+"""Machines in ISO chain notation, `[w C' B' X' f Y Z (C1) t]`, as an ordered tuple of links."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from twin.errors import DesignError, UnknownAxis, UnknownSymbol
+from twin.frames import Array
+from twin.machine.symbols import Family, Symbol, parse_symbol
+from twin.units import DEG
+
+Kind = Literal["linear", "rotary", "fixed"]
+
+DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
+    "X": (1.0, 0.0, 0.0),
+    "Y": (0.0, 1.0, 0.0),
+    "Z": (0.0, 0.0, 1.0),
+}
+"""The letters' own directions in the machine frame (ISO 841); A B C turn about X Y Z."""
+
+_SAME_DIRECTION = {**{k: k for k in "XYZ"}, **dict(zip("ABCUVW", "XYZXYZ", strict=True)), "S": "Z"}
+_TOKEN = re.compile(r"([XYZUVWABCS]\d?)('?)\Z")
+
+SPINDLE_RANGE = (-360.0 * DEG, 360.0 * DEG)
+"""Range of a bracketed spindle whose machine file says nothing about it, rad."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Link:
+    """One member of the chain: an axis, the workpiece `w` or the tool `t`.
+
+    Attributes:
+        name: Axis letter with number, `w` or `t`.
+        kind: Linear, rotary, or fixed (`w` and `t`, which only carry set-up errors).
+        carries_workpiece: Primed axes and `w`.
+        direction: Positive direction of the *reading* (tool relative to workpiece), unit, (3,).
+        point: Reference point of the angular errors and of a rotary axis's line, machine frame with
+            every axis at zero, (3,), mm.
+        range: Smallest and largest reading, mm or rad.
+        programmed: False for a bracketed spindle, whose angle is not programmed.
+    """
+
+    name: str
+    kind: Kind
+    carries_workpiece: bool
+    direction: Array
+    point: Array
+    range: tuple[float, float]
+    programmed: bool = True
+
+    @property
+    def own(self) -> int:
+        """Index in X Y Z of the letter's own direction, whatever the direction of the axis."""
+        return "XYZ".index(_SAME_DIRECTION[self.name[0]])
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What a machine file says of one axis, base units; None where it is silent."""
+
+    range: tuple[float, float] | None = None
+    point: tuple[float, float, float] | None = None
+    direction: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """A machine: its links in chain order from workpiece to tool, and the place of its table.
+
+    Attributes:
+        name: Of the machine.
+        notation: ISO chain notation as the user wrote it.
+        links: `w` first, `t` last, without the foundation.
+        table_origin: Origin of the table frame, machine frame with every axis at zero, (3,), mm.
+    """
+
+    name: str
+    notation: str
+    links: tuple[Link, ...]
+    table_origin: Array = field(default_factory=lambda: np.zeros(3))
+
+    @cached_property
+    def axes(self) -> tuple[str, ...]:
+        """Names of the moving links in chain order, spindle included: the columns of readings."""
+        return tuple(link.name for link in self.links if link.kind != "fixed")
+
+    @cached_property
+    def programmed_axes(self) -> tuple[str, ...]:
+        """Names of the axes that a program positions."""
+        return tuple(link.name for link in self.links if link.kind != "fixed" and link.programmed)
+
+    @cached_property
+    def linear_axes(self) -> tuple[str, ...]:
+        """Names of the linear axes in chain order."""
+        return tuple(link.name for link in self.links if link.kind == "linear")
+
+    @cached_property
+    def rotary_axes(self) -> tuple[str, ...]:
+        """Names of the programmed rotary axes in chain order."""
+        return tuple(ln.name for ln in self.links if ln.kind == "rotary" and ln.programmed)
+
+    def axis_index(self, name: str) -> int:
+        """Column of an axis in an array of readings (N, A).
+
+        Raises:
+            UnknownAxis: The machine has no such axis.
+        """
+        if name not in self.axes:
+            raise UnknownAxis(name, self.axes)
+        return self.axes.index(name)
+
+    def link_index(self, name: str) -> int:
+        """Place of a link, `w` and `t` included, in arrays over links (N, L, 6).
+
+        Raises:
+            UnknownAxis: The machine has no such link.
+        """
+        for i, link in enumerate(self.links):
+            if link.name == name:
+                return i
+        raise UnknownAxis(name, [link.name for link in self.links])
+
+    def link(self, name: str) -> Link:
+        """The link of that name; raises UnknownAxis."""
+        return self.links[self.link_index(name)]
+
+    @cached_property
+    def symbols(self) -> tuple[Symbol, ...]:
+        """Every error parameter of this machine: component, location, set-up of workpiece and tool.
+
+        Six components an axis; location errors: the zero position and two squarenesses of a linear
+        axis, two displacements, two tilts and the zero position of a rotary axis; six constants of
+        the workpiece; five of the tool (not its rotation about itself). For
+        `[w C' B' X' f Y Z (C1) t]` these are 36 + 24 + 6 + 5 = 71.
+        """
+        moving = [link for link in self.links if link.kind != "fixed"]
+        component = [Symbol(i, ln.name, Family.COMPONENT) for ln in moving for i in range(6)]
+        location = [Symbol(i, ln.name, Family.LOCATION) for ln in moving for i in _location(ln)]
+        workpiece = [Symbol(i, "w", Family.SETUP) for i in range(6)]
+        tool = [Symbol(i, "t", Family.SETUP) for i in range(5)]
+        return tuple(component + location + workpiece + tool)
+
+    def symbol(self, name: str) -> Symbol:
+        """The error parameter of that name.
+
+        Raises:
+            UnknownSymbol: No such parameter on this machine.
+        """
+        symbol = parse_symbol(name)
+        if symbol is None or symbol not in self.symbols:
+            raise UnknownSymbol(name, (s.name for s in self.symbols))
+        return symbol
+
+
+def _location(link: Link) -> list[int]:
+    """Components of the location errors of an axis.
+
+    A displacement along a rotary axis's own line and, for a linear axis, any displacement across
+    its direction change nothing; a rotation about the axis's own direction is the zero position of
+    a rotary axis and nothing for a linear one. For a free direction the letter decides.
+    """
+    others = [i for i in range(3) if i != link.own]
+    if link.kind == "linear":
+        return [link.own] + [3 + i for i in others]
+    return [*others, 3, 4, 5]
+
+
+def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:
+    """Axes of a chain notation as (name, carries the workpiece, programmed), workpiece to tool.
+
+    Raises:
+        DesignError: A token that is no axis, or a prime on the wrong side of the foundation.
+
+    Reference:
+        ISO 841; chain notation as in ISO 10791-6, with primes as in `[w C' B' X' f Y Z (C1) t]`.
+    """
+    tokens = notation.strip().removeprefix("[").removesuffix("]").split()
+    if len(tokens) < 3 or tokens[0] != "w" or tokens[-1] != "t" or tokens.count("f") != 1:
+        expected = "one 'w' first, one 't' last and one 'f' between, such as [w X' f Y Z t]"
+        raise _no_machine("chain", f"'{notation}'", expected)
+    foundation = tokens.index("f")
+    axes: list[tuple[str, bool, bool]] = []
+    for position, token in enumerate(tokens[1:-1], start=1):
+        if token == "f":
+            continue
+        bracketed = token.startswith("(") and token.endswith(")")
+        match = _TOKEN.match(token[1:-1] if bracketed else token)
+        if match is None:
+            expected = "a letter of X Y Z U V W A B C, a prime on the workpiece side"
+            raise _no_machine("chain", f"unknown axis '{token}' in '{notation}'", expected)
+        name, prime = match.groups()
+        if bool(prime) != (position < foundation):
+            side, wanted = ("workpiece", "a") if position < foundation else ("tool", "no")
+            found = f"axis '{token}' on the {side} side of f in '{notation}'"
+            raise _no_machine("chain", found, f"{wanted} prime")
+        if any(name == known for known, _, _ in axes):
+            raise _no_machine("chain", f"axis '{name}' twice in '{notation}'", "it once")
+        axes.append((name, bool(prime), not bracketed))
+    if not axes:
+        raise _no_machine("chain", f"no axis in '{notation}'", "one at least")
+    return axes
+
+
+def _no_machine(key: str, found: str, expected: str) -> DesignError:
+    """What does not fit together, with the key of the machine file that says so."""
+    message = f"{key}: found {found}, expected {expected}"
+    return DesignError(message, key=key, found=found, expected=expected)
+
+
+def difference(one: Chain, other: Chain) -> tuple[str, str, str] | None:
+    """The first thing in which two machines differ: key of a machine file, one's value, other's.
+
+    Travels count too: the shapes of component errors are scaled to them.
+    """
+    if one.name != other.name:
+        return "name", repr(one.name), repr(other.name)
+    if one.notation.split() != other.notation.split():
+        return "chain", one.notation, other.notation
+    if not np.allclose(one.table_origin, other.table_origin, rtol=0.0, atol=_SAME):
+        return "workpiece.origin", _listed(one.table_origin), _listed(other.table_origin)
+    for a, b in zip(one.links, other.links, strict=True):
+        for key in ("range", "point", "direction"):
+            left, right = np.array(getattr(a, key)), np.array(getattr(b, key))
+            if not np.allclose(left, right, rtol=0.0, atol=_SAME):
+                factor = DEG if key == "range" and a.kind == "rotary" else 1.0
+                return f"axis.{a.name}.{key}", _listed(left / factor), _listed(right / factor)
+    return None
+
+
+_SAME = 1e-6
+"""Two machines whose numbers differ by less (mm, rad) are the same."""
+
+
+def _listed(values: Array) -> str:
+    return f"[{', '.join(f'{v:.9g}' for v in values)}]"
+
+
+def make_chain(
+    name: str,
+    notation: str,
+    axes: Mapping[str, Axis],
+    table_origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> Chain:
+    """Machine from its notation and what is known of each axis.
+
+    Args:
+        name: Of the machine.
+        notation: Chain notation.
+        axes: Range, point and direction by axis name, mm and rad; a bracketed spindle may be left
+            out.
+        table_origin: Origin of the table frame, machine frame with every axis at zero, mm.
+
+    Raises:
+        DesignError: A notation that cannot be read, an axis without range, a direction of length
+            zero, a range with its ends swapped.
+        UnknownAxis: An entry for an axis that is not in the chain.
+    """
+    parsed = parse_notation(notation)
+    for key in axes:
+        if key not in [n for n, _, _ in parsed]:
+            raise UnknownAxis(key, [n for n, _, _ in parsed])
+    zero = np.zeros(3)
+    origin = np.array(table_origin, dtype=float)
+    links = [Link("w", "fixed", True, zero, origin, (0.0, 0.0))]
+    links += [_make_link(n, primed, prog, axes.get(n, Axis())) for n, primed, prog in parsed]
+    links.append(Link("t", "fixed", False, zero, zero, (0.0, 0.0)))
+    return Chain(name, notation, tuple(links), origin)
+
+
+def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
+    """Link of one axis with its defaults filled in."""
+    kind: Kind = "linear" if name[0] in "XYZUVW" else "rotary"
+    reach = axis.range if axis.range is not None or programmed else SPINDLE_RANGE
+    if reach is None:
+        raise _no_machine(f"axis.{name}.range", "nothing", "its smallest and largest reading")
+    if not reach[0] < reach[1]:
+        raise _no_machine(f"axis.{name}.range", str(list(reach)), "the smaller reading first")
+    direction = np.array(axis.direction or DIRECTIONS[_SAME_DIRECTION[name[0]]], dtype=float)
+    length = float(np.linalg.norm(direction))
+    if not length > 0.0:
+        raise _no_machine(f"axis.{name}.direction", "a vector of length zero", "a unit vector")
+    point = np.array(axis.point or (0.0, 0.0, 0.0), dtype=float)
+    return Link(name, kind, primed, direction / length, point, reach, programmed)

@@ -1,0 +1,316 @@
+"""How axis readings, and errors anywhere in the chain, reach the tool point in the table frame.
+
+Poses are products of exponentials: with every axis at zero all bodies share the machine frame, so
+link k multiplies its motion, written in that frame, onto the body it sits on. A workpiece-carrying
+axis moves its body by minus its reading.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.errors import NotReachable, ShapeMismatch
+from twin.frames import Array, apply, inverse, pose, rotation, turned_about
+from twin.machine.chain import Chain, Link
+from twin.machine.contribution import Contribution
+
+
+class Reach(NamedTuple):
+    """Tip deviation in the table frame per unit of every component at every link, first order.
+
+    Attributes:
+        twist: Of component errors, (N, L, 6, 3), mm/mm and mm/rad.
+        place: Of displacements of an axis's line, of the workpiece or the tool, (N, L, 6, 3).
+    """
+
+    twist: Array
+    place: Array
+
+
+def checked_readings(chain: Chain, q: Array) -> Array:
+    """Readings as a float array (N, A); raises ShapeMismatch."""
+    q = np.asarray(q, dtype=float)
+    if q.ndim != 2 or q.shape[1] != len(chain.axes):
+        raise ShapeMismatch(
+            f"readings of shape {q.shape}, expected (N, {len(chain.axes)}) "
+            f"for the axes {', '.join(chain.axes)}"
+        )
+    return q
+
+
+def _sign(link: Link) -> float:
+    """+1 where the body moves with the reading, -1 where it carries the workpiece."""
+    return -1.0 if link.carries_workpiece else 1.0
+
+
+def _readings_of(chain: Chain, link: Link, q: Array) -> Array:
+    return np.zeros(len(q)) if link.kind == "fixed" else q[:, chain.axis_index(link.name)]
+
+
+def _motion(link: Link, travel: Array, direction: Array) -> Array:
+    """Pose (N, 4, 4) of a link's body for the travel (N,) of that body along `direction`."""
+    if link.kind == "linear":
+        return pose(t=travel[:, None] * direction)
+    if link.kind == "rotary":
+        return turned_about(link.point, rotation(travel[:, None] * direction))
+    return pose(t=np.zeros((len(travel), 3)))
+
+
+def _lever_point(link: Link, reading: Array) -> Array:
+    """Point (N, 3) that the angular errors turn about, in the frame of the carrying body.
+
+    A linear axis carries its reference point along; a rotary axis's stays with the body.
+    """
+    if link.kind == "linear":
+        return link.point + _sign(link) * reading[:, None] * link.direction
+    return np.broadcast_to(link.point, (len(reading), 3))
+
+
+def _sides(chain: Chain) -> tuple[list[int], list[int]]:
+    """Indices of the links from the foundation outwards: to the workpiece, and to the tool."""
+    primed = [i for i, link in enumerate(chain.links) if link.carries_workpiece]
+    tool = [i for i, link in enumerate(chain.links) if not link.carries_workpiece]
+    return primed[::-1], tool
+
+
+def carriers(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
+    """Nominal poses of the body that each link sits on, of the table and of the tool.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+
+    Returns:
+        T_machine_carrier (N, L, 4, 4), T_machine_table (N, 4, 4), T_machine_tool (N, 4, 4).
+    """
+    q = checked_readings(chain, q)
+    T_machine_carrier = np.empty((len(q), len(chain.links), 4, 4))
+    ends = []
+    for side in _sides(chain):
+        T = np.broadcast_to(np.eye(4), (len(q), 4, 4))
+        for i in side:
+            link = chain.links[i]
+            T_machine_carrier[:, i] = T
+            if link.kind != "fixed":
+                travel = _sign(link) * _readings_of(chain, link, q)
+                T = T @ _motion(link, travel, link.direction)
+        ends.append(T)
+    return T_machine_carrier, ends[0] @ pose(t=chain.table_origin), ends[1]
+
+
+def table_to_tool(chain: Chain, q: Array) -> Array:
+    """Nominal pose T_table_tool (N, 4, 4): takes tool coordinates to table coordinates.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+    """
+    _, T_machine_table, T_machine_tool = carriers(chain, q)
+    return inverse(T_machine_table) @ T_machine_tool
+
+
+def tip_in_tool(length: Array | float, n: int) -> Array:
+    """Tool point, or ball centre of a probe, at (0, 0, -L) of the tool frame, shape (N, 3), mm."""
+    tip = np.zeros((n, 3))
+    tip[:, 2] = -np.asarray(length, dtype=float)
+    return tip
+
+
+def tip(chain: Chain, q: Array, length: Array | float) -> Array:
+    """Nominal tool point (ball centre of a probe) in the table frame.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+        length: Tool length, scalar or (N,), mm.
+
+    Returns:
+        Shape (N, 3), mm.
+    """
+    T_table_tool = table_to_tool(chain, q)
+    return apply(T_table_tool, tip_in_tool(length, len(T_table_tool)))
+
+
+def place_as_twist(chain: Chain, q: Array) -> Array:
+    """What a displaced line, workpiece or tool does, as twists of the same link, first order.
+
+    With the reading q, direction d, body rotation R, s = +1 on the tool side and -1 on the
+    workpiece side, (e, r) the displacement and k the component of the axis's own letter: a linear
+    axis gives ``e' = d e_k + q r x d``; a rotary one ``(e', r') = s (1 - R)(e, r)`` for the
+    components across its letter, and for its zero position ``r' = d r_k``, which adds to the
+    reading whatever the direction; the tool ``(e, r)``; the workpiece ``-(e, r)``, since the twist
+    is tool minus workpiece.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A).
+
+    Returns:
+        Shape (N, L, 6, 6): [..., i, j] is component j of the twist per unit of component i of the
+        displacement.
+    """
+    q = checked_readings(chain, q)
+    out = np.zeros((len(q), len(chain.links), 6, 6))
+    for i, link in enumerate(chain.links):
+        if link.kind == "fixed":
+            out[:, i] = _sign(link) * np.eye(6)
+            continue
+        d, reading = link.direction, _readings_of(chain, link, q)
+        if link.kind == "linear":
+            out[:, i, link.own, :3] = d
+            out[:, i, 3:, :3] = reading[:, None, None] * np.cross(np.eye(3), d)
+        else:
+            R = rotation((_sign(link) * reading)[:, None] * d)
+            moved = np.swapaxes(_sign(link) * (np.eye(3) - R), -1, -2)
+            out[:, i, :3, :3] = moved
+            out[:, i, 3:, 3:] = moved
+            out[:, i, 3 + link.own, 3:] = d
+    return out
+
+
+def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
+    """First-order deviation of the tool point per unit of every error, in closed form.
+
+    A component error (e, r) of link k moves the tip, relative to the table, by
+    ``R_table_carrier (e + r x (x - c))``, with x the tip and c the lever point of the link, both
+    in the frame of the body that the link sits on. The sign is the same on both sides of the
+    foundation because a component error is tool side minus workpiece side.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+        length: Tool length, scalar or (N,), mm.
+
+    Returns:
+        `Reach`, table frame, mm/mm and mm/rad.
+
+    Reference:
+        ISO 230-1:2012 for the parameters; J is the influence matrix of Bringmann and Knapp.
+    """
+    q = checked_readings(chain, q)
+    T_machine_carrier, T_machine_table, T_machine_tool = carriers(chain, q)
+    tip_machine = apply(T_machine_tool, tip_in_tool(length, len(q)))
+    twist = np.empty((len(q), len(chain.links), 6, 3))
+    R_machine_table = T_machine_table[:, :3, :3]
+    for i, link in enumerate(chain.links):
+        T_carrier = T_machine_carrier[:, i]
+        # rows are the carrier's x, y, z in table coordinates
+        axes = np.einsum("nji,njk->nki", R_machine_table, T_carrier[:, :3, :3])
+        local = np.einsum("nji,nj->ni", T_carrier[:, :3, :3], tip_machine - T_carrier[:, :3, 3])
+        lever = local - _lever_point(link, _readings_of(chain, link, q))
+        arm = np.einsum("nk,nki->ni", lever, axes)
+        twist[:, i, :3] = axes
+        twist[:, i, 3:] = np.cross(axes, arm[:, None, :])
+    return Reach(twist, place_as_twist(chain, q) @ twist)
+
+
+def _exact_motion(link: Link, reading: Array, place: Array) -> Array:
+    """Pose (N, 4, 4) of a link's motion with its line displaced by `place` (N, 6), exactly."""
+    e, r = place[:, :3], place[:, 3:]
+    d, s = link.direction, _sign(link)
+    if link.kind == "linear":
+        travel = s * (reading + e[:, link.own])
+        return pose(t=travel[:, None] * np.einsum("nij,j->ni", rotation(r), d))
+    zero = r[:, link.own]
+    tilt = np.where(np.arange(3) == link.own, 0.0, r)
+    D = turned_about(link.point, rotation(tilt), e)
+    M = turned_about(link.point, rotation((s * (reading + zero))[:, None] * d))
+    return D @ M @ inverse(D)
+
+
+def exact_table_to_tool(chain: Chain, q: Array, contribution: Contribution) -> Array:
+    """Actual pose T_table_tool (N, 4, 4) with every error in it: products of 4x4 matrices.
+
+    Each link multiplies ``G M`` onto its carrier: G the component error, a rotation by the vector
+    r about the lever point followed by the shift e (its inverse on the workpiece side), and M the
+    motion about the displaced line. No angle is taken for small.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+        contribution: What all effects add at these readings; its twist and place are used.
+    """
+    q = checked_readings(chain, q)
+    ends = []
+    for side in _sides(chain):
+        T = np.broadcast_to(np.eye(4), (len(q), 4, 4))
+        for i in side:
+            link = chain.links[i]
+            reading = _readings_of(chain, link, q)
+            e, r = contribution.twist[:, i, :3], contribution.twist[:, i, 3:]
+            G = turned_about(_lever_point(link, reading), rotation(r), e)
+            T = T @ (inverse(G) if link.carries_workpiece else G)
+            place = contribution.place[:, i]
+            if link.kind == "fixed":
+                T = T @ turned_about(link.point, rotation(place[:, 3:]), place[:, :3])
+            else:
+                T = T @ _exact_motion(link, reading, place)
+        ends.append(T)
+    return inverse(ends[0] @ pose(t=chain.table_origin)) @ ends[1]
+
+
+def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contribution) -> Array:
+    """Actual tool point in the table frame with every error in it.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+        length: Tool length, scalar or (N,), mm.
+        contribution: What all effects add at these readings.
+
+    Returns:
+        Shape (N, 3), mm; minus `tip` it is the volumetric deviation.
+    """
+    T_table_tool = exact_table_to_tool(chain, q, contribution)
+    return apply(T_table_tool, tip_in_tool(length, len(T_table_tool)))
+
+
+def linear_directions(chain: Chain, q: Array) -> Array:
+    """Motion of the tip in the table frame per unit of each linear axis.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A).
+
+    Returns:
+        Shape (N, 3, M), M the number of linear axes in chain order.
+    """
+    T_machine_carrier, T_machine_table, _ = carriers(chain, q)
+    columns = []
+    for name in chain.linear_axes:
+        i = chain.link_index(name)
+        in_machine = T_machine_carrier[:, i, :3, :3] @ chain.links[i].direction
+        columns.append(np.einsum("nji,nj->ni", T_machine_table[:, :3, :3], in_machine))
+    return np.stack(columns, axis=-1) if columns else np.zeros((len(q), 3, 0))
+
+
+def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float) -> Array:
+    """Readings of the linear axes that bring the tip to a point at given rotary readings.
+
+    At fixed rotary readings the tip is an affine function of the linear readings, so one solution
+    of three equations is exact.
+
+    Args:
+        chain: The machine; exactly three linear axes.
+        target: Wanted tip (ball centre), table frame, shape (N, 3), mm.
+        q: Readings whose rotary columns are kept, shape (N, A); linear columns are ignored.
+        length: Tool length, scalar or (N,), mm.
+
+    Returns:
+        Readings, shape (N, A). Travels are not checked here.
+
+    Raises:
+        NotReachable: The machine has not three independent linear axes in some pose.
+    """
+    q = checked_readings(chain, q).copy()
+    columns = [chain.axis_index(name) for name in chain.linear_axes]
+    if len(columns) != 3:
+        raise NotReachable(
+            f"machine {chain.name} has {len(columns)} linear axes; a tip position needs three"
+        )
+    q[:, columns] = 0.0
+    D = linear_directions(chain, q)
+    if np.any(np.abs(np.linalg.det(D)) < 1e-6):
+        raise NotReachable(f"the linear axes of {chain.name} lie in one plane in some pose")
+    q[:, columns] = np.linalg.solve(D, (target - tip(chain, q, length))[..., None])[..., 0]
+    return q

@@ -1,0 +1,73 @@
+"""How large the errors of a machine are expected to be, by class: for drawing, and as a prior."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from twin.machine.chain import Chain
+from twin.machine.symbols import Family, Symbol
+from twin.units import UM, URAD
+
+DEFAULT_RANGES: Mapping[str, tuple[float, float]] = {
+    "linear_translation": (50 * UM, 100 * UM),
+    "linear_rotation": (50 * URAD, 100 * URAD),
+    "rotary_translation": (5 * UM, 10 * UM),
+    "rotary_rotation": (10 * URAD, 40 * URAD),
+    "linear_zero": (10 * UM, 50 * UM),
+    "squareness": (20 * URAD, 100 * URAD),
+    "rotary_location": (20 * UM, 100 * UM),
+    "rotary_tilt": (20 * URAD, 100 * URAD),
+    "rotary_zero": (20 * URAD, 100 * URAD),
+    "setup_translation": (10 * UM, 50 * UM),
+    "setup_rotation": (20 * URAD, 100 * URAD),
+}
+"""Smallest and largest peak amplitude of each class of error, mm or rad.
+
+The translations of a linear axis (50 to 100 µm) and the upper end of those of a rotary axis (10 µm)
+are those of the D-MT paper's figures 2 and 3; the angular ones of a linear axis take the same
+figures in µrad, over which the paper is silent; the rest are typical of neglected machines of this
+class and are ours.
+"""
+
+
+def error_class(chain: Chain, symbol: Symbol) -> str:
+    """Class of an error parameter: one of the keys of `DEFAULT_RANGES`."""
+    kind = chain.link(symbol.link).kind
+    motion = "rotation" if symbol.is_angular else "translation"
+    if symbol.family is Family.SETUP:
+        return f"setup_{motion}"
+    if symbol.family is Family.COMPONENT:
+        return f"{kind}_{motion}"
+    if kind == "linear":
+        return "squareness" if symbol.is_angular else "linear_zero"
+    if not symbol.is_angular:
+        return "rotary_location"
+    own = chain.link(symbol.link).own
+    return "rotary_zero" if symbol.component - 3 == own else "rotary_tilt"
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Expected amplitude of every error: by class, or by name where a name is given.
+
+    Attributes:
+        by_class: Smallest and largest peak amplitude of each class, mm or rad.
+        by_name: The same for single parameters, which go before their class.
+    """
+
+    by_class: Mapping[str, tuple[float, float]] = field(default_factory=lambda: DEFAULT_RANGES)
+    by_name: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def of(self, chain: Chain, symbol: Symbol) -> tuple[float, float]:
+        """Smallest and largest peak amplitude of one parameter, mm or rad."""
+        if symbol.name in self.by_name:
+            return self.by_name[symbol.name]
+        return self.by_class[error_class(chain, symbol)]
+
+    def sd(self, chain: Chain, symbol: Symbol) -> float:
+        """Standard deviation of an amplitude drawn evenly from its range with a random sign.
+
+        ``sqrt((a^2 + a b + b^2)/3)`` for the range [a, b].
+        """
+        low, high = self.of(chain, symbol)
+        return math.sqrt((low * low + low * high + high * high) / 3.0)

@@ -1,0 +1,133 @@
+"""What an effect is: where in the machine it acts, and how much per unit of its parameters."""
+
+from collections.abc import Mapping, Sequence
+from typing import Literal, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+
+from twin.frames import Array
+from twin.machine import Contribution
+from twin.record import Touches
+
+Part = Literal["twist", "place", "shift", "bias"]
+
+
+class Where(NamedTuple):
+    """One entry of a contribution: the part, the link (0 for shift, bias) and the component."""
+
+    part: Part
+    link: int = 0
+    component: int = 0
+
+
+class Term(NamedTuple):
+    """How much one parameter of an effect adds at one place, per unit, at every touch.
+
+    Attributes:
+        parameter: Index into the effect's parameters.
+        where: Entry of the contribution that it adds to.
+        amount: Per unit of the parameter, shape (N,).
+    """
+
+    parameter: int
+    where: Where
+    amount: Array
+
+
+class Parameter(NamedTuple):
+    """A number that an effect leaves open and that it depends on linearly.
+
+    Attributes:
+        name: Word of the trade, unique within its effect.
+        unit: Base unit, "mm", "rad", "1/K", "mm/K"; `units.shown` tells how a user sees it.
+        sd: Standard deviation that is expected before any measurement, base unit.
+    """
+
+    name: str
+    unit: str
+    sd: float
+
+
+@runtime_checkable
+class Effect(Protocol):
+    """A physical cause of deviations: thirty lines, one closed formula.
+
+    Attributes:
+        name: `kind(arguments)`, as written in files and reports.
+        kind: The first word of the name.
+        parameters: What it depends on linearly.
+    """
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+
+    @property
+    def kind(self) -> str: ...  # noqa: D102
+
+    @property
+    def parameters(self) -> Sequence[Parameter]: ...  # noqa: D102
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Where and how much it acts, per unit of each parameter, at every touch."""
+        ...
+
+
+def contribution(
+    effects: Mapping[Effect, Array] | Sequence[tuple[Effect, Array]], touches: Touches
+) -> Contribution:
+    """Sum of what effects with known parameters add at every touch.
+
+    Args:
+        effects: Pairs of an effect and its parameters (P,), base units.
+        touches: The touches or poses.
+    """
+    total = Contribution.zeros(len(touches), len(touches.chain.links))
+    pairs = effects.items() if isinstance(effects, Mapping) else effects
+    for effect, theta in pairs:
+        for term in effect.terms(touches):
+            add(total, term.where, np.asarray(theta, dtype=float)[term.parameter] * term.amount)
+    return total
+
+
+def add(total: Contribution, where: Where, amount: Array) -> None:
+    """Add an amount (N,) to one entry of a contribution, in place."""
+    if where.part == "bias":
+        total.bias[:] += amount
+    elif where.part == "shift":
+        total.shift[:, where.component] += amount
+    else:
+        getattr(total, where.part)[:, where.link, where.component] += amount
+
+
+class Inner(NamedTuple):
+    """A parameter that an effect depends on non-linearly: scanned on a grid, then refined.
+
+    Attributes:
+        name: Word of the trade: "tau", "period", "instant", "lobes" ...
+        unit: Base unit: "s", "mm", "rad", "1".
+        grid: Values to scan, ascending, (G,), base units.
+        continuous: Whether values between those of the grid make sense.
+    """
+
+    name: str
+    unit: str
+    grid: Array
+    continuous: bool = True
+
+
+@runtime_checkable
+class Tunable(Effect, Protocol):
+    """An effect with inner parameters."""
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """Its inner parameters, with the grids that these touches can support."""
+        ...
+
+    def tuned(self, *values: float) -> "Tunable":
+        """The same effect with these values of its inner parameters."""
+        ...
+
+    @property
+    def tuning(self) -> Mapping[str, float]:
+        """Present values of the inner parameters, base units."""
+        ...

@@ -1,0 +1,138 @@
+"""A machine with the effects that are in its model: exact deviations, and linear columns."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from twin.frames import Array, apply, inverse
+from twin.machine import Chain, Contribution, exact_tip, tip
+from twin.model.effect import Effect, Parameter, contribution
+from twin.record import Touches
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Chain plus effects; parameters of all effects stand in one vector, effect after effect.
+
+    Attributes:
+        chain: The machine.
+        effects: The physics in the model.
+    """
+
+    chain: Chain
+    effects: tuple[Effect, ...]
+
+    @cached_property
+    def parameters(self) -> tuple[tuple[Effect, Parameter], ...]:
+        """Every parameter with its effect, in the order of the parameter vector."""
+        return tuple((e, p) for e in self.effects for p in e.parameters)
+
+    @cached_property
+    def prior_sd(self) -> Array:
+        """Expected standard deviation of every parameter, (P,), base units."""
+        return np.array([p.sd for _, p in self.parameters])
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """`effect: parameter`, or the effect alone where it has one parameter."""
+        return tuple(
+            e.name if len(e.parameters) == 1 else f"{e.name}: {p.name}" for e, p in self.parameters
+        )
+
+    def columns(self, touches: Touches) -> Array:
+        """Deviation along the normal per unit of every parameter, first order, (N, P)."""
+        return columns(self.effects, touches)
+
+    def tip_columns(self, touches: Touches) -> Array:
+        """Deviation of the tip in the table frame per unit of every parameter, (N, 3, P).
+
+        What moves only the standard or the reading of the probe does not move the tip.
+        """
+        return self._displacements(touches, {"twist", "place"})
+
+    def relative_columns(self, touches: Touches) -> Array:
+        """Displacement of the tip relative to the standard per unit of every parameter, (N, 3, P).
+
+        In the table frame: the deviation of the tip minus the shift of the standard.
+        """
+        return self._displacements(touches, {"twist", "place", "shift"})
+
+    def _displacements(self, touches: Touches, parts: set[str]) -> Array:
+        out = np.zeros((len(touches), 3, len(self.parameters)))
+        start = 0
+        for effect in self.effects:
+            for term in effect.terms(touches):
+                part, link, component = term.where
+                column = out[:, :, start + term.parameter]
+                if part in parts and part == "shift":
+                    column[:, component] -= term.amount
+                elif part in parts:
+                    per_unit = getattr(touches.reach, part)[:, link, component]
+                    column += term.amount[:, None] * per_unit
+            start += len(effect.parameters)
+        return out
+
+    def contribution(self, touches: Touches, theta: Array) -> Contribution:
+        """What all effects add at every touch for a parameter vector (P,)."""
+        pairs: list[tuple[Effect, Array]] = []
+        start = 0
+        for effect in self.effects:
+            count = len(effect.parameters)
+            pairs.append((effect, theta[start : start + count]))
+            start += count
+        return contribution(pairs, touches)
+
+    def tip_deviation(self, touches: Touches, theta: Array) -> Array:
+        """Exact deviation of the tip in the table frame, actual minus nominal, (N, 3), mm."""
+        added = self.contribution(touches, theta)
+        actual = exact_tip(self.chain, touches.q, touches.length, added)
+        return actual - tip(self.chain, touches.q, touches.length)
+
+    def relative_deviation(self, touches: Touches, theta: Array) -> Array:
+        """Exact displacement of the ball centre relative to the standard, artefact frame, (N, 3).
+
+        Where the ball really is, as seen from the standard, minus where readings and stated set-up
+        put it, mm.
+        """
+        added = self.contribution(touches, theta)
+        actual = exact_tip(self.chain, touches.q, touches.length, added) - added.shift
+        return apply(inverse(touches.T_table_artefact), actual) - touches.ball_artefact
+
+    def deviation(self, touches: Touches, theta: Array) -> Array:
+        """Deviation along the normal that a controller would measure, with the exact chain, (N,).
+
+        ``dev = -n . (tip deviation - shift of the standard) + bias``. Holds where the surface is
+        plane over the deviation; a curved one is met by moving the axes (`probe_paths`).
+        """
+        moved = self.relative_deviation(touches, theta)
+        bias = self.contribution(touches, theta).bias
+        return -np.einsum("ni,ni->n", touches.normal, moved) + bias
+
+
+def columns(effects: Sequence[Effect], touches: Touches) -> Array:
+    """Deviation along the normal per unit of every parameter of some effects, first order.
+
+    Args:
+        effects: Any effects of the machine.
+        touches: N touches.
+
+    Returns:
+        Shape (N, P), mm per base unit of each parameter.
+    """
+    out = np.zeros((len(touches), sum(len(e.parameters) for e in effects)), order="F")
+    signature = touches.signature
+    start = 0
+    for effect in effects:
+        for term in effect.terms(touches):
+            part, link, component = term.where
+            if part == "bias":
+                per_unit = signature.bias
+            elif part == "shift":
+                per_unit = signature.shift[:, component]
+            else:
+                per_unit = getattr(signature, part)[:, link, component]
+            out[:, start + term.parameter] += term.amount * per_unit
+        start += len(effect.parameters)
+    return out

@@ -1,0 +1,80 @@
+"""Rows that are copies of others: a measurement that is counted twice is believed twice."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.record.run import Run
+from twin.units import NM
+
+BoolArray = NDArray[np.bool_]
+
+FEWEST = 8
+"""Fewer rows that agree with an earlier one to the last digit may be chance."""
+
+MOSTLY = 0.6
+"""Share of the repeated touches that must agree so: honest ones rarely do, unless readings are much
+coarser than the noise."""
+
+SAME_PLACE = 0.05
+"""Touches whose readings lie within this (mm, or mrad) at one calibrated point are repeated."""
+
+
+def counted_once(run: Run) -> Run:
+    """The run without copied rows, and a remark that says so; the run itself if there are none.
+
+    A row that stands twice, its time included, is a copy. So are rows that agree with earlier ones
+    in every reading and in the deviation to the last digit at other times, if most touches that are
+    repeated do: the noise of real ones differs.
+
+    Example:
+        A file that was pasted twice under itself counts once.
+    """
+    out, remarks = run, list(run.remarks)
+    same = _copies(run, with_time=True)
+    if same.any():
+        out = out[~same]
+        remarks.append(_words(run, same, "stand twice" if same.sum() > 1 else "stands twice"))
+    again = _copies(out, with_time=False)
+    if again.sum() >= FEWEST and again.sum() > MOSTLY * _repeated(out):
+        remarks.append(
+            _words(out, again, "repeat the readings and the deviation of earlier rows exactly")
+        )
+        out = out[~again]
+    return replace(out, remarks=tuple(remarks)) if out is not run else run
+
+
+def _copies(run: Run, with_time: bool) -> BoolArray:
+    """Rows that agree with an earlier one in everything measured, (N,)."""
+    t = run.touches
+    key = [t.q, t.point, t.normal, t.setup, run.deviation]
+    return _later(np.column_stack([*key, t.time] if with_time else key))
+
+
+def _repeated(run: Run) -> int:
+    """Number of touches that were made before at nearly the same readings."""
+    t = run.touches
+    scale = np.array([1.0 if link == "linear" else 1e-3 for link in _kinds(run)]) * SAME_PLACE
+    cells = np.round(t.q / scale)
+    return int(_later(np.column_stack([cells, np.round(t.point / NM), t.setup])).sum())
+
+
+def _kinds(run: Run) -> list[str]:
+    chain = run.touches.chain
+    return [chain.link(axis).kind for axis in chain.axes]
+
+
+def _later(key: NDArray[np.float64]) -> BoolArray:
+    """Rows of a table that stand higher up already, (N,)."""
+    first = np.unique(key, axis=0, return_index=True)[1]
+    later = np.ones(len(key), dtype=bool)
+    later[first] = False
+    return later
+
+
+def _words(run: Run, copies: BoolArray, what: str) -> str:
+    count = int(copies.sum())
+    rows = "row" if count == 1 else "rows"
+    line = int(run.line[np.argmax(copies)])
+    return f"line {line}: {count} {rows} {what}; copies are left out, each touch counts once"

@@ -1,0 +1,69 @@
+"""`Run`: measured deviations of touches, with what the reader of the file noticed."""
+
+import hashlib
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.errors import ShapeMismatch
+from twin.frames import Array
+from twin.record.touches import IntArray, Labels, Touches
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Measurements: touches with their deviations and standard uncertainties.
+
+    Attributes:
+        touches: Where, when and in which state.
+        deviation: Signed distance along the normal, (N,), mm.
+        u: Standard uncertainty of each deviation as stated, (N,), mm.
+        split: "train", "test" or "" for each row, (N,).
+        repeat: Number of the repetition, equal points share everything else; None if not recorded.
+        line: Line of each row in its file, for messages, (N,).
+        remarks: What the reader noticed and did about it, one clear line each.
+    """
+
+    touches: Touches
+    deviation: Array
+    u: Array
+    split: Labels = field(default_factory=lambda: np.zeros(0, dtype="U5"))
+    repeat: IntArray | None = None
+    line: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    remarks: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        n = len(self.touches)
+        if len(self.split) == 0 and n:
+            object.__setattr__(self, "split", np.full(n, "", dtype="U5"))
+        if len(self.line) == 0 and n:
+            object.__setattr__(self, "line", np.arange(1, n + 1))
+        for name in ("deviation", "u", "split", "repeat", "line"):
+            value = getattr(self, name)
+            if value is not None and len(value) != n:
+                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as the touches")
+
+    def __len__(self) -> int:
+        return len(self.touches)
+
+    @property
+    def fingerprint(self) -> str:
+        """Short digest of readings, points and deviations: the same run has it whenever read."""
+        t = self.touches
+        digest = hashlib.sha256()
+        for values in (t.q, t.point, t.normal, self.deviation):
+            digest.update((np.round(values, 9) + 0.0).tobytes())  # + 0.0: no negative zeros
+        return digest.hexdigest()[:16]
+
+    def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Run":
+        """The measurements of some rows, as a new record."""
+        return replace(
+            self,
+            touches=self.touches[rows],
+            deviation=self.deviation[rows],
+            u=self.u[rows],
+            split=self.split[rows],
+            repeat=None if self.repeat is None else self.repeat[rows],
+            line=self.line[rows],
+        )

@@ -1,0 +1,204 @@
+"""`Touches`: all that is known about N contacts, the one record that flows through the house."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.errors import ShapeMismatch
+from twin.frames import Array, apply, inverse, turn
+from twin.machine import Chain, Reach, checked_readings, linear_directions, reach, tip
+
+IntArray = NDArray[np.int64]
+Labels = NDArray[np.str_]
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """One placement of the standard on the table.
+
+    Attributes:
+        name: Label in the run file.
+        T_table_artefact: Pose (4, 4), takes artefact coordinates to table coordinates.
+    """
+
+    name: str
+    T_table_artefact: Array = field(default_factory=lambda: np.eye(4))
+
+
+class Signature:
+    """Deviation along the normal per unit of every entry of a contribution, first order.
+
+    The ball moves relative to the standard by the tip's deviation minus the standard's shift; a
+    controller that believes in the nominal machine sees the surface stand outside by minus the
+    normal part of that, plus the bias.
+    """
+
+    def __init__(self, reached: Reach, normal: Array) -> None:
+        self.twist = -np.einsum("nlci,ni->nlc", reached.twist, normal)
+        self.place = -np.einsum("nlci,ni->nlc", reached.place, normal)
+        self.shift = normal
+        self.bias = np.ones(len(normal))
+
+
+@dataclass(frozen=True, eq=False)
+class Touches:
+    """N contacts of a probe with a standard (or readings of any instrument along a direction).
+
+    Attributes:
+        chain: The machine.
+        q: Axis readings at the trigger, (N, A), mm and rad.
+        length: Probe length to the ball centre, (N,), mm.
+        radius: Of the ball, (N,), mm.
+        point: Calibrated contact point, artefact frame, (N, 3), mm.
+        normal: Outward unit normal there, artefact frame, (N, 3).
+        setups: The placements of the standard.
+        setup: Index into `setups`, (N,).
+        time: s since the start of the run, (N,).
+        approach: Sign of the last motion of each axis, (N, A); 0 where unknown.
+        temperature: degC by sensor name, each (N,).
+        spindle_rpm: (N,), or None where it was not recorded.
+        force: Load on the tool in table-frame directions, (N, 3), N.
+        feature: Label of the touched feature, (N,).
+        pose: Label of the table pose, (N,).
+    """
+
+    chain: Chain
+    q: Array
+    length: Array
+    radius: Array
+    point: Array
+    normal: Array
+    setups: tuple[Setup, ...]
+    setup: IntArray
+    time: Array
+    approach: Array
+    temperature: Mapping[str, Array] = field(default_factory=dict)
+    spindle_rpm: Array | None = None
+    force: Array | None = None
+    feature: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
+    pose: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    def __post_init__(self) -> None:
+        n = len(checked_readings(self.chain, self.q))
+        if len(self.feature) == 0 and n:
+            object.__setattr__(self, "feature", np.full(n, "", dtype="U1"))
+        if len(self.pose) == 0 and n:
+            object.__setattr__(self, "pose", np.zeros(n, dtype=np.int64))
+        for name in _PER_TOUCH:
+            value = getattr(self, name)
+            if value is not None and len(value) != n:
+                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as in q")
+        for sensor, value in self.temperature.items():
+            if len(value) != n:
+                raise ShapeMismatch(f"temperature {sensor} has {len(value)} rows, expected {n}")
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Touches":
+        """The touches of some rows, as a new record."""
+        picked = {
+            name: getattr(self, name)[rows]
+            for name in _PER_TOUCH
+            if getattr(self, name) is not None
+        }
+        temperature = {sensor: value[rows] for sensor, value in self.temperature.items()}
+        return replace(self, temperature=temperature, **picked)
+
+    def reading(self, axis: str) -> Array:
+        """Readings of one axis, (N,), mm or rad; raises UnknownAxis."""
+        return self.q[:, self.chain.axis_index(axis)]
+
+    def last_move(self, axis: str) -> Array:
+        """Sign of the last motion of one axis, (N,); raises UnknownAxis."""
+        return self.approach[:, self.chain.axis_index(axis)]
+
+    @cached_property
+    def T_table_artefact(self) -> Array:
+        """Pose of the standard at every touch, (N, 4, 4)."""
+        return np.stack([s.T_table_artefact for s in self.setups])[self.setup]
+
+    @cached_property
+    def point_table(self) -> Array:
+        """Contact points in the table frame, (N, 3), mm."""
+        return apply(self.T_table_artefact, self.point)
+
+    @cached_property
+    def normal_table(self) -> Array:
+        """Outward normals in the table frame, (N, 3)."""
+        return turn(self.T_table_artefact, self.normal)
+
+    @cached_property
+    def ball_artefact(self) -> Array:
+        """Nominal ball centre in the artefact frame, (N, 3), mm."""
+        return apply(inverse(self.T_table_artefact), tip(self.chain, self.q, self.length))
+
+    @cached_property
+    def reach(self) -> Reach:
+        """First-order deviations of the ball centre per unit of every error."""
+        return reach(self.chain, self.q, self.length)
+
+    @cached_property
+    def signature(self) -> Signature:
+        """First-order deviation along the normal per unit of every entry of a contribution."""
+        return Signature(self.reach, self.normal_table)
+
+
+_PER_TOUCH = [f.name for f in fields(Touches) if f.name not in ("chain", "setups", "temperature")]
+
+
+def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
+    """Poses without a standard, for maps over the workspace: normals are zero.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A), mm and rad.
+        length: Tool length, scalar or (N,), mm.
+    """
+    q = checked_readings(chain, q)
+    n = len(q)
+    return Touches(
+        chain=chain,
+        q=q,
+        length=np.broadcast_to(np.asarray(length, dtype=float), (n,)).copy(),
+        radius=np.zeros(n),
+        point=tip(chain, q, length),
+        normal=np.zeros((n, 3)),
+        setups=(Setup("table"),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=np.zeros(n),
+        approach=np.zeros((n, len(chain.axes))),
+    )
+
+
+def linear_approach(chain: Chain, q: Array, normal_table: Array) -> Array:
+    """Signs of the last motion of the linear axes of a touch, which runs against the normal.
+
+    Args:
+        chain: The machine.
+        q: Readings, shape (N, A).
+        normal_table: Outward normals in the table frame, (N, 3).
+
+    Returns:
+        Shape (N, A): -1, 0 or 1 in the columns of the linear axes, 0 elsewhere.
+    """
+    out = np.zeros(q.shape)
+    columns = [chain.axis_index(name) for name in chain.linear_axes]
+    D = linear_directions(chain, q)
+    # least squares, because an instrument may stand on a machine with fewer than three linear axes
+    velocity = -np.einsum("nmi,ni->nm", np.linalg.pinv(D), normal_table)
+    out[:, columns] = np.where(np.abs(velocity) > 1e-9, np.sign(velocity), 0.0)
+    return out
+
+
+def computed_deviation(touches: Touches) -> Array:
+    """Measured deviation of every touch from its readings, (N,), mm.
+
+    ``dev = n . (nominal ball centre - p) - radius``: the signed distance along the normal by which
+    a controller that believes in the nominal machine sees the surface outside its place.
+    """
+    offset = touches.ball_artefact - touches.point
+    return np.einsum("ni,ni->n", touches.normal, offset) - touches.radius
