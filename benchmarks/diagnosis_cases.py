@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-import diagnosis.answer.diagnose as diagnosing
+import diagnosis.answer.run_diagnosis as diagnosing
 from diagnosis.answer import Diagnosis, Step, Verdict
 from twin.files import read_run
 from twin.units import UM

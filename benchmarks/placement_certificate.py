@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from artefact.layout import Frame
-from artefact.reach import Probing
+from artefact.layout import Blank
+from artefact.reach import ProbeReach
 from artefact.worth import criterion, random_touches
 from information.selection import heaviest, relaxed, rounded
 from probe_paths.plan import Probe
@@ -68,9 +68,9 @@ def main() -> list[Result]:
 
 def _designs(chain: Chain, model: Model) -> list[Result]:
     probe, rng = Probe(), np.random.default_rng(1)
-    probing = Probing(chain, Setup("a"), probe.shape, probe.length)
+    probing = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     workspace = Workspace(chain, {}, probe.length)
-    aim = criterion(probing, model, Frame(), workspace, 1.0 * UM, rng)
+    aim = criterion(probing, model, Blank(), workspace, 1.0 * UM, rng)
     wanted = random_touches(probing, aim.volume, aim.rotary, CANDIDATES, rng)
     W = aim.rows(wanted)
     print(

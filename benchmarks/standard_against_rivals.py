@@ -13,9 +13,9 @@ import numpy as np
 
 from artefact.brief import read_project
 from artefact.compare import Rival
-from artefact.layout import Fittings, Frame
+from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions, place
-from artefact.reach import Probing
+from artefact.reach import ProbeReach
 from probe_paths.plan import Probe
 from sensitivity.first_order import Workspace
 from twin.units import UM
@@ -30,8 +30,8 @@ def rivals_of(seed: int) -> tuple[Rival, ...]:
     project = read_project(PROJECT)
     probe = Probe(project.probe_radius, project.probe_length)
     placement = place(
-        Probing(project.chain, project.setup, probe.shape, probe.length),
-        Frame(fittings=Fittings(sphere_heights=(60.0, 95.0, 130.0))),
+        ProbeReach(project.chain, project.setup, probe.shape, probe.length),
+        Blank(fittings=Fittings(sphere_heights=(60.0, 95.0, 130.0))),
         Workspace(project.chain, project.workspace, project.probe_length),
         np.random.default_rng(seed),
         project.ranges,

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.layout import Frame
+from artefact.layout import Blank
 from artefact.place import PlacementOptions, place
-from artefact.reach import Probing
+from artefact.reach import ProbeReach
 from probe_paths.plan import Probe
 from sensitivity.first_order import Workspace
 from twin.files import read_machine
@@ -25,9 +25,9 @@ LIMITS = {"X": (-150.0, 150.0), "Y": (-150.0, 150.0), "B": (-90 * DEG, 20 * DEG)
 
 def main():
     chain, probe = read_machine(HERE / "hsm600u-machine.toml"), Probe()
-    probing = Probing(chain, Setup("a"), probe.shape, probe.length)
+    probing = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     workspace = Workspace(chain, LIMITS, probe.length)
-    placed = place(probing, Frame(), workspace, np.random.default_rng(600), options=OPTIONS)
+    placed = place(probing, Blank(), workspace, np.random.default_rng(600), options=OPTIONS)
     return {
         "placement": placed,
         "not predicted before any touch, µm": placed.before[0] / UM,

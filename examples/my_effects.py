@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.library import Kind
-from twin.model import Inner, Parameter, Term, Where
+from twin.model import Inner, Kind, Parameter, Term, Where
 from twin.units import UM
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from artefact.body import write_standard
 from artefact.brief import Project
-from artefact.compare import knowable, write_identifiability
+from artefact.compare import identifiability_report, write_identifiability
 from artefact.place import Placement, place
 from cad_out.verify import export_standard
 from diagnosis.answer import probed_volume, prove
@@ -56,7 +56,7 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     placement = _placement(project, workspace, rng_place, progress)
     write_standard(folder / "standard.toml", placement.standard)
     progress("what can be told apart", 0, 1)
-    known = knowable(placement.criterion, placement.requests, rng_known)
+    known = identifiability_report(placement.criterion, placement.requests, rng_known)
     write_identifiability(folder / "identifiability.json", known)
     study = run_study(
         population,

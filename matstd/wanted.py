@@ -2,9 +2,9 @@
 
 from artefact.body import Base, Limits, Material
 from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, Project
-from artefact.layout import Fittings, Frame
+from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
-from artefact.reach import Probing
+from artefact.reach import ProbeReach
 from probe_paths.plan import Probe
 from twin.units import DEG, KG_M3
 
@@ -18,10 +18,10 @@ def probe(project: Project) -> Probe:
     return Probe(project.probe_radius, project.probe_length)
 
 
-def probing(project: Project) -> Probing:
+def probing(project: Project) -> ProbeReach:
     """Machine, probe, table and place of the standard."""
     tool = probe(project)
-    return Probing(
+    return ProbeReach(
         project.chain,
         project.setup,
         tool.shape,
@@ -30,12 +30,12 @@ def probing(project: Project) -> Probing:
     )
 
 
-def frame(project: Project) -> Frame:
+def frame(project: Project) -> Blank:
     """Blank, fittings, material and limits of the standard."""
     wanted, blank, limits = project.standard, project.blank, project.limits
     a, b = blank.base_mm
     low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * blank.height_mm
-    return Frame(
+    return Blank(
         base=Base((0.5 * a, 0.5 * b), CORNER_RADIUS, BASE_THICKNESS),
         fittings=Fittings(sphere_heights=(low, round(0.5 * (low + high), 1), round(high, 1))),
         material=Material(wanted.material, wanted.density_kg_m3 * KG_M3, wanted.expansion_per_K),

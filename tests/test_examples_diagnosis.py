@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.answer.diagnose import diagnose
+from diagnosis.answer.run_diagnosis import diagnose
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
 from twin.units import NM, UM

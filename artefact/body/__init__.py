@@ -1,6 +1,8 @@
 """Shapes and bodies of a standard, its limits and its file."""
 
-from artefact.body.constraints import (
+from artefact.body.datum import DatumSphere, MountingHole
+from artefact.body.freeform import OVERHANG, ErrorShare, FreeformPatch, graph_patch
+from artefact.body.limits import (
     Constraint,
     Limits,
     check,
@@ -9,8 +11,6 @@ from artefact.body.constraints import (
     min_concave_radius,
     overhang,
 )
-from artefact.body.datum import DatumSphere, MountingHole
-from artefact.body.freeform import OVERHANG, ErrorShare, FreeformPatch, graph_patch
 from artefact.body.patch import Mask, Meeting, Surface, rows, sphere_entry, unit
 from artefact.body.solids import Plate, entry
 from artefact.body.spline import Jet

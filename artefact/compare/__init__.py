@@ -1,16 +1,21 @@
 """A standard against other artefacts, stylus lengths and set-ups."""
 
 from artefact.compare.comparison import Rival, before, compare, judged, random_lots
-from artefact.compare.knowable import Alone, Knowable, knowable, write_identifiability
+from artefact.compare.identifiability import (
+    Alone,
+    IdentifiabilityReport,
+    identifiability_report,
+    write_identifiability,
+)
 
 __all__ = [
     "Alone",
-    "Knowable",
+    "IdentifiabilityReport",
     "Rival",
     "before",
     "compare",
+    "identifiability_report",
     "judged",
-    "knowable",
     "random_lots",
     "write_identifiability",
 ]

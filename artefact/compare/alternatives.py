@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.reach import Probing, Requests
+from artefact.reach import ProbeReach, Requests
 from artefact.worth import Criterion
 from information.criteria import Posterior, purpose, whitened
 from information.identifiability import seen
@@ -70,7 +70,7 @@ class Alternative:
     words: str
 
 
-def ways(aim: Criterion) -> dict[str, Probing]:
+def ways(aim: Criterion) -> dict[str, ProbeReach]:
     """Other ways to measure: another stylus, other set-ups; by name."""
     probing = aim.probing
     out = {"a second stylus length": replace(probing, length=probing.length + STYLUS)}
@@ -80,7 +80,7 @@ def ways(aim: Criterion) -> dict[str, Probing]:
     return out
 
 
-def tried_in(way: Probing, requests: Requests, rng: np.random.Generator) -> Requests:
+def tried_in(way: ProbeReach, requests: Requests, rng: np.random.Generator) -> Requests:
     """Touches of the same points at the same table poses that a way to measure reaches."""
     poses = np.unique(np.round(requests.rotary, 9), axis=0)
     n = len(requests)
@@ -89,7 +89,7 @@ def tried_in(way: Probing, requests: Requests, rng: np.random.Generator) -> Requ
     return tried[np.flatnonzero(way.is_reachable(tried))[:_MOST]]
 
 
-def both(aim: Criterion, first: Requests, second: Requests, way: Probing) -> Measured:
+def both(aim: Criterion, first: Requests, second: Requests, way: ProbeReach) -> Measured:
     """Rows of touches made as now, and of others made in another way."""
     model = aim.model
     W = [whitened(model.columns(aim.probing.touches(first)), aim.prior_sd, aim.noise)]
@@ -103,7 +103,7 @@ def both(aim: Criterion, first: Requests, second: Requests, way: Probing) -> Mea
     return Measured(rows, np.concatenate([aim.prior_sd, aim.prior_sd[own]]))
 
 
-def _own(aim: Criterion, way: Probing) -> IntArray:
+def _own(aim: Criterion, way: ProbeReach) -> IntArray:
     """Parameters that are others in another way to measure: of the set-up, or of the tool."""
     link = "w" if way.length == aim.probing.length else "t"
     if way is aim.probing:
@@ -157,7 +157,7 @@ def alternatives(
 
 
 def _bought(
-    aim: Criterion, requests: Requests, half: Requests, way: Probing, rng: np.random.Generator
+    aim: Criterion, requests: Requests, half: Requests, way: ProbeReach, rng: np.random.Generator
 ) -> tuple[int, float]:
     """Machine rank and mean predicted variance, mm^2, with the other half made in some way.
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.body import Standard
-from artefact.layout import Frame, rivals
+from artefact.layout import Blank, rivals
 from artefact.reach import Requests, joined
 from artefact.worth import (
     Criterion,
@@ -17,7 +17,7 @@ from artefact.worth import (
     some_touches,
 )
 from information.criteria import Posterior, prior_sd_of_tip
-from information.selection import Purpose, Selection, exchange, fill
+from information.selection import DesignCriterion, Selection, exchange, fill
 from twin.frames import Array
 
 _TRIED = 3000  # touches that the ideal scatter may choose from
@@ -116,7 +116,7 @@ def compare(
     aim: Criterion,
     all_poses: Array,
     poses: Array,
-    frame: Frame,
+    frame: Blank,
     options: PlacementOptions,
     library: Visibility,
     rng: np.random.Generator,
@@ -159,7 +159,7 @@ def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[R
 
 
 def chosen_touches(
-    aim: Criterion, what_for: Purpose, tried: Requests, options: PlacementOptions
+    aim: Criterion, what_for: DesignCriterion, tried: Requests, options: PlacementOptions
 ) -> Requests:
     """Touches chosen greedily and mended by exchange, with no quota but that of the poses."""
     count = min(options.touches, len(tried))

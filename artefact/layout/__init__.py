@@ -8,15 +8,15 @@ from artefact.layout.candidates import (
     random_sites,
     strength,
 )
-from artefact.layout.rivals import rivals
-from artefact.layout.sites import Fittings, Frame, Site, patch_of_site, standard_from_sites
+from artefact.layout.rival_artefacts import rivals
+from artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard_from_sites
 
 __all__ = [
     "CONTROL",
     "STEEPEST",
     "TALLEST",
+    "Blank",
     "Fittings",
-    "Frame",
     "Site",
     "neighbours_fit",
     "patch_of_site",

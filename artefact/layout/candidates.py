@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from artefact.body import Base, Jet, Limits, graph_patch, overhang
-from artefact.layout.sites import Frame, Site, patch_of_site
+from artefact.layout.sites import Blank, Site, patch_of_site
 from twin.errors import NotBuildable
 from twin.frames import Array
 from twin.units import DEG
@@ -126,7 +126,7 @@ def _largest_curvature(j: Jet, factor: float) -> float:
     return float((mean + np.sqrt(np.maximum(mean**2 - gauss, 0.0))).max())
 
 
-def random_sites(frame: Frame, count: int, rng: np.random.Generator) -> list[Site]:
+def random_sites(frame: Blank, count: int, rng: np.random.Generator) -> list[Site]:
     """Sites all over a blank, each with a random shape, its column within the blank's outline.
 
     Args:
@@ -145,7 +145,7 @@ def random_sites(frame: Frame, count: int, rng: np.random.Generator) -> list[Sit
     return sites
 
 
-def _site(frame: Frame, ring: Ring, azimuth: float, rng: np.random.Generator) -> Site:
+def _site(frame: Blank, ring: Ring, azimuth: float, rng: np.random.Generator) -> Site:
     """One site of a ring, as near to an azimuth as its column can stand."""
     wide = min(frame.base.half_size) / 140.0
     tall = frame.blank_height / 220.0
@@ -175,7 +175,7 @@ def _is_within(site: Site, base: Base) -> bool:
         return False
 
 
-def neighbours_fit(sites: list[Site], frame: Frame) -> NDArray[np.bool_]:
+def neighbours_fit(sites: list[Site], frame: Blank) -> NDArray[np.bool_]:
     """Which sites can stand beside each other, (S, S).
 
     The ball must have room over every face before the other column, taken as a box as tall as the

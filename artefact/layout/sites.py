@@ -101,7 +101,7 @@ class Fittings:
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class Blank:
     """Everything of a standard that is not its patches.
 
     Attributes:
@@ -120,14 +120,14 @@ class Frame:
 
 
 def standard_from_sites(
-    name: str, sites: Iterable[Site], frame: Frame | None = None, serial: str = ""
+    name: str, sites: Iterable[Site], frame: Blank | None = None, serial: str = ""
 ) -> Standard:
     """A whole standard from its sites: patches FF1 ..., columns, core, SPH1 ..., HOLE1 ...
 
     Columns run back along their patch's own direction until they are rooted in the base or reach
     the axis of the standard, where a core as large as their ends receives them. Spheres and
     holes take the places along the rim that are free and as far from each other as possible.
-    The result is not checked against the limits: call `artefact.body.constraints.check`.
+    The result is not checked against the limits: call `artefact.body.limits.check`.
 
     Args:
         name: Type of the standard.
@@ -141,7 +141,7 @@ def standard_from_sites(
     Raises:
         NotBuildable: No site at all, or no free place for a sphere or a hole.
     """
-    frame = frame or Frame()
+    frame = frame or Blank()
     sites = list(sites)
     if not sites:
         raise NotBuildable(f"standard '{name}': no site for a patch")
@@ -216,7 +216,7 @@ def _core(patches: tuple[FreeformPatch, ...], base: Base) -> Core | None:
     return Core(radius + 4.0, radius, float(ends[:, 2].max()) + 1.0)
 
 
-def _spheres(standard: Standard, frame: Frame) -> tuple[DatumSphere, ...]:
+def _spheres(standard: Standard, frame: Blank) -> tuple[DatumSphere, ...]:
     fit, top = frame.fittings, frame.base.thickness
     places = rim(frame.base, fit.foot_radius + 3.0)
     around = fit.sphere_radius + 2.0 * frame.limits.ball_radius + frame.limits.gap
@@ -238,7 +238,7 @@ def _spheres(standard: Standard, frame: Frame) -> tuple[DatumSphere, ...]:
 
 
 def _holes(
-    standard: Standard, spheres: tuple[DatumSphere, ...], frame: Frame
+    standard: Standard, spheres: tuple[DatumSphere, ...], frame: Blank
 ) -> tuple[MountingHole, ...]:
     fit, base = frame.fittings, frame.base
     places = rim(base, fit.bore_radius + 5.0)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from artefact.body import Base, Constraint, Standard, constraints
 from artefact.compare import Rival, before, compare, judged, random_lots
 from artefact.layout import (
-    Frame,
+    Blank,
     Site,
     neighbours_fit,
     patch_of_site,
@@ -23,7 +23,7 @@ from artefact.layout import (
     standard_from_sites,
 )
 from artefact.place.shaping import shaped
-from artefact.reach import Probing, Requests, joined
+from artefact.reach import ProbeReach, Requests, joined
 from artefact.worth import (
     Criterion,
     PlacementOptions,
@@ -83,8 +83,8 @@ class Placement:
 
 
 def place(
-    probing: Probing,
-    frame: Frame,
+    probing: ProbeReach,
+    frame: Blank,
     workspace: Workspace,
     rng: np.random.Generator,
     ranges: Ranges | None = None,
@@ -153,7 +153,7 @@ def place(
     )
 
 
-def _check_blank(base: Base, probing: Probing) -> None:
+def _check_blank(base: Base, probing: ProbeReach) -> None:
     """Refuse a blank whose sides reach beyond the table; its corners may."""
     if max(base.half_size) > probing.table_radius:
         a, b = (2.0 * side for side in base.half_size)
@@ -164,7 +164,7 @@ def _check_blank(base: Base, probing: Probing) -> None:
 
 
 def _standard(
-    aim: Criterion, frame: Frame, poses: Array, options: PlacementOptions, rng: np.random.Generator
+    aim: Criterion, frame: Blank, poses: Array, options: PlacementOptions, rng: np.random.Generator
 ) -> Standard:
     """Choose sites until the whole body meets every limit."""
     sites = random_sites(frame, options.sites, rng)

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from artefact.body import Meeting, Plate, Standard
-from artefact.reach.clearance import (
+from artefact.reach.first_contact import contact
+from artefact.reach.probe_clearance import (
     TABLE_RADIUS,
     TABLE_THICKNESS,
     Clearance,
     ProbeShape,
     clearance_on_table,
 )
-from artefact.reach.first_contact import contact
 from twin.frames import Array, apply, inverse, turn
 from twin.machine import Chain, inverse_linear, linear_directions, table_to_tool
 from twin.record import IntArray, Labels, Setup, Touches, linear_approach
@@ -68,7 +68,7 @@ def joined(parts: list[Requests]) -> Requests:
 
 
 @dataclass(frozen=True, eq=False)
-class Probing:
+class ProbeReach:
     """Machine, probe and place of the standard, with the room that a touch is given.
 
     Attributes:
@@ -121,7 +121,7 @@ class Probing:
         q[:, linear] = stands.q[i][:, linear] + (stands.inverse[i] @ way)[..., 0]
         return q
 
-    def _stands(self, wanted: Requests) -> "_Stands":
+    def _stands(self, wanted: Requests) -> "_PoseCaches":
         """The table poses of touches, with all that depends on the pose alone."""
         chain = self.chain
         poses, index = np.unique(wanted.rotary, axis=0, return_inverse=True)
@@ -131,7 +131,7 @@ class Probing:
         q = inverse_linear(chain, target, q, self.length)
         along = linear_directions(chain, q)
         unit = np.broadcast_to(np.eye(3), along.shape)
-        return _Stands(
+        return _PoseCaches(
             index=index.reshape(-1),
             q=q,
             tip=target,
@@ -294,7 +294,7 @@ def _met(what: Meeting, name: str) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class _Stands:
+class _PoseCaches:
     """K table poses that N touches are made at.
 
     Attributes:

@@ -1,7 +1,7 @@
 """What touches on a standard are worth, and which of them to choose."""
 
 from artefact.worth.attribution import error_shares, parameter_symbols
-from artefact.worth.criterion import CRITERIA, Criterion, criterion, random_touches
+from artefact.worth.effect_visibility import Visibility, visibility
 from artefact.worth.touch_choice import (
     PlacementOptions,
     chosen_poses,
@@ -14,8 +14,8 @@ from artefact.worth.touch_choice import (
     table_poses,
     touches_to_choose_from,
 )
-from artefact.worth.touch_curve import TouchCurve, touch_curve
-from artefact.worth.visibility import Visibility, visibility
+from artefact.worth.touch_criterion import CRITERIA, Criterion, criterion, random_touches
+from artefact.worth.touch_curves import TouchCurve, touch_curve
 
 __all__ = [
     "CRITERIA",

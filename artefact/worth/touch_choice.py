@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from artefact.body import Standard, Surface
-from artefact.reach import Mask, Probing, Requests, joined
-from artefact.worth.criterion import Criterion, Wishes
+from artefact.reach import Mask, ProbeReach, Requests, joined
+from artefact.worth.touch_criterion import Criterion, CriterionOptions
 from information.selection import Certificate, Quota, best_groups, heaviest, relaxed, rounded
 from twin.compute import blocks
 from twin.errors import DesignError, NotReachable
@@ -38,7 +38,7 @@ class PlacementOptions:
         sites: Number of random sites to choose from.
         noise: Standard deviation of one touch, mm.
         criterion: What sites, poses and touches are chosen for
-        (`artefact.worth.criterion.CRITERIA`).
+        (`artefact.worth.touch_criterion.CRITERIA`).
         sphere_share: Part of the touches that goes to the datum spheres, at least and at most. They
             would take two thirds if they could, but a standard of spheres is no news, and faces
             are what a freeform standard calibrates.
@@ -63,9 +63,9 @@ class PlacementOptions:
     tail: float = 1.0
 
     @property
-    def wishes(self) -> Wishes:
+    def wishes(self) -> CriterionOptions:
         """What the criterion shall be beside its name."""
-        return Wishes(self.potential, self.touches, self.draws, self.tail)
+        return CriterionOptions(self.potential, self.touches, self.draws, self.tail)
 
 
 def table_poses(aim: Criterion, wanted: int) -> Array:
@@ -130,7 +130,7 @@ def touches_at(standard: Standard, poses: Array, pitch: int) -> Requests:
     return joined(parts)
 
 
-def clear_touches(probing: Probing, standard: Standard, wanted: Requests) -> Requests:
+def clear_touches(probing: ProbeReach, standard: Standard, wanted: Requests) -> Requests:
     """Those of the touches that machine and probe can make."""
     wanted = wanted[probing.is_reachable(wanted)]
     return wanted[probing.is_clear(standard, wanted)]

@@ -2,9 +2,9 @@
 
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.detectable import Detectable
-from diagnosis.answer.diagnose import diagnose
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.answer.proof import Proof, probed_volume, prove
+from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.evidence import EffectSet, Signatures, Sized, addition, projected, score_all
+from diagnosis.evidence import EffectSet, ScaledEffect, Signatures, addition, projected, score_all
 from diagnosis.search import refined
 from twin.frames import Array
 from twin.model import Effect
@@ -34,7 +34,7 @@ class Rival:
         overlap: Correlation of what the two explain, 1 where the signatures coincide.
     """
 
-    sized: Sized
+    sized: ScaledEffect
     log_odds: float
     overlap: float
 
@@ -54,7 +54,7 @@ class ConfusionClass:
         told_apart: Next in line, but clearly behind.
     """
 
-    sized: Sized
+    sized: ScaledEffect
     rivals: tuple[Rival, ...]
     told_apart: tuple[Rival, ...]
 
@@ -99,8 +99,8 @@ def _own_sensor(effect: Effect, touches: Touches) -> float:
 
 def confusion_class(
     pool: Signatures,
-    found: Sized,
-    others: Sequence[Sized],
+    found: ScaledEffect,
+    others: Sequence[ScaledEffect],
     fixed: Array | None = None,
 ) -> ConfusionClass:
     """Everything that explains what a found effect explains, with the other effects in place.
@@ -115,7 +115,7 @@ def confusion_class(
     A = projected(complement, others)
     base = EffectSet(complement, A if fixed is None else np.hstack([fixed, A]))
     scores = score_all(base, pool)
-    top, _ = addition(base, projected(complement, [Sized(found.effect)]))
+    top, _ = addition(base, projected(complement, [ScaledEffect(found.effect)]))
     names = {found.effect.name} | {o.effect.name for o in others}
     rivals = [Rival(found, 0.0, 1.0)]
     explained = _explained(base, found)
@@ -137,7 +137,7 @@ def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     return [int(v) for v in ranked if evidence[v] > least][:MOST_RIVALS]
 
 
-def _explained(without: EffectSet, sized: Sized) -> Array:
+def _explained(without: EffectSet, sized: ScaledEffect) -> Array:
     """Direction of what an effect explains beyond a set, (N + P,), of length 1."""
     C = projected(without.complement, [sized])
     whole = EffectSet(without.complement, np.hstack([without.A, C]))

@@ -10,13 +10,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from diagnosis.evidence import Complement, EffectSet, Sized, addition, projected
+from diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
 from diagnosis.fit import (
     PRIOR_DOF,
     Fit,
     GrossErrors,
+    InstantEstimate,
     Reported,
-    Settled,
     continuous_inner,
     fit_run,
     reported,
@@ -45,7 +45,7 @@ INSTANTS = 60
 
 
 def sizes(
-    task: Task, effects: Sequence[Sized], gross: GrossErrors, complement: Complement
+    task: Task, effects: Sequence[ScaledEffect], gross: GrossErrors, complement: ResidualSpace
 ) -> tuple[tuple[Reported, ...], ...]:
     """Parameters of every effect as a user reads them, with their uncertainties.
 
@@ -63,13 +63,13 @@ def sizes(
     wider = float(np.sqrt(dof / max(dof - 2.0, 0.5)))
     out = []
     for i, effect in enumerate(at):
-        moved = [Sized(e, s.scale) for e, s in zip(at, effects, strict=True)]
+        moved = [ScaledEffect(e, s.scale) for e, s in zip(at, effects, strict=True)]
         out.append(reported(fit, effect, wider, _instants(complement, moved, i)))
     return tuple(out)
 
 
 def _settled(
-    task: Task, effects: Sequence[Sized], gross: GrossErrors
+    task: Task, effects: Sequence[ScaledEffect], gross: GrossErrors
 ) -> tuple[Fit, tuple[Effect, ...]]:
     """The fit with tangents at the inner parameters that suit it best, and the effects there."""
     at = [s.effect for s in effects]
@@ -110,15 +110,15 @@ def _stepped(fit: Fit, effects: Sequence[Effect]) -> list[Effect] | None:
 
 
 def _instants(
-    complement: Complement, effects: Sequence[Sized], which: int
-) -> Mapping[int, Settled]:
+    complement: ResidualSpace, effects: Sequence[ScaledEffect], which: int
+) -> Mapping[int, InstantEstimate]:
     """Mean and standard deviation of inner parameters that act by jumps, by their index.
 
     Between two touches every instant is as good as every other; each such interval is weighed by
     its evidence and its length.
     """
     effect = effects[which].effect
-    out: dict[int, Settled] = {}
+    out: dict[int, InstantEstimate] = {}
     if not isinstance(effect, Tunable):
         return out
     others = [s for k, s in enumerate(effects) if k != which]
@@ -131,7 +131,7 @@ def _instants(
     return out
 
 
-def _jumps(complement: Complement, inner: Inner, value: float) -> Array:
+def _jumps(complement: ResidualSpace, inner: Inner, value: float) -> Array:
     """Times of touches around an instant, ascending, within the grid."""
     times = np.unique(complement.touches.time[complement.used])
     first = int(np.searchsorted(times, value)) - INSTANTS
@@ -141,15 +141,15 @@ def _jumps(complement: Complement, inner: Inner, value: float) -> Array:
     return np.concatenate([[low], inside, [high]]) if len(inside) < len(near) else inside
 
 
-def _weighed(base: EffectSet, effect: Tunable, index: int, edges: Array) -> Settled:
+def _weighed(base: EffectSet, effect: Tunable, index: int, edges: Array) -> InstantEstimate:
     """Mean and deviation of an instant over the intervals between some edges."""
     middle, length = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     value = list(effect.tuning.values())[index]
     evidence = np.array(
         [
-            addition(base, projected(base.complement, [Sized(shifted(effect, index, t - value))]))[
-                0
-            ]
+            addition(
+                base, projected(base.complement, [ScaledEffect(shifted(effect, index, t - value))])
+            )[0]
             for t in middle
         ]
     )
@@ -157,4 +157,4 @@ def _weighed(base: EffectSet, effect: Tunable, index: int, edges: Array) -> Sett
     weight /= weight.sum()
     mean = float(weight @ middle)
     variance = float(weight @ ((middle - mean) ** 2 + length**2 / 12.0))
-    return Settled(mean, float(np.sqrt(variance)))
+    return InstantEstimate(mean, float(np.sqrt(variance)))

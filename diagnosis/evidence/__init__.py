@@ -1,5 +1,17 @@
 """Signatures of effects that are not in the model, and how much they explain."""
 
+from diagnosis.evidence.effect_signatures import (
+    Grid,
+    Progress,
+    ResidualSpace,
+    ScaledEffect,
+    Signatures,
+    blocks,
+    projected,
+    quiet,
+    signatures,
+    whole_grids,
+)
 from diagnosis.evidence.evidence import (
     EffectSet,
     Scores,
@@ -9,27 +21,15 @@ from diagnosis.evidence.evidence import (
     score_all,
     screen,
 )
-from diagnosis.evidence.signatures import (
-    Complement,
-    Grid,
-    Progress,
-    Signatures,
-    Sized,
-    blocks,
-    projected,
-    quiet,
-    signatures,
-    whole_grids,
-)
 
 __all__ = [
-    "Complement",
     "EffectSet",
     "Grid",
     "Progress",
+    "ResidualSpace",
+    "ScaledEffect",
     "Scores",
     "Signatures",
-    "Sized",
     "addition",
     "blocks",
     "f_probability",

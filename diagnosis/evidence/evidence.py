@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.special import betainc
 
-from diagnosis.evidence.signatures import Complement, IntArray, Signatures
+from diagnosis.evidence.effect_signatures import IntArray, ResidualSpace, Signatures
 from diagnosis.fit import PRIOR_DOF, LeftOut, left_out
 from twin.frames import Array
 
@@ -49,7 +49,7 @@ class EffectSet:
         A: Their projected columns, (N + P, K); K may be 0.
     """
 
-    complement: Complement
+    complement: ResidualSpace
     A: Array
 
     @cached_property
@@ -163,7 +163,9 @@ def reduced(effects: EffectSet, F: Array, rows: IntArray) -> Reduced:
     return Reduced(gram, F.T @ complement.residual[rows] - E.T @ effects.along)
 
 
-def log_evidence(complement: Complement, objective: Array | float, log_det: Array | float) -> Array:
+def log_evidence(
+    complement: ResidualSpace, objective: Array | float, log_det: Array | float
+) -> Array:
     """Logarithm of the evidence up to a constant, with a scale-free noise.
 
     ``-(n + nu)/2 log(objective + nu) - log_det/2``: the marginal likelihood of a normal linear

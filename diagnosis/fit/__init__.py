@@ -1,14 +1,14 @@
 """Identification: the parameters of a model from a run, whatever the noise."""
 
-from diagnosis.fit.describe import Reported, Settled, file_unit, inner_unit, reported
-from diagnosis.fit.estimable import Estimable, estimable
+from diagnosis.fit.describe import InstantEstimate, Reported, file_unit, inner_unit, reported
+from diagnosis.fit.estimability import Estimable, estimable
 from diagnosis.fit.gross import GrossErrors
 from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
 from diagnosis.fit.inner import continuous_inner, shifted, spacing
 from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
-from diagnosis.fit.mixed_units import mixed_units
 from diagnosis.fit.noise import PRIOR_DOF
 from diagnosis.fit.prior import Prior
+from diagnosis.fit.unit_mistakes import mixed_units
 
 __all__ = [
     "MIN_POSES",
@@ -18,10 +18,10 @@ __all__ = [
     "Estimable",
     "Fit",
     "GrossErrors",
+    "InstantEstimate",
     "LeftOut",
     "Prior",
     "Reported",
-    "Settled",
     "continuous_inner",
     "estimable",
     "file_unit",

@@ -32,7 +32,7 @@ class Reported:
     factor: float
 
 
-class Settled(NamedTuple):
+class InstantEstimate(NamedTuple):
     """An inner parameter with its standard uncertainty, base unit."""
 
     value: float
@@ -66,7 +66,10 @@ def inner_unit(name: str, unit: str) -> tuple[str, float]:
 
 
 def reported(
-    fit: Fit, effect: Effect, wider: float = 1.0, settled: Mapping[int, Settled] | None = None
+    fit: Fit,
+    effect: Effect,
+    wider: float = 1.0,
+    settled: Mapping[int, InstantEstimate] | None = None,
 ) -> tuple[Reported, ...]:
     """Inner parameters, the size, and every linear parameter of a fitted effect.
 
@@ -115,7 +118,7 @@ def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
 
 
 def _inner(
-    fit: Fit, effect: Effect, wider: float, settled: Mapping[int, Settled]
+    fit: Fit, effect: Effect, wider: float, settled: Mapping[int, InstantEstimate]
 ) -> Sequence[Reported]:
     """Inner parameters with the uncertainty that their tangents give."""
     if not isinstance(effect, Tunable):

@@ -5,10 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.evidence import Complement, EffectSet, Progress, quiet
+from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, GrossErrors, Prior, fit_run, solve
-from diagnosis.residual.regions import Region, regions
-from diagnosis.residual.remarks import remarks
+from diagnosis.residual.failing_regions import Region, regions
+from diagnosis.residual.run_remarks import remarks
 from diagnosis.residual.structure import Structure, find_structure
 from twin.compute import one_blas_thread
 from twin.frames import Array
@@ -153,7 +153,7 @@ def compare(
     else:
         fit = _predicted(run, model, estimates)
         u = np.sqrt(run.u**2 + _prediction_variance(fit, estimates))
-    nothing = EffectSet(Complement.of(fit), np.zeros((int(fit.used.sum()) + len(fit.prior), 0)))
+    nothing = EffectSet(ResidualSpace.of(fit), np.zeros((int(fit.used.sum()) + len(fit.prior), 0)))
     found = tuple(find_structure(nothing, progress))
     return Comparison(fit, estimates is not None, u, found, regions(fit), remarks(fit))
 

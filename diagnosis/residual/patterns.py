@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from diagnosis.evidence import Complement
+from diagnosis.evidence import ResidualSpace
 from twin.frames import Array
 from twin.record import IntArray, Touches
 from twin.units import DEG
@@ -151,13 +151,13 @@ def patterns(touches: Touches) -> Iterator[Pattern]:
             yield Pattern((name,), direction, F * part[:, None], spectra)
 
 
-def thinned(complement: Complement) -> IntArray:
+def thinned(complement: ResidualSpace) -> IntArray:
     """Touches in use that are looked at, by number: all, or an even choice of a long run."""
     n = len(complement.u)
     return np.unique(np.linspace(0, n - 1, min(n, FULL_BELOW)).astype(np.int64))
 
 
-def whitened(complement: Complement, features: Array, rows: IntArray) -> Array:
+def whitened(complement: ResidualSpace, features: Array, rows: IntArray) -> Array:
     """Features over the noise, (R, K), for some of the touches in use.
 
     Args:

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import ndtr
 
-from diagnosis.evidence import Complement, EffectSet, Progress, quiet, reduced
+from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet, reduced
 from diagnosis.fit import PRIOR_DOF
 from diagnosis.residual.crowds import crowds
 from diagnosis.residual.patterns import Pattern, patterns, thinned, whitened
@@ -200,7 +200,7 @@ def _neighbours(effects: EffectSet) -> list[Structure]:
     return out
 
 
-def _crowds(complement: Complement) -> list[Structure]:
+def _crowds(complement: ResidualSpace) -> list[Structure]:
     """Do gross errors lie together?"""
     allowed = complement.used | complement.gross
     found = crowds(complement.touches, allowed, complement.gross)

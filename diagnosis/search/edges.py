@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import gammaln
 
-from diagnosis.evidence import Sized
+from diagnosis.evidence import ScaledEffect
 from diagnosis.fit import BoolArray, GrossErrors
 from twin.frames import Array
 from twin.record import IntArray, Touches
@@ -26,7 +26,7 @@ FEWEST = 2
 """Gross errors at an edge that may be no accidents."""
 
 
-def offered(touches: Touches, gross: GrossErrors, effects: Sequence[Sized]) -> BoolArray:
+def offered(touches: Touches, gross: GrossErrors, effects: Sequence[ScaledEffect]) -> BoolArray:
     """Gross errors that a slip may explain, (N,).
 
     At the edges of a set-up those that so few accidents would hardly ever form; at the instant of a
@@ -60,11 +60,11 @@ def without(gross: GrossErrors, rows: BoolArray) -> GrossErrors:
     return replace(gross, rows=gross.rows & ~rows)
 
 
-def _tuning(sized: Sized) -> dict[str, float]:
+def _tuning(sized: ScaledEffect) -> dict[str, float]:
     return dict(getattr(sized.effect, "tuning", {}))
 
 
-def _instant(sized: Sized) -> float:
+def _instant(sized: ScaledEffect) -> float:
     return _tuning(sized)["instant"]
 
 

@@ -5,7 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.evidence import Complement, EffectSet, Signatures, Sized, addition, projected
+from diagnosis.evidence import (
+    EffectSet,
+    ResidualSpace,
+    ScaledEffect,
+    Signatures,
+    addition,
+    projected,
+)
 from diagnosis.fit import continuous_inner, spacing
 from twin.model import Effect, Tunable
 
@@ -23,7 +30,7 @@ SETTLED = 0.01
 """Gain of log evidence in one turn below which they are settled."""
 
 
-def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[Sized, float]:
+def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[ScaledEffect, float]:
     """An effect with its inner parameters refined, and the log evidence of the set with it.
 
     Args:
@@ -38,7 +45,7 @@ def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[Size
         best, top, scale = _sweep(base, best, top, scale, levels)
         if top - before < SETTLED:
             break
-    return Sized(best, scale), top
+    return ScaledEffect(best, scale), top
 
 
 def _sweep(
@@ -66,10 +73,12 @@ def _moved(effect: Tunable, index: int, value: float) -> Tunable:
 
 
 def _addition(base: EffectSet, effect: Effect) -> tuple[float, float]:
-    return addition(base, projected(base.complement, [Sized(effect)]))
+    return addition(base, projected(base.complement, [ScaledEffect(effect)]))
 
 
-def refined_set(complement: Complement, chosen: Sequence[Sized], rounds: int = 2) -> list[Sized]:
+def refined_set(
+    complement: ResidualSpace, chosen: Sequence[ScaledEffect], rounds: int = 2
+) -> list[ScaledEffect]:
     """Effects of a set with all inner parameters refined, in turn, the others in place."""
     out = list(chosen)
     for _ in range(rounds if len(out) > 1 else 1):

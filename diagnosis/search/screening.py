@@ -7,13 +7,13 @@ from functools import cached_property
 import numpy as np
 
 from diagnosis.evidence import (
-    Complement,
     EffectSet,
     Grid,
     Progress,
+    ResidualSpace,
+    ScaledEffect,
     Scores,
     Signatures,
-    Sized,
     blocks,
     projected,
     quiet,
@@ -45,13 +45,13 @@ class Library:
         sample: Signatures of all of them over the touches, or over an even choice of many.
     """
 
-    complement: Complement
+    complement: ResidualSpace
     grids: tuple[Grid, ...]
     sample: Signatures
 
     @classmethod
     def of(
-        cls, complement: Complement, candidates: Sequence[Effect], progress: Progress = quiet
+        cls, complement: ResidualSpace, candidates: Sequence[Effect], progress: Progress = quiet
     ) -> "Library":
         """Candidates of a run."""
         grids = whole_grids(candidates, complement.touches)
@@ -80,7 +80,7 @@ class Library:
         grids = [g for g in self._screened if g.effect.name in keep]
         return signatures(self.complement, grids, len(self.grids))
 
-    def shortlist(self, found: Sequence[Sized], effects: EffectSet) -> list[str]:
+    def shortlist(self, found: Sequence[ScaledEffect], effects: EffectSet) -> list[str]:
         """Names of the candidates that may matter beside a set of effects, the best first.
 
         Args:
@@ -115,7 +115,7 @@ class Library:
             out.append(Grid(grid.effect, variants, grid.tries))
         return out
 
-    def _screen(self, found: Sequence[Sized], effects: EffectSet) -> Scores:
+    def _screen(self, found: Sequence[ScaledEffect], effects: EffectSet) -> Scores:
         """Scores of all variants beside a set of effects."""
         seen = self.sample.complement
         sample = EffectSet(seen, projected(seen, found))

@@ -15,7 +15,15 @@ from itertools import combinations
 
 import numpy as np
 
-from diagnosis.evidence import Complement, EffectSet, Progress, Scores, Signatures, quiet, score_all
+from diagnosis.evidence import (
+    EffectSet,
+    Progress,
+    ResidualSpace,
+    Scores,
+    Signatures,
+    quiet,
+    score_all,
+)
 from twin.frames import Array
 from twin.model import Effect
 
@@ -89,7 +97,7 @@ class Member:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Chosen:
+class EffectSubset:
     """A set of effects with what it explains.
 
     Attributes:
@@ -131,7 +139,10 @@ class Verified:
 
 
 def effect_set(
-    complement: Complement, pool: Signatures, members: Sequence[Member], fixed: Array | None = None
+    complement: ResidualSpace,
+    pool: Signatures,
+    members: Sequence[Member],
+    fixed: Array | None = None,
 ) -> EffectSet:
     """Set of members of a pool, with further fixed columns beside them."""
     blocks = [] if fixed is None else [fixed]
@@ -165,14 +176,14 @@ class Search:
         self._scores: dict[tuple[tuple[int, float], ...], Scores] = {}
         self._products: dict[int, Array] = {}
 
-    def chosen(self, members: Iterable[Member]) -> Chosen:
+    def chosen(self, members: Iterable[Member]) -> EffectSubset:
         """A set in the projection."""
         members = tuple(members)
         effects = effect_set(self.complement, self.pool, members, self.fixed)
         self.budget.spend(*effects.A.shape)
-        return Chosen(members, effects)
+        return EffectSubset(members, effects)
 
-    def member(self, chosen: Chosen, variant: int) -> Member:
+    def member(self, chosen: EffectSubset, variant: int) -> Member:
         """A variant as an addition to a set, at its likeliest scale there."""
         scale = float(self.scores(chosen).scale[variant])
         owner = int(self.pool.owner[variant])
@@ -182,14 +193,14 @@ class Search:
         """Name of the candidate of a variant."""
         return self.pool.names[self.pool.owner[variant]]
 
-    def scores(self, chosen: Chosen) -> Scores:
+    def scores(self, chosen: EffectSubset) -> Scores:
         """Scores of all variants as additions to a set, computed once."""
         key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
         if key not in self._scores:
             self._scores[key] = score_all(chosen.effects, self.pool, self._inside(chosen))
         return self._scores[key]
 
-    def _inside(self, chosen: Chosen) -> Array:
+    def _inside(self, chosen: EffectSubset) -> Array:
         """Inner products of a set's columns with all signatures, (K, M).
 
         Those of a variant are made once: a long run has few variants that are ever members.
@@ -209,7 +220,7 @@ class Search:
         assert self.fixed is not None
         return np.asarray(self.fixed.T @ self.pool.C)
 
-    def ranking(self, chosen: Chosen) -> list[int]:
+    def ranking(self, chosen: EffectSubset) -> list[int]:
         """Best variant of every candidate that is not in a set, most evidence first."""
         evidence = self.scores(chosen).evidence
         order = np.argsort(-evidence, kind="stable")
@@ -218,9 +229,9 @@ class Search:
         ranked = order[np.sort(first)]
         return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
 
-    def extensions(self, chosen: Chosen, count: int) -> list[Chosen]:
+    def extensions(self, chosen: EffectSubset, count: int) -> list[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""
-        out: list[Chosen] = []
+        out: list[EffectSubset] = []
         directions: list[Array] = []
         scores = self.scores(chosen)
         for variant in self.ranking(chosen)[: 12 * count]:
@@ -232,7 +243,7 @@ class Search:
                 out.append(self.chosen((*chosen.members, self.member(chosen, variant))))
         return out
 
-    def explained(self, chosen: Chosen, variant: int) -> Array:
+    def explained(self, chosen: EffectSubset, variant: int) -> Array:
         """Direction of what a variant would explain beyond a set, (N + P,), of length 1."""
         effects = chosen.effects
         C = self.scores(chosen).scale[variant] * self.pool.columns_of(variant)
@@ -243,7 +254,7 @@ class Search:
         direction = C @ phi - effects.A @ effects.coefficients(C @ phi)
         return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-300))
 
-    def polished(self, chosen: Chosen) -> Chosen:
+    def polished(self, chosen: EffectSubset) -> EffectSubset:
         """Exchange members for better ones, one at a time, until none is better."""
         improved = True
         while improved and chosen.members and not self.budget.is_spent:
@@ -258,7 +269,7 @@ class Search:
                     chosen, improved = self.chosen(members), True
         return chosen
 
-    def stands(self, chosen: Chosen) -> bool:
+    def stands(self, chosen: EffectSubset) -> bool:
         """Whether every member of a set passes its tests, the quick ones first."""
         for i, member in enumerate(chosen.members):
             others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
@@ -268,7 +279,7 @@ class Search:
                 return False
         return all(v.stands for v in self.verify(chosen))
 
-    def verify(self, chosen: Chosen) -> list[Verified]:
+    def verify(self, chosen: EffectSubset) -> list[Verified]:
         """Tests of every member of a set with the others in place."""
         out = []
         for i, member in enumerate(chosen.members):
@@ -276,7 +287,7 @@ class Search:
             out.append(self.verified(others, chosen, member))
         return out
 
-    def verified(self, others: Chosen, whole: Chosen, member: Member) -> Verified:
+    def verified(self, others: EffectSubset, whole: EffectSubset, member: Member) -> Verified:
         """Tests of one member, given the set without it and the set with it."""
         scores = self.scores(others)
         ratio = whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300)
@@ -292,7 +303,7 @@ class Search:
         """Probability with the scan of the grid and the number of candidates paid for."""
         return float(min(1.0, p * self.pool.tries[candidate] * self.pool.tried))
 
-    def run(self, start: Sequence[Member] = ()) -> Chosen:
+    def run(self, start: Sequence[Member] = ()) -> EffectSubset:
         """The best set of which every member stands; empty where nothing does.
 
         Args:
@@ -307,7 +318,7 @@ class Search:
             best = other
         return best
 
-    def grown(self, best: Chosen) -> Chosen:
+    def grown(self, best: EffectSubset) -> EffectSubset:
         """A set with one member more and more, as long as every member stands."""
         carried = [best]
         for size in range(len(best.members) + 1, MOST_EFFECTS + 1):
@@ -323,7 +334,7 @@ class Search:
             best = standing
         return best
 
-    def reopened(self, chosen: Chosen) -> Chosen:
+    def reopened(self, chosen: EffectSubset) -> EffectSubset:
         """The best set with two of its members out and two others in, or the set itself.
 
         Two effects may stand in for two others, each being the best beside the other; no exchange
@@ -341,12 +352,12 @@ class Search:
                         best = found
         return best
 
-    def kept(self, sets: Iterable[Chosen]) -> list[Chosen]:
+    def kept(self, sets: Iterable[EffectSubset]) -> list[EffectSubset]:
         """The few best of some sets, each once."""
         unique = {tuple(sorted(m.variant for m in s.members)): s for s in sets}
         return sorted(unique.values(), key=lambda s: -s.effects.evidence)[:CARRIED]
 
-    def backward(self, chosen: Chosen) -> Chosen:
+    def backward(self, chosen: EffectSubset) -> EffectSubset:
         """Take out members that a better one made superfluous, the weakest first."""
         while chosen.members:
             verified = self.verify(chosen)

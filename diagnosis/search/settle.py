@@ -2,15 +2,15 @@
 
 from dataclasses import replace
 
-from diagnosis.evidence import EffectSet, Sized, projected
+from diagnosis.evidence import EffectSet, ScaledEffect, projected
 from diagnosis.search.refine import moved, refined_set
-from diagnosis.search.selection import WORTH, Chosen, Search
+from diagnosis.search.selection import WORTH, EffectSubset, Search
 
 SETTLINGS = 3
 """Most searches with points of the grid moved to refined inner parameters."""
 
 
-def settled(search: Search, chosen: Chosen) -> tuple[Search, Chosen]:
+def settled(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubset]:
     """Search again where refined inner parameters are clearly better than the points of the grid.
 
     What a coarse grid leaves would otherwise pass for a further effect, or for structure that no
@@ -24,7 +24,7 @@ def settled(search: Search, chosen: Chosen) -> tuple[Search, Chosen]:
         The search with the moved points, and its result.
     """
     for _ in range(SETTLINGS):
-        start = [Sized(m.effect, m.scale) for m in chosen.members]
+        start = [ScaledEffect(m.effect, m.scale) for m in chosen.members]
         members = refined_set(search.complement, start)
         effects = EffectSet(search.complement, projected(search.complement, members))
         if effects.evidence < chosen.effects.evidence + WORTH:

@@ -9,8 +9,7 @@ directions at once, each by an amount of its own, but all at the same pace.
 from dataclasses import dataclass, replace
 
 from twin.effects import SPINDLE, ThermalLag
-from twin.library import Kind
-from twin.model import Parameter, Term, Where, sensors
+from twin.model import Kind, Parameter, Term, Where, sensors
 from twin.units import UM
 
 

@@ -1,7 +1,7 @@
 """What stays unknown after touches, and the design criteria made of it."""
 
 from information.criteria.design_criterion import (
-    Purpose,
+    DesignCriterion,
     Tangent,
     determinant,
     parameters,
@@ -15,8 +15,8 @@ from information.criteria.design_criterion import (
 from information.criteria.posterior import Posterior, prior_sd_of_tip, whitened
 
 __all__ = [
+    "DesignCriterion",
     "Posterior",
-    "Purpose",
     "Tangent",
     "determinant",
     "parameters",

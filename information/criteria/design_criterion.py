@@ -44,7 +44,7 @@ class Tangent:
 
 
 @dataclass(frozen=True, eq=False)
-class Purpose:
+class DesignCriterion:
     """A criterion over the directions of parameter space that matter; smaller is better.
 
     Attributes:
@@ -167,7 +167,7 @@ def _worst_weights(values: Array, tail: float) -> Array:
     return weight
 
 
-def purpose(G: Array, W: Array, prior_sd: Array) -> Purpose:
+def purpose(G: Array, W: Array, prior_sd: Array) -> DesignCriterion:
     """To predict the tool point at M poses, on average (I).
 
     Directions that neither move the tool point at any pose nor show in any row stay at their prior
@@ -184,20 +184,20 @@ def purpose(G: Array, W: Array, prior_sd: Array) -> Purpose:
     both = K / np.trace(K) + seen / max(float(np.trace(seen)), 1e-300)
     values, vectors = np.linalg.eigh(both)
     V = vectors[:, values > _SHOWN * values[-1]]
-    return Purpose(V, V.T @ K @ V)
+    return DesignCriterion(V, V.T @ K @ V)
 
 
-def determinant(aim: Purpose) -> Purpose:
+def determinant(aim: DesignCriterion) -> DesignCriterion:
     """To shrink the volume of what stays unknown (Bayesian D)."""
     return replace(aim, is_determinant=True, roots=None)
 
 
-def parameters(aim: Purpose) -> Purpose:
+def parameters(aim: DesignCriterion) -> DesignCriterion:
     """To know the parameters, in units of their prior, on average (A)."""
     return replace(aim, K=np.eye(len(aim.K)), is_determinant=False, roots=None)
 
 
-def worst_pose(aim: Purpose, G: Array, prior_sd: Array) -> Purpose:
+def worst_pose(aim: DesignCriterion, G: Array, prior_sd: Array) -> DesignCriterion:
     """To predict the tool point at the worst of M poses (worst-case I; G in the books).
 
     Args:
@@ -209,7 +209,7 @@ def worst_pose(aim: Purpose, G: Array, prior_sd: Array) -> Purpose:
     return replace(aim, K=np.zeros_like(aim.K), is_determinant=False, roots=roots)
 
 
-def worst_pattern(aim: Purpose) -> Purpose:
+def worst_pattern(aim: DesignCriterion) -> DesignCriterion:
     """To leave no pattern of errors large, large as the tool point feels it (E).
 
     Largest eigenvalue of ``r^T M^-1 r`` with K = r r^T: the variance, mean over the poses, of the
@@ -222,7 +222,7 @@ def worst_pattern(aim: Purpose) -> Purpose:
     return replace(aim, K=zero, is_determinant=False, roots=root[None], is_spectral=True)
 
 
-def robust(aim: Purpose, scale: Array, tail: float = 1.0) -> Purpose:
+def robust(aim: DesignCriterion, scale: Array, tail: float = 1.0) -> DesignCriterion:
     """The same purpose for machines whose errors are larger or smaller than expected.
 
     Args:
@@ -242,7 +242,7 @@ def robust(aim: Purpose, scale: Array, tail: float = 1.0) -> Purpose:
     return replace(aim, priors=np.stack([0.5 * (p + p.T) for p in priors]), tail=tail)
 
 
-def with_potential(aim: Purpose, count: int, worth: float) -> Purpose:
+def with_potential(aim: DesignCriterion, count: int, worth: float) -> DesignCriterion:
     """The same purpose with potential terms: columns of effects that may be there or not.
 
     Rows have `count` columns more, standardised and times their small prior standard deviation;
@@ -273,7 +273,7 @@ def with_potential(aim: Purpose, count: int, worth: float) -> Purpose:
     return replace(aim, K=K, roots=roots, priors=priors)
 
 
-def without_potential(aim: Purpose) -> Purpose:
+def without_potential(aim: DesignCriterion) -> DesignCriterion:
     """The same purpose over the primary terms alone."""
     R = aim.directions.shape[1]
     roots = None if aim.roots is None else aim.roots[:, :R]

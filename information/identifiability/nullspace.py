@@ -31,7 +31,7 @@ _NOTHING = 1e-6  # part of a direction's largest weight that counts as zero
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class RankAnalysis:
     """What rows see of their parameters, without any prior.
 
     Attributes:
@@ -62,7 +62,7 @@ class Seen:
         return rows / np.where(loud, self.length, 1.0)
 
 
-def seen(W: Array) -> Seen:
+def seen(W: Array) -> RankAnalysis:
     """What rows (N, P) see of their parameters."""
     P = W.shape[1]
     length = np.linalg.norm(W, axis=0)
@@ -74,7 +74,7 @@ def seen(W: Array) -> Seen:
         singular[: len(s)] = s
         directions[: len(loud), loud] = Vt
     directions[np.arange(len(loud), P), silent] = 1.0
-    return Seen(length, singular, directions)
+    return RankAnalysis(length, singular, directions)
 
 
 def condition(W: Array, rank: int) -> float:

@@ -3,12 +3,19 @@
 from information.selection.certificate import Certificate, relaxed, rounded
 from information.selection.groups import best_groups
 from information.selection.shares import heaviest
-from information.selection.touch_selection import Mask, Purpose, Quota, Selection, exchange, fill
+from information.selection.touch_selection import (
+    DesignCriterion,
+    Mask,
+    Quota,
+    Selection,
+    exchange,
+    fill,
+)
 
 __all__ = [
     "Certificate",
+    "DesignCriterion",
     "Mask",
-    "Purpose",
     "Quota",
     "Selection",
     "best_groups",

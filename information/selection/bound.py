@@ -2,8 +2,8 @@
 
 Every touch may be made by a fraction, ``0 <= x_i <= 1``, ``sum x_i = n``, with the shares of poses
 and features that the choice itself has to keep: a convex problem, whose optimum no whole choice can
-beat. With the tangent ``sum_s trace(K_s M_s^-1)`` of a criterion (`Purpose.tangent`), which is
-nowhere above it, both
+beat. With the tangent ``sum_s trace(K_s M_s^-1)`` of a criterion (`DesignCriterion.tangent`),
+which is nowhere above it, both
 
     phi = 1 / sum_s trace(K_s M_s^-1)       and for D       phi = prod_s det(M_s)^(w_s/R)
 
@@ -13,8 +13,8 @@ optimum or not,
     phi <= phi(F0) (sum_s trace(S_s prior_s) + most of sum x_i g_i) / sum_s trace(S_s M_s),
 
 with ``g_i = sum_s w_i^T S_s w_i`` and ``S_s = M_s^-1 K_s M_s^-1`` (``w_s M_s^-1`` for D). That
-holds for every criterion of `Purpose`, the largest of several and means over the worst machines
-included. It is a proof and needs no faith in the search that found F0.
+holds for every criterion of `DesignCriterion`, the largest of several and means over the worst
+machines included. It is a proof and needs no faith in the search that found F0.
 
 Reference:
     Pukelsheim, Optimal Design of Experiments (1993), chapters 5 and 7 (information functions).
@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from information.criteria import Purpose
+from information.criteria import DesignCriterion
 from information.selection.shares import largest_sum
 from information.selection.touch_selection import Quota
 from twin.frames import Array
@@ -54,7 +54,7 @@ class Slope:
         return np.asarray(np.einsum("nr,nr->n", W @ total, W), dtype=np.float64)
 
 
-def slope(aim: Purpose, information: Array) -> Slope:
+def slope(aim: DesignCriterion, information: Array) -> Slope:
     """Slope of a criterion at an information (R, R)."""
     M = aim.prior + information
     inverse = np.asarray(np.linalg.solve(M, np.broadcast_to(np.eye(M.shape[1]), M.shape)))
@@ -71,7 +71,7 @@ def slope(aim: Purpose, information: Array) -> Slope:
 
 
 def bound_at(
-    aim: Purpose, W: Array, information: Array, count: int, quotas: tuple[Quota, ...] = ()
+    aim: DesignCriterion, W: Array, information: Array, count: int, quotas: tuple[Quota, ...] = ()
 ) -> tuple[float, Array]:
     """What no choice of rows can beat, by the tangent at some information.
 

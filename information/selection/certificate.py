@@ -2,15 +2,15 @@
 
 The efficiency is the bound of `information.selection.bound` over the criterion of the choice; the
 fractions
-of `information.selection.relaxed` make the bound tight, their heaviest touches a good start for
+of `information.selection.relaxation` make the bound tight, their heaviest touches a good start for
 exchanges.
 """
 
 from dataclasses import dataclass
 
-from information.criteria import Purpose
+from information.criteria import DesignCriterion
 from information.selection.bound import bound_at
-from information.selection.relaxed import Relaxed, relaxed
+from information.selection.relaxation import Relaxed, relaxed
 from information.selection.shares import heaviest
 from information.selection.touch_selection import Mask, Quota, Selection, exchange
 from twin.frames import Array
@@ -50,7 +50,7 @@ class Certificate:
 
 
 def certificate(
-    aim: Purpose,
+    aim: DesignCriterion,
     W: Array,
     chosen: Mask,
     tolerance: float = 2e-3,
@@ -75,7 +75,7 @@ def certificate(
 
 
 def rounded(
-    aim: Purpose,
+    aim: DesignCriterion,
     W: Array,
     weight: Array,
     count: int,

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from information.criteria import Purpose
+from information.criteria import DesignCriterion
 from twin.compute import blocks
 from twin.frames import Array
 from twin.record import IntArray
@@ -12,7 +12,7 @@ _GROUPS_A_BLOCK = 100
 
 
 def best_groups(
-    aim: Purpose,
+    aim: DesignCriterion,
     W: Array,
     group: IntArray,
     count: int,
@@ -56,7 +56,9 @@ def best_groups(
 class _Groups:
     """Information that groups of rows bring."""
 
-    def __init__(self, aim: Purpose, W: Array, group: IntArray, take: int, start: Array) -> None:
+    def __init__(
+        self, aim: DesignCriterion, W: Array, group: IntArray, take: int, start: Array
+    ) -> None:
         self.aim, self.take, self.start = aim, take, start
         order = np.argsort(group, kind="stable")
         self.W = W[order]

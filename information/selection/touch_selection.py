@@ -1,7 +1,7 @@
 """Choosing touches: which rows, of all that could be measured, tell most.
 
-The criterion is a `Purpose`: Bayesian and, by default, I-optimal, the mean predicted variance of
-the tool point over the poses that the user cares about,
+The criterion is a `DesignCriterion`: Bayesian and, by default, I-optimal, the mean predicted
+variance of the tool point over the poses that the user cares about,
 
     value = trace(K M^-1),   M = 1 + sum over the chosen rows of w w^T,   K = mean of G^T G,
 
@@ -16,12 +16,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from information.criteria import Purpose, Tangent, purpose
+from information.criteria import DesignCriterion, Tangent, purpose
 from twin.errors import DesignError
 from twin.frames import Array
 from twin.record import IntArray
 
-__all__ = ["Purpose", "Quota", "Selection", "exchange", "fill", "purpose"]
+__all__ = ["DesignCriterion", "Quota", "Selection", "exchange", "fill", "purpose"]
 
 Mask = NDArray[np.bool_]
 
@@ -72,11 +72,12 @@ class Selection:
 
     Attributes:
         chosen: Which rows are in, (N,).
-        value: The criterion, smaller is better (`Purpose.value`); between refreshes of a curved
+        value: The criterion, smaller is better (`DesignCriterion.value`); between refreshes of a
+        curved
             one that of its tangent.
     """
 
-    def __init__(self, aim: Purpose, W: Array, chosen: Mask | None = None) -> None:
+    def __init__(self, aim: DesignCriterion, W: Array, chosen: Mask | None = None) -> None:
         self.aim, self.W = aim, W
         self.chosen = np.zeros(len(W), dtype=bool) if chosen is None else chosen.copy()
         self.refresh()
@@ -169,7 +170,7 @@ class Quota:
     least: IntArray | None = None
 
     def count(self, chosen: Mask) -> IntArray:
-        """Chosen rows of each kind."""
+        """EffectSubset rows of each kind."""
         return np.bincount(self.kind[chosen], minlength=len(self.most))
 
     def open(self, chosen: Mask) -> Mask:

@@ -2,8 +2,8 @@
 
 from probe_paths.campaign.contacts import VirtualMachine
 from probe_paths.campaign.duration import probing_time
-from probe_paths.campaign.evaluate import evaluate
-from probe_paths.campaign.foot_points import foot_points
+from probe_paths.campaign.evaluation import evaluate
+from probe_paths.campaign.foot_point_search import foot_points
 from probe_paths.campaign.order_study import Order, orders
 from probe_paths.campaign.simulation import Campaign, simulate
 

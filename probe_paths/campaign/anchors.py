@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from artefact.body import Standard
-from probe_paths.campaign.foot_points import foot_points
+from probe_paths.campaign.foot_point_search import foot_points
 from twin.effects import setup_errors
 from twin.frames import Array
 from twin.library import ordinary_model

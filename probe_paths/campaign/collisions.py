@@ -6,7 +6,7 @@ import numpy as np
 
 from artefact.body import Standard
 from artefact.reach import TABLE_RADIUS
-from probe_paths.control import Move, Probing, ReadProgram
+from probe_paths.control import Move, ProbeStep, ReadProgram
 from probe_paths.plan import Probe, Room, obstacles, swing_height, top_height
 from twin.errors import BadFile
 from twin.frames import Array, apply, inverse
@@ -84,7 +84,7 @@ def _moves(program: ReadProgram) -> _Moves:
                 before.append(here)
                 after.append(step.q)
             here = step.q
-        elif isinstance(step, Probing):
+        elif isinstance(step, ProbeStep):
             here = step.q
     width = 0 if here is None else len(here)
     return _Moves(

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control import Clock, Probing, interpret, step_times
+from probe_paths.control import Clock, ProbeStep, interpret, step_times
 from probe_paths.emit import Feeds, make_programs
 from probe_paths.plan import TouchPlan, Visit, home_readings, nearest_neighbours
 from twin.frames import Array
@@ -92,7 +92,7 @@ def _timed(plan: TouchPlan) -> tuple[Touches, float]:
     read = interpret(text, path, programs.masks.get, plan.chain, plan.probe)
     travel = np.full(len(read.touches), plan.options.standoff)
     clock = step_times(plan.chain, read.steps, Clock(), travel)
-    time = clock[[isinstance(step, Probing) for step in read.steps]]
+    time = clock[[isinstance(step, ProbeStep) for step in read.steps]]
     side = np.array([touch.side for touch in read.touches])
     return _record(plan, time, side), float(clock[-1])
 

@@ -10,7 +10,7 @@ from artefact.body import Standard
 from artefact.reach import TABLE_RADIUS
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contacts import VirtualMachine
-from probe_paths.campaign.evaluate import evaluate
+from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.virtual import VirtualRun, run_programs
 from probe_paths.control import read_log, read_program
 from probe_paths.plan import Probe

@@ -18,7 +18,7 @@ from probe_paths.control import (
     STATUS,
     Halt,
     Print,
-    Probing,
+    ProbeStep,
     ReadProgram,
     Result,
     Step,
@@ -132,7 +132,7 @@ def run_program(
     steps, clock = program.steps, machine.clock
     noise = rng.normal(0.0, 1.0, len(program.touches)) * machine.noise
     contacts = Contacts(program, standard, machine, noise)
-    rows = [i for i, step in enumerate(steps) if isinstance(step, Probing)]
+    rows = [i for i, step in enumerate(steps) if isinstance(step, ProbeStep)]
     times = begin + step_times(machine.chain, steps, clock, contacts.travel)
     contacts.settle(times[rows])
     contacts.judge()
@@ -204,7 +204,7 @@ class _Control:
                 self._print(step, now)
             elif isinstance(step, Halt):
                 return Outcome.STOPPED, tried, now
-            elif isinstance(step, Probing):
+            elif isinstance(step, ProbeStep):
                 tried += 1
                 if self.contacts.miss[step.index]:
                     for branch in step.miss:

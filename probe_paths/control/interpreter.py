@@ -11,7 +11,7 @@ import numpy as np
 
 from probe_paths.control.runner import MaskSource, Runner
 from probe_paths.control.state import State
-from probe_paths.control.steps import Probing, ReadProgram
+from probe_paths.control.steps import ProbeStep, ReadProgram
 from probe_paths.control.structure import check_cycles, heading, labels, program_name
 from probe_paths.language import read_blocks
 from probe_paths.plan import Heading, Probe, ProgramFrame
@@ -84,7 +84,7 @@ def interpret(
     steps = runner.run(0, State(path, frame, nothing, np.zeros(len(chain.axes))))
     runner.check_logged()
     for touch in steps:
-        if isinstance(touch, Probing) and touch.feature not in features:
+        if isinstance(touch, ProbeStep) and touch.feature not in features:
             raise BadFile(
                 path,
                 f"line {touch.line}",

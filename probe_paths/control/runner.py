@@ -8,7 +8,7 @@ import numpy as np
 from probe_paths.control.modes import check_cycle, set_mode, system_datum
 from probe_paths.control.motion import retract_max, straight_line
 from probe_paths.control.state import State
-from probe_paths.control.steps import STATUS, Halt, Move, Print, Probing, Result, Step
+from probe_paths.control.steps import STATUS, Halt, Move, Print, ProbeStep, Result, Step
 from probe_paths.language import Block, Kind, MaskLine, Q, parse_mask
 from probe_paths.plan import ProgramFrame
 from twin.errors import BadFile
@@ -48,7 +48,7 @@ class Runner:
         self.blocks, self.places, self.frame, self.path = blocks, places, frame, path
         self.source = masks
         self.masks: dict[str, tuple[MaskLine, ...]] = {}
-        self.touches: list[Probing] = []
+        self.touches: list[ProbeStep] = []
         self.logged: set[int] = set()
 
     def run(self, start: int, state: State, is_branch: bool = False) -> list[Step]:
@@ -123,7 +123,7 @@ class Runner:
             set_mode(block, state)
         return None
 
-    def _probing(self, i: int, state: State) -> Probing:
+    def _probing(self, i: int, state: State) -> ProbeStep:
         """Cycle 4, whose other three blocks stand before this one."""
         block, vector = self.blocks[i], self.blocks[i - 1]
         result = int(self.blocks[i - 2].word("q"))
@@ -143,7 +143,7 @@ class Runner:
         direction[state.frame.linear] = [vector.number(a) for a in "xyz"]
         length = float(np.linalg.norm(direction))
         check_cycle(state, block, vector, length)
-        touch = Probing(
+        touch = ProbeStep(
             line=block.line,
             index=len(self.touches),
             q=np.nan_to_num(state.q),
@@ -169,7 +169,7 @@ class Runner:
         self.touches.append(touch)
         return touch
 
-    def _check_sides(self, block: Block, state: State, touch: Probing) -> None:
+    def _check_sides(self, block: Block, state: State, touch: ProbeStep) -> None:
         """The sides that the log will state are those that the axes really came from."""
         if any(other.number == touch.number for other in self.touches):
             raise state.refuse(block, f"touch number {touch.number} again", "a number of its own")

@@ -41,7 +41,7 @@ class Move:
 
 
 @dataclass(frozen=True, eq=False)
-class Probing:
+class ProbeStep:
     """One run of touch probe cycle 4.
 
     Attributes:
@@ -98,7 +98,7 @@ class Halt:
     number: int
 
 
-Step = Move | Probing | Print | Halt
+Step = Move | ProbeStep | Print | Halt
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +120,6 @@ class ReadProgram:
     steps: tuple[Step, ...]
 
     @property
-    def touches(self) -> list[Probing]:
+    def touches(self) -> list[ProbeStep]:
         """The touches in order."""
-        return [step for step in self.steps if isinstance(step, Probing)]
+        return [step for step in self.steps if isinstance(step, ProbeStep)]

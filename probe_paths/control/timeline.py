@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from probe_paths.control.clock import Clock
-from probe_paths.control.steps import Move, Probing, Step
+from probe_paths.control.steps import Move, ProbeStep, Step
 from twin.frames import Array
 from twin.machine import Chain
 
@@ -38,7 +38,7 @@ def step_times(
             feed[i] = np.nan if step.feed is None else step.feed
             q, is_motion[i] = step.q, True
             extra[i], back = back, 0.0
-        elif isinstance(step, Probing):
+        elif isinstance(step, ProbeStep):
             length = step.distance if travel is None else travel[step.index]
             change[i] = length * step.direction
             feed[i], is_motion[i], extra[i] = step.feed, True, clock.probing

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from artefact.body import Standard
-from artefact.reach import Probing, Requests, joined
+from artefact.reach import ProbeReach, Requests, joined
 from probe_paths.plan.clearance import obstacles, readings_at, swing_height, top_height
 from probe_paths.plan.frame import LINEAR, ProgramFrame
 from probe_paths.plan.heading import rounded_setup
@@ -30,10 +30,10 @@ class _Task:
     options: PlanOptions
 
     @property
-    def probing(self) -> Probing:
+    def probing(self) -> ProbeReach:
         """What can be touched, with the margins of the plan."""
         o = self.options
-        return Probing(
+        return ProbeReach(
             self.chain,
             self.setup,
             self.probe.shape,

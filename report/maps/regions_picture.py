@@ -28,7 +28,7 @@ def draw_regions(
 
     Args:
         chain: The machine.
-        regions: As `sensitivity.shares.regions.regions` gives them.
+        regions: As `sensitivity.shares.workspace_regions.regions` gives them.
         totals: What the errors do to |d|, drawn as diamonds with twice their standard error.
     """
     from matplotlib.lines import Line2D

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from artefact.brief import Project
-from artefact.compare import Knowable
+from artefact.compare import IdentifiabilityReport
 from artefact.place import Placement
 from cad_out.verify import Conformity
 from diagnosis.answer import Proof
@@ -60,5 +60,5 @@ class Design:
     plan: TouchPlan
     programs: ProgramSet
     machines: tuple[Proven, ...]
-    known: Knowable
+    known: IdentifiabilityReport
     effective: float

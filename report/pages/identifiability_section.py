@@ -5,7 +5,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from artefact.compare import Alone, Knowable
+from artefact.compare import Alone, IdentifiabilityReport
 from information.identifiability import NEVER, STRONG, Degree, FreedomWords, short, ties
 from report.maps import draw_ties, save
 from report.pages.design_result import Design
@@ -59,7 +59,7 @@ def _alone(alone: Alone) -> dict[str, str]:
     return {"words": alone.words, "expected": expected, "u": u}
 
 
-def _conditions(known: Knowable) -> list[tuple[str, str]]:
+def _conditions(known: IdentifiabilityReport) -> list[tuple[str, str]]:
     gauge = known.gauge
     found = {
         "every column brought to length one": gauge.condition,
@@ -79,7 +79,7 @@ def _with_minus(words: str) -> str:
     return words.replace("= - ", "= −").replace(" - ", " − ")
 
 
-def _degree_rows(known: Knowable) -> list[dict[str, Any]]:
+def _degree_rows(known: IdentifiabilityReport) -> list[dict[str, Any]]:
     """A row an axis, a cell a component error."""
     by_symbol = {d.symbol: d for d in known.degrees}
     rows = []

@@ -2,8 +2,8 @@
 
 from sensitivity.first_order.by_parameter import jacobian_by_parameter
 from sensitivity.first_order.indices import covariance, parts, rms, variance_shares
-from sensitivity.first_order.jacobian import jacobian, sensitivity
-from sensitivity.first_order.normal_length import NormalLength, normal_length
+from sensitivity.first_order.jacobians import jacobian, sensitivity
+from sensitivity.first_order.normal_lengths import NormalLength, normal_length
 from sensitivity.first_order.workspace import Box, Workspace, latin_hypercube, section
 
 __all__ = [

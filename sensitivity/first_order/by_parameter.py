@@ -21,7 +21,7 @@ from twin.machine import Chain, Family, Link, Symbol, checked_readings
 _POSES_A_BLOCK = 4000  # a few columns of a block stay in the second cache
 
 
-class Stand(NamedTuple):
+class PoseCache(NamedTuple):
     """A link of the chain at n poses, table frame; a last dimension of one is every pose alike.
 
     Attributes:
@@ -44,7 +44,7 @@ def jacobian_by_parameter(
 ) -> Array:
     """First-order deviation of the tool point per unit of every error parameter, parameter first.
 
-    The same numbers as `sensitivity.first_order.jacobian.jacobian`, in the order of memory that
+    The same numbers as `sensitivity.first_order.jacobians.jacobian`, in the order of memory that
     fills fastest.
 
     Args:
@@ -89,7 +89,7 @@ def jacobian_blocks(
         yield rows, part
 
 
-def _walk(chain: Chain, q: Array, length: Array) -> list[Stand]:
+def _walk(chain: Chain, q: Array, length: Array) -> list[PoseCache]:
     """Every link as seen from the table, in chain order."""
     R: Array = np.eye(3)[:, :, None]
     t = -chain.table_origin[:, None]
@@ -108,7 +108,7 @@ def _walk(chain: Chain, q: Array, length: Array) -> list[Stand]:
         passed.append((before, R, lever, reading))
     tip = t - R[:, 2] * length
     return [
-        Stand(before, after, after if link.carries_workpiece else before, tip - lever, reading)
+        PoseCache(before, after, after if link.carries_workpiece else before, tip - lever, reading)
         for link, (before, after, lever, reading) in zip(chain.links, passed, strict=True)
     ]
 
@@ -137,7 +137,7 @@ def _turned(R: Array, direction: Array, angle: Array) -> Array:
     return out
 
 
-def _column(link: Link, stand: Stand, symbol: Symbol, out: Array) -> None:
+def _column(link: Link, stand: PoseCache, symbol: Symbol, out: Array) -> None:
     """One column (3, n) of the Jacobian."""
     i = symbol.component % 3
     if symbol.family is Family.COMPONENT:
@@ -154,7 +154,7 @@ def _column(link: Link, stand: Stand, symbol: Symbol, out: Array) -> None:
     np.subtract(x * b, y * a, out=out[2])
 
 
-def _displaced(link: Link, stand: Stand, i: int, angular: bool) -> Array:
+def _displaced(link: Link, stand: PoseCache, i: int, angular: bool) -> Array:
     """What a displaced or tilted line does along machine direction i, (3, n).
 
     Displacement, or rotation about the lever point; for a tilted linear axis the displacement that

@@ -6,7 +6,7 @@ from itertools import combinations, groupby
 import numpy as np
 
 from sensitivity.first_order.by_parameter import jacobian_blocks
-from sensitivity.first_order.jacobian import jacobian
+from sensitivity.first_order.jacobians import jacobian
 from sensitivity.population import CONSTANT, Mix, Population, product_moment
 from twin.frames import Array
 from twin.machine import Symbol, checked_readings, shape, sine_argument
@@ -141,7 +141,7 @@ def variance_shares(population: Population, q: Array, length: Array | float) -> 
 
     These are Sobol's indices of the vector deviation (first-order and total are the same, as it is
     linear in independent errors), by the trace of its covariance. For the norm |d| itself they
-    hold approximately; `sensitivity.shares.total_effects` has them by simulation.
+    hold approximately; `sensitivity.shares.total_effect_indices` has them by simulation.
 
     Reference:
         Gamboa et al., Electron. J. Statist. 8 (2014) 575: Sobol indices of vector outputs.

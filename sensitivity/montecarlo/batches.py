@@ -28,7 +28,7 @@ class Batch(NamedTuple):
     machines: int
 
 
-class Ground(NamedTuple):
+class SharedArrays(NamedTuple):
     """What all batches share; made once, by whoever counts.
 
     Attributes:
@@ -56,10 +56,10 @@ def ground(
     tolerance: float,
     worst: tuple[int, int],
     threads: int | None,
-) -> Ground:
+) -> SharedArrays:
     """Columns of all poses, and what else the batches share."""
     G = first_order(population.model, q, length)
-    return Ground(population, G, width, tolerance, worst, threads)
+    return SharedArrays(population, G, width, tolerance, worst, threads)
 
 
 def bin_width(rms: Array) -> Array:
@@ -74,7 +74,7 @@ def batches(count: int, rng: np.random.Generator) -> Iterator[Batch]:
         yield Batch(tuple(rng.spawn(-(-machines // DRAWS_A_CHILD))), machines)
 
 
-def counted(shared: Ground, batch: Batch) -> Lengths:
+def counted(shared: SharedArrays, batch: Batch) -> Lengths:
     """Draw the machines of a batch and count the lengths of their deviations at all poses."""
     lots, left = [], batch.machines
     for child in batch.children:

@@ -13,10 +13,10 @@ from sensitivity.montecarlo.batches import (
     ground,
     seed_words,
 )
-from sensitivity.montecarlo.crew import Crew, in_order
 from sensitivity.montecarlo.lengths import Lengths
 from sensitivity.montecarlo.stability import Stabiliser
 from sensitivity.montecarlo.tally import QUANTILES, Tally, Volumetric, moments, quantiles
+from sensitivity.montecarlo.workers import Crew, in_order
 from sensitivity.population import Population
 from twin.compute import Progress, silent
 from twin.errors import DesignError
@@ -69,8 +69,8 @@ def volumetric(
         digits: Significant digits that have to be stable; 0 for none.
         recurrence: Whether to look for the worst poses of every machine; not a number otherwise.
         crew: Who does the work: None for this process, an executor of `concurrent.futures`, or the
-            client of a Dask cluster (`sensitivity.montecarlo.cluster`). The result for a seed is
-            the same to the last bit wherever numpy and processor are the same.
+            client of a Dask cluster (`sensitivity.montecarlo.dask_cluster`). The result for a seed
+            is the same to the last bit wherever numpy and processor are the same.
 
     Raises:
         DesignError: Fewer than two draws, no pose, fewer draws than two batches for stable digits,

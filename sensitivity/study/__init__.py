@@ -3,7 +3,7 @@
 from sensitivity.study.machine_study import Study, run_study
 from sensitivity.study.study_file import write_study
 from sensitivity.study.trajectory import AlongPath, Trajectory, along_path, paper_trajectory
-from sensitivity.study.volume import Volume, has_volume, volume
+from sensitivity.study.volume_map import Volume, has_volume, volume
 
 __all__ = [
     "AlongPath",

@@ -157,7 +157,7 @@ def run_study(
         progress: Told what is being done.
         tolerance: For the exceedance, mm.
         digits: Significant digits that have to be stable (JCGM 101); 0 for none.
-        crew: Who draws the machines (`sensitivity.montecarlo.crew`).
+        crew: Who draws the machines (`sensitivity.montecarlo.workers`).
 
     Raises:
         NotReachable: The workspace has no pose.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from artefact.body.patch import unit
-from artefact.reach.clearance import ProbeShape, clearance
+from artefact.reach.probe_clearance import ProbeShape, clearance
 from twin.errors import ShapeMismatch
 
 PROBE = ProbeShape(3.0, ((50.0, 1.5), (80.0, 10.0), (160.0, 31.0)))

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.body.constraints import (
+from artefact.body.freeform import OVERHANG, graph_patch
+from artefact.body.limits import (
     Limits,
     check,
     constraints,
@@ -13,10 +14,9 @@ from artefact.body.constraints import (
     min_concave_radius,
     overhang,
 )
-from artefact.body.freeform import OVERHANG, graph_patch
 from artefact.body.spline import clamped_knots
 from artefact.body.standard import Base
-from artefact.layout.sites import Fittings, Frame, Site, patch_of_site, standard_from_sites
+from artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard_from_sites
 from twin.errors import NotBuildable, ShapeMismatch
 from twin.units import DEG
 
@@ -168,4 +168,4 @@ def test_refusals_of_the_builder():
         standard_from_sites("aside", [level])
     wall = [Site(k * 20 * DEG, 128.0, 70.0, 0.0, (20.0, 20.0), FLAT) for k in range(18)]
     with pytest.raises(NotBuildable, match="no free place on the rim for SPH1"):
-        standard_from_sites("full", wall, Frame(base=Base((150.0, 150.0), 150.0, 30.0)))
+        standard_from_sites("full", wall, Blank(base=Base((150.0, 150.0), 150.0, 30.0)))

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.body.constraints import (
+from artefact.body.freeform import graph_patch
+from artefact.body.limits import (
     Limits,
     check,
     constraints,
@@ -14,11 +15,10 @@ from artefact.body.constraints import (
     min_concave_radius,
     overhang,
 )
-from artefact.body.freeform import graph_patch
-from artefact.layout.sites import Frame
+from artefact.layout.sites import Blank
 from artefact.place.placement import PlacementOptions, place
-from artefact.reach.clearance import ProbeShape
-from artefact.reach.touchable import Probing, Requests
+from artefact.reach.probe_clearance import ProbeShape
+from artefact.reach.touchable import ProbeReach, Requests
 from sensitivity.first_order.workspace import Workspace
 from twin.errors import NotBuildable, NotReachable, OutsideTravel
 from twin.machine.chain import Axis, make_chain
@@ -206,7 +206,7 @@ def touch(standard, feature, uv, c_b):
     ],
 )
 def test_what_is_against_a_touch(standard, chain, feature, uv, c_b, what, reason):
-    probing = replace(Probing(chain, Setup("a"), PROBE, 160.0), **what)
+    probing = replace(ProbeReach(chain, Setup("a"), PROBE, 160.0), **what)
     wanted = touch(standard, feature, uv, c_b)
     (found,) = probing.reasons(standard, wanted)
     assert re.match(f"{reason}$", found)
@@ -238,10 +238,10 @@ LIMITS_OF_USER = {
     ],
 )
 def test_contradictory_limits_are_refused_with_the_one_that_binds(chain, limits, what, kind, line):
-    probing = replace(Probing(chain, Setup("a"), PROBE, 160.0), **what)
+    probing = replace(ProbeReach(chain, Setup("a"), PROBE, 160.0), **what)
     workspace = Workspace(chain, LIMITS_OF_USER, 160.0)
     with pytest.raises(kind, match=line) as caught:
-        place(probing, Frame(limits=limits), workspace, np.random.default_rng(1), options=OPTIONS)
+        place(probing, Blank(limits=limits), workspace, np.random.default_rng(1), options=OPTIONS)
     assert "\n" not in str(caught.value)
 
 
@@ -249,6 +249,6 @@ def test_a_workspace_out_of_reach_is_refused(chain):
     with pytest.raises(OutsideTravel, match="workspace of X: 500 to 600, beyond the travel -400"):
         Workspace(chain, {**LIMITS_OF_USER, "X": (500.0, 600.0)}, 160.0)
     narrow = Workspace(chain, {**LIMITS_OF_USER, "B": (-109.0 * DEG, -108.0 * DEG)}, 160.0)
-    probing = Probing(chain, Setup("a"), PROBE, 160.0)
+    probing = ProbeReach(chain, Setup("a"), PROBE, 160.0)
     with pytest.raises(NotReachable, match="the limits of B leave no room to approach a reading"):
-        place(probing, Frame(), narrow, np.random.default_rng(1), options=OPTIONS)
+        place(probing, Blank(), narrow, np.random.default_rng(1), options=OPTIONS)

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from artefact.body.constraints import Limits, check
+from artefact.body.limits import Limits, check
 from artefact.body.patch import Meeting
 from artefact.body.standard import Base
-from artefact.layout.sites import Frame
+from artefact.layout.sites import Blank
 from artefact.place.placement import PlacementOptions, place
-from artefact.reach.clearance import ProbeShape, clearance
 from artefact.reach.first_contact import contact
-from artefact.reach.touchable import Probing
+from artefact.reach.probe_clearance import ProbeShape, clearance
+from artefact.reach.touchable import ProbeReach
 from artefact.worth.touch_choice import table_poses
 from information.criteria.posterior import Posterior
 from sensitivity.first_order.workspace import Workspace
@@ -55,12 +55,12 @@ def workspace(chain):
 
 @pytest.fixture(scope="module")
 def probing(chain):
-    return Probing(chain, Setup("a"), PROBE, LENGTH)
+    return ProbeReach(chain, Setup("a"), PROBE, LENGTH)
 
 
 @pytest.fixture(scope="module")
 def placement(probing, workspace):
-    return place(probing, Frame(), workspace, np.random.default_rng(3), options=OPTIONS)
+    return place(probing, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
 
 
 def test_the_standard_meets_every_limit(placement):
@@ -175,7 +175,7 @@ def test_every_patch_says_what_it_is_for(placement, chain):
 
 
 def test_the_same_seed_gives_the_same_standard(placement, probing, workspace):
-    again = place(probing, Frame(), workspace, np.random.default_rng(3), options=OPTIONS)
+    again = place(probing, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
     np.testing.assert_array_equal(again.requests.point, placement.requests.point)
     for one, other in zip(again.standard.patches, placement.standard.patches, strict=True):
         np.testing.assert_array_equal(one.heights, other.heights)
@@ -183,19 +183,19 @@ def test_the_same_seed_gives_the_same_standard(placement, probing, workspace):
 
 def test_too_many_patches_for_a_blank_are_refused(probing, workspace):
     options = PlacementOptions(patches=16, touches=160, poses=12, sites=60)
-    small = Frame(base=Base(half_size=(70.0, 70.0), corner_radius=10.0))
+    small = Blank(base=Base(half_size=(70.0, 70.0), corner_radius=10.0))
     with pytest.raises(NotBuildable, match="patches"):
         place(probing, small, workspace, np.random.default_rng(1), options=options)
 
 
 def test_a_blank_larger_than_the_table_is_refused(probing, workspace):
-    large = Frame(base=Base(half_size=(180.0, 140.0)))
+    large = Blank(base=Base(half_size=(180.0, 140.0)))
     with pytest.raises(NotBuildable, match="360 x 280 mm is larger than the table, diameter 320"):
         place(probing, large, workspace, np.random.default_rng(1), options=OPTIONS)
 
 
 def test_limits_that_nothing_meets_are_named(probing, workspace):
-    light = Frame(limits=Limits(max_mass=5.0))
+    light = Blank(limits=Limits(max_mass=5.0))
     with pytest.raises(NotBuildable, match=r"no choice of 8 patches .*mass is .* limit 5\.000 kg"):
         place(probing, light, workspace, np.random.default_rng(1), options=OPTIONS)
 
@@ -203,16 +203,16 @@ def test_limits_that_nothing_meets_are_named(probing, workspace):
 def test_a_standard_beyond_the_travel_is_refused(chain, workspace):
     away = np.eye(4)
     away[:3, 3] = [2000.0, 0.0, 0.0]
-    far = Probing(chain, Setup("a", away), PROBE, LENGTH)
+    far = ProbeReach(chain, Setup("a", away), PROBE, LENGTH)
     with pytest.raises(NotReachable, match="every axis within its limits"):
-        place(far, Frame(), workspace, np.random.default_rng(1), options=OPTIONS)
+        place(far, Blank(), workspace, np.random.default_rng(1), options=OPTIONS)
 
 
 def test_an_unknown_criterion_is_refused(probing, workspace):
     with pytest.raises(DesignError, match="criterion 'T', expected one of I, G, D, A, E"):
         place(
             probing,
-            Frame(),
+            Blank(),
             workspace,
             np.random.default_rng(1),
             options=PlacementOptions(criterion="T"),

@@ -5,13 +5,13 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from artefact.body.constraints import Limits, max_slope, min_concave_radius
 from artefact.body.freeform import graph_patch
+from artefact.body.limits import Limits, max_slope, min_concave_radius
 from artefact.layout.candidates import TALLEST, neighbours_fit, random_sites, smooth_heights
-from artefact.layout.sites import Frame, Site
+from artefact.layout.sites import Blank, Site
 from artefact.layout.spread import spread
-from artefact.reach.clearance import ProbeShape
-from artefact.reach.touchable import Probing, Requests, joined
+from artefact.reach.probe_clearance import ProbeShape
+from artefact.reach.touchable import ProbeReach, Requests, joined
 from artefact.worth.attribution import error_shares
 from twin.errors import NotBuildable
 from twin.frames import fixed_xyz, pose
@@ -64,7 +64,7 @@ def test_sites_that_overlap_do_not_fit():
         Site(10.0 * DEG, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
         Site(180.0 * DEG, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
     ]
-    fits = neighbours_fit(sites, Frame())
+    fits = neighbours_fit(sites, Blank())
     assert not fits[0, 1]
     assert not fits[1, 0]
     assert fits[0, 2]
@@ -73,7 +73,7 @@ def test_sites_that_overlap_do_not_fit():
 
 
 def test_sites_cover_the_blank():
-    sites = random_sites(Frame(), 100, np.random.default_rng(4))
+    sites = random_sites(Blank(), 100, np.random.default_rng(4))
     assert 95 <= len(sites) <= 105
     tilt = np.array([s.tilt for s in sites]) / DEG
     azimuth = np.array([s.azimuth for s in sites])
@@ -84,13 +84,13 @@ def test_sites_cover_the_blank():
     lean = np.array([s.lean for s in sites]) / DEG
     assert np.abs(lean).max() > 90.0
     assert 0.3 < np.mean(lean > 0.0) < 0.7  # to both sides
-    small = random_sites(Frame(blank_height=110.0), 100, np.random.default_rng(4))
+    small = random_sites(Blank(blank_height=110.0), 100, np.random.default_rng(4))
     assert max(s.height for s in small) < 0.6 * max(s.height for s in sites)
 
 
 def test_readings_are_those_of_the_inverse():
     setup = Setup("b", pose(fixed_xyz(np.array([0.01, -0.02, 0.5])), np.array([5.0, -6.0, 7.0])))
-    probing = Probing(HEAD, setup, PROBE, 160.0)
+    probing = ProbeReach(HEAD, setup, PROBE, 160.0)
     touches = wanted()
     for gap in (0.0, 5.0, -3.0):
         ball = touches.point + (3.0 + gap) * touches.normal
@@ -102,7 +102,7 @@ def test_readings_are_those_of_the_inverse():
 
 
 def test_a_touch_from_behind_or_beyond_the_travel_is_not_reachable():
-    probing = Probing(HEAD, Setup("a"), PROBE, 160.0)
+    probing = ProbeReach(HEAD, Setup("a"), PROBE, 160.0)
     up = Requests(
         np.full(4, "FF1"),
         np.array([[0.0, 0.0, 50.0]] * 3 + [[900.0, 0.0, 50.0]]),

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from artefact.layout.sites import Frame
-from artefact.reach.clearance import ProbeShape
-from artefact.reach.touchable import Probing
-from artefact.worth.criterion import criterion, random_touches
-from artefact.worth.touch_curve import TouchCurve, touch_curve
+from artefact.layout.sites import Blank
+from artefact.reach.probe_clearance import ProbeShape
+from artefact.reach.touchable import ProbeReach
+from artefact.worth.touch_criterion import criterion, random_touches
+from artefact.worth.touch_curves import TouchCurve, touch_curve
 from information.criteria.posterior import Posterior
 from report.plots.touch_curve_picture import draw_touch_curves
 from sensitivity.first_order.workspace import Workspace
@@ -32,9 +32,9 @@ def aim():
     area = Workspace(
         MILL, {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}, 160.0
     )
-    probing = Probing(MILL, Setup("a"), PROBE, 160.0)
+    probing = ProbeReach(MILL, Setup("a"), PROBE, 160.0)
     model = Population(MILL).model
-    return criterion(probing, model, Frame(), area, 1.0 * UM, np.random.default_rng(4))
+    return criterion(probing, model, Blank(), area, 1.0 * UM, np.random.default_rng(4))
 
 
 @pytest.fixture(scope="module")

@@ -1,9 +1,9 @@
 """A search that never has enough ends at its limit, and says so."""
 
-import diagnosis.search.rounds as rounds
-from diagnosis.answer.diagnose import diagnose
+import diagnosis.search.search_loop as rounds
+from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.search.selection import MOST_SETS, Budget
-from twin.library.register import parse_effect
+from twin.library.catalogue import parse_effect
 
 KEY = (8, "hmc1995", ("thermal-expansion(Y,scaleY)",))
 LIBRARY = ("thermal-expansion(Y,scaleY)", "backlash(X)", "drift", "probe-radius", "probe-lobing")

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.answer.diagnose import diagnose
+from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
-from diagnosis.evidence.signatures import Sized
+from diagnosis.evidence.effect_signatures import ScaledEffect
 from diagnosis.fit.gross import GrossErrors
 from diagnosis.search.edges import offered
 from twin.effects.artefact import ArtefactSlip
-from twin.library.register import parse_effect
+from twin.library.catalogue import parse_effect
 from twin.units import UM
 
 NOTHING = (2, "hsm600u", ())
@@ -89,6 +89,6 @@ def test_what_adjoins_the_instant_of_a_slip_is_offered(run) -> None:
     t = run.touches
     rows = in_time(t, 0)
     instant = 0.5 * (t.time[rows[50]] + t.time[rows[51]])
-    slip = [Sized(ArtefactSlip(float(instant)))]
+    slip = [ScaledEffect(ArtefactSlip(float(instant)))]
     found = offered(t, gross(t, rows[[48, 49, 50, 52]]), slip)
     assert np.flatnonzero(found).tolist() == sorted(rows[[48, 49, 50]])

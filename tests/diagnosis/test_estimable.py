@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.estimable import estimable
+from diagnosis.fit.estimability import estimable
 from diagnosis.fit.identification import fit_run
 from twin.model.model import columns
 from twin.units import NM

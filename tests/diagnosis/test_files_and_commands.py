@@ -11,8 +11,8 @@ from diagnosis.files.diagnosis_file import write_diagnosis
 from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
-from diagnosis.fit.mixed_units import mixed_units
-from diagnosis.residual.remarks import remarks
+from diagnosis.fit.unit_mistakes import mixed_units
+from diagnosis.residual.run_remarks import remarks
 from matstd.cli import main
 from twin.errors import BadFile
 from twin.library.ordinary import ordinary_model
@@ -33,8 +33,8 @@ KEYS = {
 }
 HOSE = """
 from dataclasses import dataclass
-from twin.effect import Parameter, Term, Where
-from twin.library import Kind
+from twin.model import Parameter, Term, Where
+from twin.model import Kind
 
 @dataclass(frozen=True)
 class Hose:
@@ -300,7 +300,7 @@ def test_plans_stand_beside_the_diagnosis(tmp_path, table) -> None:
 
 
 def test_named_effects_and_effects_of_ones_own(folder, tmp_path, monkeypatch) -> None:
-    import twin.library.register as library
+    import twin.library.catalogue as library
 
     monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
     (tmp_path / "mine.py").write_text(HOSE, encoding="utf-8")

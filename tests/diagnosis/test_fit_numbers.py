@@ -10,7 +10,7 @@ import pytest
 
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.linear import left_out, solve
-from diagnosis.residual.remarks import remarks
+from diagnosis.residual.run_remarks import remarks
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 from twin.errors import NotEnoughData
 from twin.library.ordinary import ordinary_model

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from simulator_experiment import random_experiment, random_noise
 
-from diagnosis.answer.diagnose import diagnose
+from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
 from report.words.diagnosis_words import verdict_sentence
-from twin.library.register import parse_effect
+from twin.library.catalogue import parse_effect
 from twin.model.model import columns
 from twin.units import UM
 

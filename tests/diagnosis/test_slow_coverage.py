@@ -5,7 +5,7 @@ import pytest
 from simulator_case import read_back, simulate_case
 from simulator_draw import draw
 
-from diagnosis.answer.diagnose import diagnose
+from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
 
 MACHINES = ("hsm600u", "fork", "hmc1995")

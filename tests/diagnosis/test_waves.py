@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnosis.evidence.effect_signatures import ResidualSpace
 from diagnosis.evidence.evidence import EffectSet
-from diagnosis.evidence.signatures import Complement
 from diagnosis.fit.identification import fit_run
 from diagnosis.residual.patterns import thinned
 from diagnosis.residual.waves import best_wave
@@ -18,7 +18,7 @@ KEY = (1, "hmc1995")
 
 def best(run):
     fit = fit_run(run, ordinary_model(run.touches.chain))
-    complement = Complement.of(fit)
+    complement = ResidualSpace.of(fit)
     nothing = EffectSet(complement, np.zeros((len(complement.residual), 0)))
     return best_wave(nothing, run.touches, thinned(complement))
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body.constraints import Limits
+from artefact.body.limits import Limits
 from artefact.brief.project_file import read_project
 from artefact.place.placement import PlacementOptions
-from artefact.worth.criterion import CRITERIA, Wishes
+from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
 from matstd.cli import main
 from matstd.wanted import frame, placement_options, probing
 from twin.files.run_file import read_run
@@ -225,7 +225,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     )
     assert "potential" not in re.sub("#.*", "", plain)
     path.write_text(plain)
-    assert placement_options(read_project(path)).wishes == Wishes(0.3, 240)
+    assert placement_options(read_project(path)).wishes == CriterionOptions(0.3, 240)
     for criterion in CRITERIA:
         wanted = text.replace('criterion = "I"', f'criterion = "{criterion}"')
         for key, value in (("drawn_machines", "8"), ("worst_share", "0.5"), ("potential", "0.1")):
@@ -234,7 +234,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
         options = placement_options(read_project(path))
         assert options.criterion == criterion
         assert options.poses == 12
-        assert options.wishes == Wishes(0.1, 240, 8, 0.5)
+        assert options.wishes == CriterionOptions(0.1, 240, 8, 0.5)
 
 
 def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:

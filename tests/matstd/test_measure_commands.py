@@ -212,8 +212,8 @@ def test_json_and_words_name_a_region_alike(folder, tmp_path, capsys) -> None:
 LATE = '''"""Fails at one value of its inner parameter, which is not among those tried first."""
 from dataclasses import dataclass, replace
 import numpy as np
-from twin.effect import Inner, Parameter, Term, Where
-from twin.library import Kind
+from twin.model import Inner, Parameter, Term, Where
+from twin.model import Kind
 
 @dataclass(frozen=True)
 class Late:
@@ -248,7 +248,7 @@ LATE = Kind("late", "", "f", "u", "t", "s", lambda c, a: Late(), lambda t: (Late
 def test_a_users_formula_that_fails_is_a_line_of_his_file(
     folder, tmp_path, capsys, monkeypatch, old, new, expected
 ) -> None:
-    from twin.library import register as library
+    from twin.library import catalogue as library
 
     monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
     (tmp_path / "late.py").write_text(LATE.replace(old, new) if old else LATE, encoding="utf-8")

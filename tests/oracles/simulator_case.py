@@ -16,8 +16,8 @@ from simulator_draw import random_direction, random_wave
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment, random_noise
 
 from twin.files.run_file import read_run
+from twin.library.catalogue import proposals
 from twin.library.ordinary import ordinary_model
-from twin.library.register import proposals
 from twin.model.effect import Tunable
 from twin.model.model import columns
 

@@ -14,7 +14,7 @@ from simulator_machine import read_machine, tip
 from simulator_surface import foot, random_pads, surface_point
 
 from twin.files.machine_file import read_machine as read_chain
-from twin.library.register import parse_effect
+from twin.library.catalogue import parse_effect
 from twin.machine.contribution import Contribution
 from twin.machine.kinematics import exact_tip
 from twin.machine.kinematics import tip as twin_tip

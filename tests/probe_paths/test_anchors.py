@@ -8,7 +8,7 @@ import pytest
 
 from probe_paths.campaign.anchors import anchored
 from probe_paths.campaign.contacts import VirtualMachine
-from probe_paths.campaign.foot_points import foot_points
+from probe_paths.campaign.foot_point_search import foot_points
 from probe_paths.campaign.simulation import simulate
 from sensitivity.population.sampling import Population, drawn_errors
 from twin.frames import Array, apply, inverse

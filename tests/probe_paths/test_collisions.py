@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
-from probe_paths.campaign.evaluate import evaluate
+from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.virtual import run_program
 from probe_paths.control.interpreter import interpret
 from probe_paths.control.log import read_log

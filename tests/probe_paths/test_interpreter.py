@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from probe_paths.control.interpreter import interpret, read_program, stated_probe
-from probe_paths.control.steps import Halt, Move, Print, Probing
+from probe_paths.control.steps import Halt, Move, Print, ProbeStep
 from probe_paths.plan.probe import Probe
 from twin.errors import BadFile
 from twin.frames import apply, turn
@@ -288,7 +288,7 @@ def test_rotary_axes_turn_only_at_the_top_and_from_the_stated_side(read, chain):
     for program in read:
         here = None
         for step in program.steps:
-            if isinstance(step, Probing):
+            if isinstance(step, ProbeStep):
                 here = step.q
             elif isinstance(step, Move):
                 if here is not None and np.any(np.abs(step.q - here)[rotary] > 0.0):

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from sensitivity.first_order.workspace import latin_hypercube
-from sensitivity.montecarlo.cluster import cluster
-from sensitivity.montecarlo.crew import in_order
+from sensitivity.montecarlo.dask_cluster import cluster
 from sensitivity.montecarlo.random_machines import volumetric
+from sensitivity.montecarlo.workers import in_order
 from sensitivity.population.sampling import Population
 from twin.errors import DesignError
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sensitivity.first_order.by_parameter import jacobian_by_parameter
-from sensitivity.first_order.jacobian import jacobian, sensitivity
+from sensitivity.first_order.jacobians import jacobian, sensitivity
 from sensitivity.first_order.workspace import latin_hypercube
 from twin.machine.chain import Axis, make_chain
 from twin.machine.contribution import Contribution

@@ -5,8 +5,8 @@ import pytest
 from scipy.stats import chi
 
 from sensitivity.first_order.indices import covariance, mean_squares
-from sensitivity.first_order.jacobian import jacobian
-from sensitivity.first_order.normal_length import LEVELS, normal_length, principal
+from sensitivity.first_order.jacobians import jacobian
+from sensitivity.first_order.normal_lengths import LEVELS, normal_length, principal
 from sensitivity.first_order.workspace import latin_hypercube
 from sensitivity.montecarlo.random_machines import volumetric
 from sensitivity.population.sampling import Population

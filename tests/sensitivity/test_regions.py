@@ -6,7 +6,7 @@ import pytest
 from report.maps.regions_picture import draw_regions
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
-from sensitivity.shares.regions import region_totals, region_words, regions
+from sensitivity.shares.workspace_regions import region_totals, region_words, regions
 from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
 from twin.machine.ranges import DEFAULT_RANGES, Ranges

@@ -8,7 +8,7 @@ from sensitivity.montecarlo.batches import first_order
 from sensitivity.population.dependence import Group, grouped
 from sensitivity.population.distributions import Distributions
 from sensitivity.population.sampling import Population, coefficients, draw
-from sensitivity.shares.total_effects import norm_shares, total_effects
+from sensitivity.shares.total_effect_indices import norm_shares, total_effects
 from twin.errors import DesignError, ShapeMismatch
 from twin.machine.ranges import DEFAULT_RANGES, Ranges
 

@@ -7,7 +7,7 @@ from report.maps.rotary_picture import draw_rotary, level, points_over_rotary
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study
-from sensitivity.study.volume import has_volume, volume
+from sensitivity.study.volume_map import has_volume, volume
 from twin.errors import NotReachable
 from twin.frames import apply
 from twin.machine.chain import Axis, make_chain

@@ -7,8 +7,8 @@ import pytest
 
 from twin.effects.thermal_lag import lagged
 from twin.frames import fixed_xyz, pose
+from twin.library.catalogue import parse_effect, proposals
 from twin.library.ordinary import ordinary_model
-from twin.library.register import parse_effect, proposals
 from twin.machine.chain import Axis, make_chain
 from twin.machine.contribution import Contribution
 from twin.model.effect import Effect, Tunable, contribution
@@ -92,7 +92,7 @@ def every(label: str) -> list[Effect]:
 
 
 def test_the_made_up_runs_have_every_kind_of_effect() -> None:
-    from twin.library.register import kinds
+    from twin.library.catalogue import kinds
 
     assert {e.kind for _, e in ALL} == {k.word for k in kinds()}
     assert len({e.name for e in every("hsm600u")}) == len(every("hsm600u"))

@@ -8,7 +8,7 @@ outward normal n reads dev = -n . (motion of the tip) + n . (shift of the standa
 import numpy as np
 import pytest
 
-from twin.library.register import parse_effect
+from twin.library.catalogue import parse_effect
 from twin.machine.chain import Axis, make_chain
 from twin.model.effect import Tunable
 from twin.model.model import columns

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import twin.library.register as library
+import twin.library.catalogue as library
 from twin.effects.backlash import KIND as BACKLASH
 from twin.errors import BadFile, DesignError, UnknownAxis, UnknownEffect, UnknownSymbol
 from twin.machine.chain import Axis, make_chain
@@ -143,8 +143,8 @@ USERS = '''
 """A hose that drags at the ram: an effect of our own."""
 from dataclasses import dataclass
 
-from twin.effect import Parameter, Term, Where
-from twin.library import Kind
+from twin.model import Parameter, Term, Where
+from twin.model import Kind
 from twin.units import UM
 
 

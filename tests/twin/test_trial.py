@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twin.errors import BadFile, UnknownEffect
-from twin.library import register as library
+from twin.library import catalogue as library
 from twin.library.trial import try_kind, users_lines
 from twin.machine.chain import Axis, make_chain
 from twin.record.touches import at_poses
@@ -16,8 +16,8 @@ FILE = '''from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.effect import Inner, Parameter, Term, Where
-from twin.library import Kind
+from twin.model import Inner, Parameter, Term, Where
+from twin.model import Kind
 from twin.units import UM
 
 
@@ -195,8 +195,8 @@ def test_the_effect_of_the_guide_is_one(own_register, tmp_path: Path) -> None:
     code = guide.read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
     path = tmp_path / "own.py"
     imports = """from dataclasses import dataclass
-from twin.effect import Parameter, Term, Where
-from twin.library import Kind
+from twin.model import Parameter, Term, Where
+from twin.model import Kind
 from twin.units import UM
 """
     path.write_text(imports + code, encoding="utf-8")

@@ -1,7 +1,6 @@
 """Effects by name: the register, trials of users' own effects, the ordinary geometric model."""
 
-from twin.library.ordinary import ordinary_model
-from twin.library.register import (
+from twin.library.catalogue import (
     Kind,
     is_seen,
     kinds,
@@ -12,6 +11,7 @@ from twin.library.register import (
     register,
     users_files,
 )
+from twin.library.ordinary import ordinary_model
 from twin.library.trial import fault, try_effect, try_kind, users_lines
 
 __all__ = [

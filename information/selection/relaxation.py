@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from information.criteria import Purpose
+from information.criteria import DesignCriterion
 from information.selection.bound import slope
 from information.selection.shares import cells, keeps, largest_sum
 from information.selection.touch_selection import Mask, Quota
@@ -55,7 +55,7 @@ class Relaxed:
 
 
 def relaxed(
-    aim: Purpose,
+    aim: DesignCriterion,
     W: Array,
     count: int,
     start: Mask,
@@ -132,7 +132,7 @@ def _worth_looking_at(gain: Array, there: IntArray, count: int, cell: IntArray) 
     return np.union1d(few, order[rank < 4 + 2 * count // len(start)])
 
 
-def _stepped(aim: Purpose, W: Array, x: Array, towards: Array) -> Array:
+def _stepped(aim: DesignCriterion, W: Array, x: Array, towards: Array) -> Array:
     """Some way from fractions towards others, as far as halving finds that the criterion falls."""
     ends = []
     for weight in (x, towards):
@@ -189,7 +189,9 @@ class _Board:
         return i, j, float(allowed[a, b])
 
 
-def _exchanged(aim: Purpose, W: Array, x: Array, quotas: tuple[Quota, ...]) -> tuple[Array, int]:
+def _exchanged(
+    aim: DesignCriterion, W: Array, x: Array, quotas: tuple[Quota, ...]
+) -> tuple[Array, int]:
     """Vertex exchanges among a few candidates: their new weights, and how many were made."""
     x = x.copy()
     board = _Board(quotas, len(x))
@@ -214,7 +216,7 @@ def _exchanged(aim: Purpose, W: Array, x: Array, quotas: tuple[Quota, ...]) -> t
 
 
 def _turned(
-    aim: Purpose,
+    aim: DesignCriterion,
     W: Array,
     inverse: Array,
     reach: Array,

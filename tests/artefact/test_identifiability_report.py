@@ -7,11 +7,15 @@ import pytest
 
 from artefact.compare import alternatives as module
 from artefact.compare.alternatives import alternatives, both, machine_rank, set_up, tried_in, ways
-from artefact.compare.knowable import as_json, knowable, write_identifiability
-from artefact.layout.sites import Frame
-from artefact.reach.touchable import Probing
-from artefact.worth.criterion import criterion, random_touches
-from information.identifiability.combinations import combinations
+from artefact.compare.identifiability import (
+    as_json,
+    identifiability_report,
+    write_identifiability,
+)
+from artefact.layout.sites import Blank
+from artefact.reach.touchable import ProbeReach
+from artefact.worth.touch_criterion import criterion, random_touches
+from information.identifiability.estimable_combinations import combinations
 from information.identifiability.separation import NEVER, SIDEWAYS
 from probe_paths.plan.probe import Probe
 from sensitivity.first_order.workspace import Workspace
@@ -38,11 +42,11 @@ def aim():
     }
     chain = make_chain("table/table", "[w C' B' X' f Y Z (C1) t]", axes, (0.0, 0.0, -500.0))
     probe = Probe()
-    probing = Probing(chain, Setup("a"), probe.shape, probe.length)
+    probing = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     limits = {"B": (-90.0 * DEG, 20.0 * DEG), "C": (-180.0 * DEG, 180.0 * DEG)}
     workspace = Workspace(chain, limits, probe.length)
     rng = np.random.default_rng(3)
-    return criterion(probing, Population(chain).model, Frame(), workspace, 1.0 * UM, rng)
+    return criterion(probing, Population(chain).model, Blank(), workspace, 1.0 * UM, rng)
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +56,7 @@ def requests(aim):
 
 @pytest.fixture(scope="module")
 def known(aim, requests):
-    return knowable(aim, requests, np.random.default_rng(5))
+    return identifiability_report(aim, requests, np.random.default_rng(5))
 
 
 def test_a_second_stylus_shows_the_tilts_of_the_ram_and_a_second_set_up_shows_nothing(known):

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from information.selection.groups import best_groups
-from information.selection.touch_selection import Purpose, Quota, Selection, exchange, fill, purpose
+from information.selection.touch_selection import (
+    DesignCriterion,
+    Quota,
+    Selection,
+    exchange,
+    fill,
+    purpose,
+)
 from twin.errors import DesignError
 
 ROUNDING = 1e-9
@@ -18,7 +25,7 @@ def case():
     rng = np.random.default_rng(8)
     W = rng.normal(size=(60, 6)) * np.array([5.0, 3.0, 2.0, 1.0, 0.5, 0.2])
     half = rng.normal(size=(6, 6))
-    return Purpose(np.eye(6), half @ half.T), W
+    return DesignCriterion(np.eye(6), half @ half.T), W
 
 
 def value_of(aim, W, rows):
@@ -52,7 +59,7 @@ def test_choice_is_near_the_best_of_all_possibilities():
     ratios = []
     for _ in range(20):
         W, half = 2.0 * rng.normal(size=(11, 4)), rng.normal(size=(4, 4))
-        aim = Purpose(np.eye(4), half @ half.T)
+        aim = DesignCriterion(np.eye(4), half @ half.T)
         best = min(value_of(aim, W, list(c)) for c in combinations(range(11), 5))
         selection = Selection(aim, W)
         fill(selection, 5)

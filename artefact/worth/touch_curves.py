@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.reach import Requests
-from artefact.worth.criterion import Criterion
+from artefact.worth.touch_criterion import Criterion
 from information.criteria import purpose
 from information.selection import Selection, fill
 from twin.errors import DesignError

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import LinearConstraint, minimize
 
 from information.selection.certificate import bound_at, certificate, relaxed, rounded
-from information.selection.touch_selection import Purpose, Selection, exchange, fill
+from information.selection.touch_selection import DesignCriterion, Selection, exchange, fill
 from twin.errors import DesignError
 
 ROUNDING = 1e-9
@@ -19,7 +19,7 @@ def case(seed, rows, columns, is_determinant):
     rng = np.random.default_rng(seed)
     W = rng.normal(size=(rows, columns)) * np.linspace(3.0, 0.5, columns)
     half = rng.normal(size=(columns, columns))
-    return Purpose(np.eye(columns), half @ half.T, is_determinant), W
+    return DesignCriterion(np.eye(columns), half @ half.T, is_determinant), W
 
 
 def value_of(aim, W, weight):

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.evidence import (
-    Complement,
     EffectSet,
     Progress,
+    ResidualSpace,
+    ScaledEffect,
     Signatures,
-    Sized,
     quiet,
     signatures,
     whole_grids,
@@ -20,7 +20,7 @@ from diagnosis.residual import Structure, find_structure
 from diagnosis.search.edges import offered, without
 from diagnosis.search.refine import refined_set
 from diagnosis.search.screening import Library
-from diagnosis.search.selection import Budget, Chosen, Search
+from diagnosis.search.selection import Budget, EffectSubset, Search
 from diagnosis.search.settle import settled
 from twin.frames import Array
 from twin.model import Effect, Model
@@ -62,7 +62,7 @@ class Task:
 
     def fit(
         self,
-        effects: Sequence[Sized] = (),
+        effects: Sequence[ScaledEffect] = (),
         gross: GrossErrors | None = None,
         free_inner: bool = False,
     ) -> Fit:
@@ -77,13 +77,13 @@ class Task:
         theta = fit.theta[: len(model.parameters)]
         return fit_run(self.run, model, prior, free_inner=theta, gross=fit.gross)
 
-    def found_prior(self, sized: Sized) -> Prior:
+    def found_prior(self, sized: ScaledEffect) -> Prior:
         """Of the parameters of an effect that was added."""
         return Prior.of_effects([sized.effect]).widened(FREEDOM * sized.scale)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Round:
+class SearchState:
     """Result of the search at given gross errors.
 
     Attributes:
@@ -100,8 +100,8 @@ class Round:
     base: Fit
     library: Library
     search: Search
-    chosen: Chosen
-    effects: tuple[Sized, ...]
+    chosen: EffectSubset
+    effects: tuple[ScaledEffect, ...]
     at_start: tuple[Structure, ...]
     left: tuple[Structure, ...]
     nameless: tuple[Structure, ...]
@@ -117,7 +117,9 @@ class Round:
         return self.search.fixed
 
 
-def tuned(task: Task, named: Sequence[Effect], progress: Progress = quiet) -> tuple[Sized, ...]:
+def tuned(
+    task: Task, named: Sequence[Effect], progress: Progress = quiet
+) -> tuple[ScaledEffect, ...]:
     """Named effects with their inner parameters at the best point of their grids, refined.
 
     Args:
@@ -127,7 +129,7 @@ def tuned(task: Task, named: Sequence[Effect], progress: Progress = quiet) -> tu
     """
     if not named:
         return ()
-    complement = Complement.of(task.fit())
+    complement = ResidualSpace.of(task.fit())
     grids = whole_grids(named, task.run.touches)
     search = Search(signatures(complement, grids, len(grids), progress))
     chosen = search.chosen(())
@@ -135,12 +137,15 @@ def tuned(task: Task, named: Sequence[Effect], progress: Progress = quiet) -> tu
         best = search.ranking(chosen)[0]
         chosen = search.chosen((*chosen.members, search.member(chosen, best)))
     ordered = sorted(search.polished(chosen).members, key=lambda m: m.candidate)
-    return tuple(refined_set(complement, [Sized(m.effect, m.scale) for m in ordered]))
+    return tuple(refined_set(complement, [ScaledEffect(m.effect, m.scale) for m in ordered]))
 
 
 def rounds(
-    task: Task, added: Sequence[Sized], candidates: Sequence[Effect], progress: Progress = quiet
-) -> Round:
+    task: Task,
+    added: Sequence[ScaledEffect],
+    candidates: Sequence[Effect],
+    progress: Progress = quiet,
+) -> SearchState:
     """Search in turns, until the gross errors stay what they are.
 
     Gross errors beside an edge in time are offered to the search once: it may find the slip that
@@ -160,7 +165,7 @@ def rounds(
     found: Sequence[str] = ()
     budget = Budget()
     for remaining in reversed(range(ROUNDS)):
-        library = Library.of(Complement.of(base), candidates, progress)
+        library = Library.of(ResidualSpace.of(base), candidates, progress)
         search, chosen = _searched(library, found, budget, progress)
         effects = refined_set(library.complement, _sized(chosen))
         again = task.fit((*added, *effects)).gross
@@ -175,8 +180,8 @@ def rounds(
 
 
 def _judged(
-    base: Fit, library: Library, search: Search, chosen: Chosen, progress: Progress
-) -> Round:
+    base: Fit, library: Library, search: Search, chosen: EffectSubset, progress: Progress
+) -> SearchState:
     """The search's result with the structure that it leaves, which may bring it down."""
     nothing = search.chosen(())
     at_start = find_structure(nothing.effects, progress)
@@ -190,7 +195,7 @@ def _judged(
         search = Search(search.pool, fixed, progress, search.budget)
         chosen = search.run(chosen.members)
         left = find_structure(chosen.effects, progress)
-    return Round(
+    return SearchState(
         base,
         library,
         search,
@@ -202,13 +207,13 @@ def _judged(
     )
 
 
-def _sized(chosen: Chosen) -> list[Sized]:
-    return [Sized(m.effect, m.scale) for m in chosen.members]
+def _sized(chosen: EffectSubset) -> list[ScaledEffect]:
+    return [ScaledEffect(m.effect, m.scale) for m in chosen.members]
 
 
 def _searched(
     library: Library, found: Sequence[str], budget: Budget, progress: Progress
-) -> tuple[Search, Chosen]:
+) -> tuple[Search, EffectSubset]:
     """The best set of effects; of a long run among those that screenings let through."""
     complement = library.complement
     empty = EffectSet(complement, np.zeros((len(complement.residual), 0)))
@@ -227,7 +232,7 @@ def _searched(
     return search, chosen
 
 
-def _same(chosen: Chosen, found: Sequence[str]) -> bool:
+def _same(chosen: EffectSubset, found: Sequence[str]) -> bool:
     """Whether a search among more candidates found what was found before."""
     return bool(chosen.members) and {m.effect.name for m in chosen.members} == set(found)
 
@@ -237,7 +242,9 @@ def strongest(found: Sequence[Structure]) -> Structure:
     return max((s for s in found if s.columns is not None), key=lambda s: s.evidence)
 
 
-def _beaten(at_start: Sequence[Structure], nothing: Chosen, chosen: Chosen) -> list[Structure]:
+def _beaten(
+    at_start: Sequence[Structure], nothing: EffectSubset, chosen: EffectSubset
+) -> list[Structure]:
     """Patterns that explain the run clearly better than all found effects together."""
     gained = chosen.effects.evidence - nothing.effects.evidence
     return [s for s in at_start if s.columns is not None and s.evidence > gained + CLEARLY]

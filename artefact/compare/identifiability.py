@@ -54,7 +54,7 @@ class Alone:
 
 
 @dataclass(frozen=True, eq=False)
-class Knowable:
+class IdentifiabilityReport:
     """What a design's touches can and cannot know.
 
     Attributes:
@@ -91,7 +91,9 @@ class Knowable:
         )
 
 
-def knowable(aim: Criterion, requests: Requests, rng: np.random.Generator) -> Knowable:
+def identifiability_report(
+    aim: Criterion, requests: Requests, rng: np.random.Generator
+) -> IdentifiabilityReport:
     """What some touches can know of the machine.
 
     Args:
@@ -112,7 +114,7 @@ def knowable(aim: Criterion, requests: Requests, rng: np.random.Generator) -> Kn
     setup = set_up(aim)
     names = [short(name) for name in model.names]
     chain = model.chain
-    return Knowable(
+    return IdentifiabilityReport(
         touches=len(requests),
         chain=chain,
         readings={
@@ -142,7 +144,7 @@ def _alone(aim: Criterion, W: Array, setup: Sequence[int]) -> tuple[Alone, ...]:
     return tuple(sorted(out, key=lambda a: a.u / a.expected))
 
 
-def as_json(known: Knowable) -> dict[str, Any]:
+def as_json(known: IdentifiabilityReport) -> dict[str, Any]:
     """The record as plain data, units in the names of the keys."""
     g = known.gauge
     return {
@@ -213,6 +215,6 @@ def _rounded(value: float) -> float:
     return float(f"{value:.6g}")
 
 
-def write_identifiability(path: Path, known: Knowable) -> None:
+def write_identifiability(path: Path, known: IdentifiabilityReport) -> None:
     """Write the record as a JSON file, whole or not at all."""
     write_whole(path, json.dumps(as_json(known), indent=1, ensure_ascii=False) + "\n")

@@ -6,7 +6,7 @@ import numpy as np
 
 from artefact.body import Standard
 from probe_paths.campaign.anchors import anchored
-from probe_paths.campaign.foot_points import foot_points
+from probe_paths.campaign.foot_point_search import foot_points
 from probe_paths.control import LogPart
 from probe_paths.language import Dialect
 from probe_paths.plan import LINEAR, Probe, ProgramFrame

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from information.criteria.design_criterion import (
-    Purpose,
+    DesignCriterion,
     determinant,
     parameters,
     purpose,
@@ -41,7 +41,7 @@ PUBLISHED = {  # weights at -1, 0, 1 for a parabola (Pukelsheim 1993; Kiefer and
 
 
 def parabola():
-    mean = Purpose(np.eye(3), MOMENTS)
+    mean = DesignCriterion(np.eye(3), MOMENTS)
     unit = parameters(mean)
     return {
         "I": mean,
@@ -71,7 +71,7 @@ def test_published_designs_of_the_parabola(name):
 
 def criteria(rng):
     half = rng.normal(size=(4, 4))
-    mean = Purpose(np.eye(4), half @ half.T)
+    mean = DesignCriterion(np.eye(4), half @ half.T)
     worst = replace(mean, K=np.zeros((4, 4)), roots=rng.normal(size=(6, 4, 2)))
     scale = rng.uniform(0.3, 2.0, (5, 4))
     plain = [mean, determinant(mean), worst_pattern(mean), worst]
@@ -173,7 +173,7 @@ def test_potential_terms_go_from_a_line_to_a_parabola():
         square = s * PLACES**2
         rows = np.stack([SLACK * np.ones(21), SLACK * PLACES, square], axis=1)
         W, place = np.repeat(rows, runs, axis=0), np.repeat(np.arange(21), runs)
-        aim = with_potential(determinant(Purpose(np.eye(2), np.eye(2))), 1, 0.0)
+        aim = with_potential(determinant(DesignCriterion(np.eye(2), np.eye(2))), 1, 0.0)
         start = np.zeros(len(W), dtype=bool)
         start[np.random.default_rng(1).choice(len(W), runs, replace=False)] = True
         found = relaxed(aim, W, runs, start, 1e-5)
@@ -187,7 +187,7 @@ def test_potential_terms_go_from_a_line_to_a_parabola():
 def test_potential_terms_join_the_mean_and_can_be_left_out_again():
     rng = np.random.default_rng(2)
     half, W = rng.normal(size=(3, 3)), rng.normal(size=(9, 5))
-    aim = with_potential(Purpose(np.eye(3), half @ half.T), 2, 0.7)
+    aim = with_potential(DesignCriterion(np.eye(3), half @ half.T), 2, 0.7)
     inverse = np.linalg.inv(np.eye(5) + W.T @ W)
     by_hand = np.trace(inverse[:3, :3] @ half @ half.T) + 0.7 * np.trace(inverse[3:, 3:]) / 2.0
     assert aim.value(W.T @ W) == pytest.approx(by_hand, rel=1e-10)
@@ -202,6 +202,6 @@ def test_shares_that_nothing_keeps_are_refused():
 
 def test_tail_and_scales_that_mean_nothing_are_refused():
     with pytest.raises(DesignError, match="tail"):
-        Purpose(np.eye(2), np.eye(2), tail=0.0)
+        DesignCriterion(np.eye(2), np.eye(2), tail=0.0)
     with pytest.raises(DesignError, match="expected above zero"):
-        robust(Purpose(np.eye(2), np.eye(2)), np.array([[1.0, 0.0]]))
+        robust(DesignCriterion(np.eye(2), np.eye(2)), np.array([[1.0, 0.0]]))

@@ -10,7 +10,7 @@ from concurrent.futures import BrokenExecutor, Executor
 from os import cpu_count
 from typing import Any, Protocol, TypeVar
 
-from sensitivity.montecarlo.cluster import awaited, is_cluster
+from sensitivity.montecarlo.dask_cluster import awaited, is_cluster
 from twin.errors import DesignError
 
 Shared = TypeVar("Shared")

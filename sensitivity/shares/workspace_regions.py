@@ -14,7 +14,7 @@ import numpy as np
 
 from sensitivity.first_order import Workspace, parts
 from sensitivity.population import Population
-from sensitivity.shares.total_effects import MACHINES, norm_shares
+from sensitivity.shares.total_effect_indices import MACHINES, norm_shares
 from twin.frames import Array
 from twin.machine import tip
 from twin.units import DEG

@@ -54,7 +54,7 @@ class Volume:
         """95 % quantile of the volumetric error at every point, `shape`, mm, without sampling.
 
         First order, and as if the errors were normally distributed
-        (`sensitivity.first_order.normal_length`);
+        (`sensitivity.first_order.normal_lengths`);
         not a number where the tool point leaves the volume of the workspace.
         """
         C = covariance(population, self.q, self.workspace.length)

@@ -29,7 +29,7 @@ def quiet(share: float, doing: str) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Complement:
+class ResidualSpace:
     """What a fit leaves: the projection on it, and the residual, data and prior rows together.
 
     Attributes:
@@ -53,7 +53,7 @@ class Complement:
     gross: BoolArray
 
     @classmethod
-    def of(cls, fit: Fit) -> "Complement":
+    def of(cls, fit: Fit) -> "ResidualSpace":
         """The complement of a fit."""
         solution = fit.solution
         Q = np.vstack([solution.Q, solution.root])
@@ -62,7 +62,7 @@ class Complement:
         gross = fit.gross.rows
         return cls(fit.run.touches, fit.used, u, Q, residual, solution.dof, fit.groups, gross)
 
-    def thinned(self, count: int) -> "Complement":
+    def thinned(self, count: int) -> "ResidualSpace":
         """The same model fitted to an even choice of so many of the touches."""
         n = len(self.u)
         rows = np.unique(np.linspace(0, n - 1, min(count, n)).astype(np.int64))
@@ -96,7 +96,7 @@ class Complement:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sized:
+class ScaledEffect:
     """An effect, and how many times larger than usual it is taken to be.
 
     Attributes:
@@ -108,7 +108,7 @@ class Sized:
     scale: float = 1.0
 
 
-def projected(complement: Complement, sized: Sequence[Sized]) -> Array:
+def projected(complement: ResidualSpace, sized: Sequence[ScaledEffect]) -> Array:
     """Projected, whitened, scaled columns of effects at their present tuning, (N + P, K)."""
     if not sized:
         return np.zeros((len(complement.residual), 0))
@@ -143,7 +143,7 @@ class Signatures:
         tried: Number of candidates that were tried altogether.
     """
 
-    complement: Complement
+    complement: ResidualSpace
     variants: tuple[Effect, ...]
     owner: IntArray
     names: tuple[str, ...]
@@ -233,7 +233,7 @@ def blocks(variants: Sequence[Effect]) -> list[tuple[int, int]]:
 
 
 def signatures(
-    complement: Complement, grids: Sequence[Grid], tried: int, progress: Progress = quiet
+    complement: ResidualSpace, grids: Sequence[Grid], tried: int, progress: Progress = quiet
 ) -> Signatures:
     """Signatures of candidates at the points of their grids.
 

@@ -9,14 +9,14 @@ from diagnosis.answer.detectable import detectable
 from diagnosis.answer.next_measurement import Plan, plan
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
-from diagnosis.evidence import Complement, EffectSet, Progress, Sized, projected, quiet
+from diagnosis.evidence import EffectSet, Progress, ResidualSpace, ScaledEffect, projected, quiet
 from diagnosis.fit import Fit, GrossErrors, Prior
 from diagnosis.residual import Region, Structure, find_structure, regions, remarks
 from diagnosis.search import (
     LISTED,
     MOST_SETS,
-    Round,
     Search,
+    SearchState,
     Task,
     Verified,
     rounds,
@@ -72,8 +72,8 @@ def diagnose(
 
 def _result(
     task: Task,
-    added: tuple[Sized, ...],
-    final: Round,
+    added: tuple[ScaledEffect, ...],
+    final: SearchState,
     progress: Progress,
     rng: np.random.Generator | None,
 ) -> Diagnosis:
@@ -110,7 +110,7 @@ def _result(
     )
 
 
-def _remarks(fit: Fit, final: Round) -> tuple[str, ...]:
+def _remarks(fit: Fit, final: SearchState) -> tuple[str, ...]:
     """What else a user should know, the search's own limit included."""
     out = remarks(fit)
     if not final.search.budget.is_spent:
@@ -130,12 +130,12 @@ def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
     return regions(first, last if len(steps) > 1 else None)
 
 
-def final_tests(final: Round) -> list[Verified]:
+def final_tests(final: SearchState) -> list[Verified]:
     """Tests of the chosen members with one another in place."""
     return final.search.verify(final.chosen)
 
 
-def _classes(final: Round) -> list[ConfusionClass]:
+def _classes(final: SearchState) -> list[ConfusionClass]:
     """Confusion class of every found effect, in the order found."""
     out = []
     for i, effect in enumerate(final.effects):
@@ -146,8 +146,8 @@ def _classes(final: Round) -> list[ConfusionClass]:
 
 def _steps(
     task: Task,
-    added: tuple[Sized, ...],
-    final: Round,
+    added: tuple[ScaledEffect, ...],
+    final: SearchState,
     classes: Sequence[ConfusionClass],
     verified: dict[str, Verified],
     gross: GrossErrors,
@@ -159,7 +159,7 @@ def _steps(
     effects = [*added, *heads]
     last = task.fit(effects, gross, free_inner=True)
     first = task.fit((), gross)
-    told = sizes(task, effects, gross, Complement.of(first))
+    told = sizes(task, effects, gross, ResidualSpace.of(first))
     out = [Step(None, first, 1.0, (), None)]
     for k, sized in enumerate(effects):
         fit = last if k + 1 == len(effects) else task.fit(effects[: k + 1], gross)
@@ -180,7 +180,7 @@ def _named_probability(before: Fit, after: Fit) -> float:
     return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
 
 
-def _by_worth(final: Round) -> list[int]:
+def _by_worth(final: SearchState) -> list[int]:
     """Order in which the found effects explain most, one after the other."""
     complement = final.pool.complement
     left = list(range(len(final.effects)))
@@ -197,7 +197,7 @@ def _by_worth(final: Round) -> list[int]:
     return order
 
 
-def _candidates(final: Round) -> tuple[Candidate, ...]:
+def _candidates(final: SearchState) -> tuple[Candidate, ...]:
     """Library effects by themselves, best first, with their held-out errors."""
     search = Search(final.pool)
     nothing = search.chosen(())
@@ -221,7 +221,7 @@ def _candidates(final: Round) -> tuple[Candidate, ...]:
     return tuple(out)
 
 
-def _structures(final: Round, progress: Progress) -> tuple[Structure, ...]:
+def _structures(final: SearchState, progress: Progress) -> tuple[Structure, ...]:
     """What the residual varies with at the start, each pattern freed of those before."""
     complement = final.library.complement
     out: list[Structure] = []
@@ -252,7 +252,7 @@ def _dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
 
 def _plans(
     task: Task,
-    added: tuple[Sized, ...],
+    added: tuple[ScaledEffect, ...],
     classes: Sequence[ConfusionClass],
     gross: GrossErrors,
     rng: np.random.Generator | None,

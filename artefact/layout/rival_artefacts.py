@@ -4,7 +4,7 @@ import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch, Standard, graph_patch
 from artefact.layout.candidates import smooth_heights
-from artefact.layout.sites import Frame
+from artefact.layout.sites import Blank
 from artefact.layout.spread import rim
 from sensitivity.first_order import Box
 from twin.frames import Array, pose, rotation
@@ -17,7 +17,7 @@ _TALLEST = 40.0  # mm that the one face may rise above its plane
 _BENEATH = 5.0  # mm above mid-base, where columns end
 
 
-def rivals(volume: Box, frame: Frame, rng: np.random.Generator) -> dict[str, Standard]:
+def rivals(volume: Box, frame: Blank, rng: np.random.Generator) -> dict[str, Standard]:
     """Four calibrated spheres, a five-sided block and one freeform face, all as large as allowed.
 
     Each fills the volume that the standard fills, on the same base.
@@ -36,7 +36,7 @@ def rivals(volume: Box, frame: Frame, rng: np.random.Generator) -> dict[str, Sta
 
 def _standard(
     name: str,
-    frame: Frame,
+    frame: Blank,
     patches: tuple[FreeformPatch, ...],
     spheres: tuple[DatumSphere, ...] = (),
 ) -> Standard:
@@ -53,7 +53,7 @@ def _standard(
     )
 
 
-def _four_spheres(volume: Box, frame: Frame) -> tuple[DatumSphere, ...]:
+def _four_spheres(volume: Box, frame: Blank) -> tuple[DatumSphere, ...]:
     """At the corners of the base, at heights spread over that of the volume."""
     heights = np.linspace(volume[0][2] + 25.0, volume[1][2], 4)[[0, 2, 1, 3]]
     places = rim(frame.base, _FOOT + 3.0)
@@ -67,7 +67,7 @@ def _four_spheres(volume: Box, frame: Frame) -> tuple[DatumSphere, ...]:
     return tuple(found)
 
 
-def _block(volume: Box, frame: Frame) -> tuple[FreeformPatch, ...]:
+def _block(volume: Box, frame: Blank) -> tuple[FreeformPatch, ...]:
     """Five plane faces: the top, and four sides that stand a little proud of it."""
     half, low, high = volume[1][0], frame.base.thickness, volume[1][2]
     depth = high - 0.5 * low
@@ -87,7 +87,7 @@ def _plane(name: str, T: Array, half_size: tuple[float, float], depth: float) ->
     return graph_patch(name, T, half_size, np.zeros((4, 4)), (3, 3), depth)
 
 
-def _one_face(volume: Box, frame: Frame, rng: np.random.Generator) -> FreeformPatch:
+def _one_face(volume: Box, frame: Blank, rng: np.random.Generator) -> FreeformPatch:
     """One smooth face over the whole volume, as steep as the limits allow, in mid-height."""
     (x0, y0, z0), (x1, y1, z1) = volume
     half, middle = (0.5 * (x1 - x0), 0.5 * (y1 - y0)), 0.5 * (z0 + z1)

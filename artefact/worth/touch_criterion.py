@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.layout import Frame
-from artefact.reach import Probing, Requests
+from artefact.layout import Blank
+from artefact.reach import ProbeReach, Requests
 from artefact.worth.potential import Potential, potential
 from information.criteria import (
-    Purpose,
+    DesignCriterion,
     determinant,
     parameters,
     purpose,
@@ -68,7 +68,7 @@ class Criterion:
         potential: Effects that may be there or not, which touches shall show; None for none.
     """
 
-    probing: Probing
+    probing: ProbeReach
     model: Model
     prior_sd: Array
     noise: float
@@ -76,12 +76,12 @@ class Criterion:
     volume: Box
     tip_volume: Array
     tip_user: Array
-    purposes: Mapping[str, Purpose]
+    purposes: Mapping[str, DesignCriterion]
     name: str = "I"
     potential: Potential | None = None
 
     @property
-    def purpose(self) -> Purpose:
+    def purpose(self) -> DesignCriterion:
         """What touches are chosen for."""
         return self.purposes[self.name]
 
@@ -117,7 +117,7 @@ class Criterion:
 
 
 @dataclass(frozen=True)
-class Wishes:
+class CriterionOptions:
     """What a criterion shall be beside its name.
 
     Attributes:
@@ -143,14 +143,14 @@ class Wishes:
 
 
 def criterion(
-    probing: Probing,
+    probing: ProbeReach,
     model: Model,
-    frame: Frame,
+    frame: Blank,
     workspace: Workspace,
     noise: float,
     rng: np.random.Generator,
     name: str = "I",
-    wishes: Wishes | None = None,
+    wishes: CriterionOptions | None = None,
     population: Population | None = None,
 ) -> Criterion:
     """Criterion of a machine, a blank and a user's workspace.
@@ -171,7 +171,7 @@ def criterion(
     """
     if name not in CRITERIA:
         raise DesignError(f"criterion '{name}', expected one of {', '.join(CRITERIA)}")
-    wishes = wishes or Wishes()
+    wishes = wishes or CriterionOptions()
     volume = _probed_volume(frame)
     rotary = np.array([workspace.limit(n) for n in probing.chain.rotary_axes]).reshape(-1, 2)
     tips = _tips(probing, model, volume, workspace, rng)
@@ -213,7 +213,7 @@ def criterion(
     )
 
 
-def _sharing(aim: Purpose, rows: Array, count: int, share: float) -> Purpose:
+def _sharing(aim: DesignCriterion, rows: Array, count: int, share: float) -> DesignCriterion:
     """A purpose of which potential terms have some share after touches taken at random."""
     R = len(aim.K)
     if aim.is_determinant:
@@ -225,7 +225,7 @@ def _sharing(aim: Purpose, rows: Array, count: int, share: float) -> Purpose:
 
 
 def _scales(
-    probing: Probing,
+    probing: ProbeReach,
     model: Model,
     population: Population | None,
     draws: int,
@@ -244,7 +244,7 @@ def _scales(
     return scale
 
 
-def _probed_volume(frame: Frame) -> Box:
+def _probed_volume(frame: Blank) -> Box:
     """Box that the standard fills, artefact frame, mm."""
     half, top = frame.base.half_size, frame.blank_height
     return (
@@ -254,7 +254,7 @@ def _probed_volume(frame: Frame) -> Box:
 
 
 def _tips(
-    probing: Probing, model: Model, volume: Box, workspace: Workspace, rng: np.random.Generator
+    probing: ProbeReach, model: Model, volume: Box, workspace: Workspace, rng: np.random.Generator
 ) -> tuple[Array, Array]:
     """Deviation of the tip per unit of every parameter: probed volume, user's workspace."""
     chain = probing.chain
@@ -286,7 +286,7 @@ def _with_free_setup(model: Model) -> Array:
 
 
 def random_touches(
-    probing: Probing, volume: Box, rotary: Array, count: int, rng: np.random.Generator
+    probing: ProbeReach, volume: Box, rotary: Array, count: int, rng: np.random.Generator
 ) -> Requests:
     """Touches with random points in a box and random normals, at random poses, all reachable.
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.reach import Requests
-from artefact.worth.criterion import Criterion
 from artefact.worth.potential import VISIBLE, freed, library, parts
+from artefact.worth.touch_criterion import Criterion
 from twin.frames import Array
 from twin.model import Effect, columns
 

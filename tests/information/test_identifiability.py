@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from information.identifiability.combinations import combinations
+from information.identifiability.estimable_combinations import combinations
 from information.identifiability.freedom_words import in_families
 from information.identifiability.nullspace import seen, sparse
 from information.identifiability.separation import NEVER, SIDEWAYS, identifiability
