@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from machines import LENGTH
 
 from report.maps.regions_picture import draw_regions
 from sensitivity.first_order.workspace import Workspace
@@ -11,8 +12,6 @@ from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
 from twin.machine.ranges import DEFAULT_RANGES, Ranges
 from twin.units import DEG, UM
-
-from .conftest import LENGTH
 
 
 @pytest.fixture(scope="module")

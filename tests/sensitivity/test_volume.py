@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from machines import LENGTH
 
 from report.maps.rotary_picture import draw_rotary, level, points_over_rotary
 from sensitivity.first_order.workspace import Workspace
@@ -13,8 +14,6 @@ from twin.frames import apply
 from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
 from twin.units import DEG, UM
-
-from .conftest import LENGTH
 
 NM = 1e-6  # mm
 
