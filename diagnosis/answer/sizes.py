@@ -127,7 +127,7 @@ def _instants(
     others = [s for k, s in enumerate(effects) if k != which]
     base: EffectSet | None = None
     for index, inner, value in continuous_inner(effect, complement.touches):
-        if inner.unit != "s" or inner.name.startswith("tau"):
+        if inner.acts != "at an instant":
             continue
         base = base or EffectSet(complement, projected(complement, others))
         out[index] = _weighed(base, effect, index, _jumps(complement, inner, value))
