@@ -15,21 +15,4 @@ from cad_out.build.mesh import (
 from cad_out.build.process import note_refusal, run_apart
 from cad_out.build.worker import FACTS, MESH, STANDARD, STEP
 
-__all__ = [
-    "FACTS",
-    "MESH",
-    "STANDARD",
-    "STEP",
-    "Mesh",
-    "chord_errors",
-    "face_areas",
-    "is_watertight",
-    "manifold_volume",
-    "mesh_volume",
-    "note_refusal",
-    "owners",
-    "read_stl",
-    "run_apart",
-    "run_kernel",
-    "write_stl",
-]
+__all__ = ["FACTS", "MESH", "STANDARD", "STEP", "Mesh", "chord_errors", "face_areas", "is_watertight", "manifold_volume", "mesh_volume", "note_refusal", "owners", "read_stl", "run_apart", "run_kernel", "write_stl"]
