@@ -2,7 +2,8 @@
 
 In: a standard, a machine, a probe, a set-up, wanted touches. Out: a `TouchPlan` in axis readings,
 with the requests that were refused. Heights and gaps of the tool are worked out here for plan and
-collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of poses goes into `order`.
+collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of poses goes into
+`order`.
 """
 
 from probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
