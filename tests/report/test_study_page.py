@@ -24,8 +24,9 @@ from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
 from twin.units import DEG, UM
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 NM = 1e-6  # mm
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
