@@ -27,7 +27,9 @@ FEWEST = 2
 """Gross errors at an edge that may be no accidents."""
 
 
-def offered(touches: Touches, gross: GrossErrors, effects: Sequence[ScaledEffect]) -> BoolArray:
+def unexplained_near_slip(
+    touches: Touches, gross: GrossErrors, effects: Sequence[ScaledEffect]
+) -> BoolArray:
     """Gross errors that a slip may explain, (N,).
 
     At the edges of a set-up those that so few accidents would hardly ever form; at the instant of a
