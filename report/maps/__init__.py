@@ -1,7 +1,7 @@
 """Pictures of sensitivities over a workspace."""
 
 from report.maps.correlation_picture import draw_ties
-from report.maps.maps import draw_maps, unsampled
+from report.maps.maps import draw_maps
 from report.maps.rotary_picture import level
 from report.maps.trajectory_pictures import draw_path
 
@@ -10,5 +10,4 @@ __all__ = [
     "draw_path",
     "draw_ties",
     "level",
-    "unsampled",
 ]

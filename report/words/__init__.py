@@ -10,6 +10,7 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
+from report.words.study_words import study_words, unsampled
 
 __all__ = [
     "comparison_sentence",
@@ -18,6 +19,8 @@ __all__ = [
     "rivals_words",
     "sizes",
     "stated_noise",
+    "study_words",
+    "unsampled",
     "values",
     "verdict_sentence",
 ]

@@ -12,7 +12,7 @@ from artefact.brief.project_file import read_project
 from artefact.place.placement import PlacementOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
 from matstd.cli import main
-from matstd.wanted import frame, placement_options, probing
+from matstd.from_project import placement_options
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
 
@@ -191,8 +191,8 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
     stated = read_project(path)
     path.write_text(re.sub(r"(?s)\[blank\].*?(?=\[setup\.a\])", "", text))
     left_out = read_project(path)
-    assert frame(left_out) == frame(stated)
-    assert probing(left_out).table_radius == probing(stated).table_radius == 160.0
+    assert blank(left_out) == blank(stated)
+    assert probe_reach(left_out).table_radius == probe_reach(stated).table_radius == 160.0
     for key, value in {
         "base_mm": "[240.0, 200.0]",
         "height_mm": "180.0",
@@ -205,12 +205,12 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
         text = re.sub(rf"(?m)^{key} = [^#\n]*", f"{key} = {value} ", text)
     path.write_text(text)
     project = read_project(path)
-    made = frame(project)
+    made = blank(project)
     assert made.base.half_size == (120.0, 100.0)
     assert made.blank_height == 180.0
     assert max(made.fittings.sphere_heights) < 180.0
     assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0)
-    assert probing(project).table_radius == 130.0
+    assert probe_reach(project).table_radius == 130.0
 
 
 def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:

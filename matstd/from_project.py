@@ -18,7 +18,7 @@ def probe(project: Project) -> Probe:
     return Probe(project.probe_radius, project.probe_length)
 
 
-def probing(project: Project) -> ProbeReach:
+def probe_reach(project: Project) -> ProbeReach:
     """Machine, probe, table and place of the standard."""
     tool = probe(project)
     return ProbeReach(
@@ -30,16 +30,16 @@ def probing(project: Project) -> ProbeReach:
     )
 
 
-def frame(project: Project) -> Blank:
+def blank(project: Project) -> Blank:
     """Blank, fittings, material and limits of the standard."""
-    wanted, blank, limits = project.standard, project.blank, project.limits
-    a, b = blank.base_mm
-    low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * blank.height_mm
+    wanted, limits, height = project.standard, project.limits, project.blank.height_mm
+    a, b = project.blank.base_mm
+    low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * height
     return Blank(
         base=Base((0.5 * a, 0.5 * b), CORNER_RADIUS, BASE_THICKNESS),
         fittings=Fittings(sphere_heights=(low, round(0.5 * (low + high), 1), round(high, 1))),
         material=Material(wanted.material, wanted.density_kg_m3 * KG_M3, wanted.expansion_per_K),
-        blank_height=blank.height_mm,
+        blank_height=height,
         limits=Limits(
             min_concave_radius=limits.min_concave_radius_mm,
             max_slope=limits.max_slope_deg * DEG,
