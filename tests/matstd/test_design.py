@@ -12,7 +12,7 @@ from artefact.brief.project_file import read_project
 from artefact.place.placement import PlacementOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
 from matstd.cli import main
-from matstd.from_project import placement_options
+from matstd.from_project import blank, placement_options, probe_reach
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
 
