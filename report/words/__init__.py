@@ -1,4 +1,8 @@
-"""Sentences made from results."""
+"""Sentences made from results, for pages and for the console; nothing parses them.
+
+A module for each room below: what a result says in numbers and names is told here in words with
+units, values with their uncertainty.
+"""
 
 from report.words.diagnosis_words import (
     comparison_sentence,
@@ -10,7 +14,7 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.study_words import study_words, unsampled
+from report.words.sensitivity_words import study_words, unsampled
 
 __all__ = [
     "comparison_sentence",
