@@ -18,6 +18,7 @@ CONTACT_TOLERANCE = 1e-3 * NM
 """The ball touches when its gap is this small, mm."""
 
 _STEPS = 12
+"""Of Newton's method; with errors of ordinary size four were enough."""
 
 Disturbance = Callable[[Touches], Contribution]
 
