@@ -1,11 +1,11 @@
 """The sensitivity page: every map once and in order, regions in words, 3-D scenes of the study."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from report.maps.canvas import figure, save
 from report.pages.study_page import (
     ERROR_3D,
     S_3D,
@@ -14,6 +14,7 @@ from report.pages.study_page import (
     sensitivity_scenes,
     write_study_page,
 )
+from report.style import figure, save
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study
@@ -23,9 +24,9 @@ from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
 from twin.units import DEG, UM
 
-from .test_design import EXAMPLES
-
 NM = 1e-6  # mm
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
