@@ -1,4 +1,9 @@
-"""The control as our programs see it: reader, interpreter, clock and log."""
+"""The control as our programs see it: reader, interpreter, clock and log.
+
+In: the text of a program (`read_program`) or of a log (`read_log`). Out: the steps that the program
+takes (`ReadProgram`), and what one run of it logged (`LogPart`). Rules for single blocks are in
+`modes` and `motion`, those for a whole program in `structure` and `runner`.
+"""
 
 from probe_paths.control.clock import Clock
 from probe_paths.control.interpreter import interpret, read_program, stated_probe

@@ -31,7 +31,7 @@ _STILL = 1e-5
 """Deviations that change less than this in a round are settled, mm."""
 
 
-def anchored(run: Run, standard: Standard) -> Run:
+def at_true_contacts(run: Run, standard: Standard) -> Run:
     """A run whose points and normals are those where the balls met the standard.
 
     ``p = foot point of (x + d)``, x the believed ball centre and d what the fitted model says of
