@@ -12,7 +12,7 @@ import numpy as np
 
 from artefact.reach import ProbeReach, Requests
 from artefact.worth import Criterion
-from information.criteria import Posterior, purpose, whitened
+from information.criteria import Posterior, mean_prediction, whitened
 from information.identifiability import seen
 from information.selection import Quota, Selection, fill
 from twin.errors import DesignError
@@ -172,7 +172,7 @@ def _bought(
     tips = np.concatenate([aim.tip_volume, aim.tip_user])
     extra = found.W.shape[1] - tips.shape[2]
     G = np.concatenate([tips, np.zeros((*tips.shape[:2], extra))], axis=2)
-    what_for = purpose(G, found.W, found.prior_sd)
+    what_for = mean_prediction(G, found.W, found.prior_sd)
     start = np.arange(len(found.W)) < len(half)
     selection = Selection(what_for, what_for.rows(found.W), start)
     kind = (~start).astype(np.int64)

@@ -11,15 +11,10 @@ from artefact.reach import ProbeReach, Requests
 from artefact.worth.potential import Potential, potential
 from information.criteria import (
     DesignCriterion,
-    determinant,
-    parameters,
-    purpose,
+    five_criteria,
     robust,
     whitened,
     with_potential,
-    without_potential,
-    worst_pattern,
-    worst_pose,
 )
 from sensitivity.first_order import Box, Workspace, latin_hypercube
 from sensitivity.population import Population, drawn_scales
@@ -40,7 +35,7 @@ CRITERIA = {
     "G": "largest variance of the predicted tool point at any pose of probed volume and workspace",
     "D": "volume of what stays unknown of the parameters, in units of what is expected",
     "A": "mean variance of the parameters, in units of what is expected",
-    "E": "variance of the error pattern that is known worst, as the tool point feels it",
+    "E": "variance of the least well determined error pattern, as the tool point feels it",
 }
 """What touches can be chosen for."""
 
@@ -90,7 +85,7 @@ class Criterion:
         """The same criterion without potential terms, for choices that do not hang on them."""
         if self.potential is None:
             return self
-        plain = {name: without_potential(aim) for name, aim in self.purposes.items()}
+        plain = {name: one.primary or one for name, one in self.purposes.items()}
         return replace(self, purposes=plain, potential=None)
 
     def whitened(self, wanted: Requests) -> Array:
@@ -180,19 +175,13 @@ def criterion(
     touches = probing.touches(scatter)
     W = whitened(model.columns(touches), prior_sd, noise)
     G = np.concatenate(tips)
-    aim = purpose(G, W, prior_sd)
+    purposes = five_criteria(G, W, prior_sd)
     if wishes.draws:
-        aim = robust(aim, _scales(probing, model, population, wishes.draws, rng), wishes.tail)
-    purposes = {
-        "I": aim,
-        "G": worst_pose(aim, G, prior_sd),
-        "D": determinant(aim),
-        "A": parameters(aim),
-        "E": worst_pattern(aim),
-    }
+        scale = _scales(probing, model, population, wishes.draws, rng)
+        purposes = {key: robust(one, scale, wishes.tail) for key, one in purposes.items()}
     terms = None
     if wishes.potential > 0.0:
-        reduced = aim.rows(W)
+        reduced = purposes[name].rows(W)
         terms = potential(touches, reduced, wishes.touches)
         rows = np.concatenate([reduced, terms.rows(touches, reduced)], axis=1)[: wishes.touches]
         purposes = {
@@ -215,9 +204,7 @@ def criterion(
 
 def _sharing(aim: DesignCriterion, rows: Array, count: int, share: float) -> DesignCriterion:
     """A purpose of which potential terms have some share after touches taken at random."""
-    R = len(aim.K)
-    if aim.is_determinant:
-        return with_potential(aim, count, 0.0)
+    R = aim.size
     value = aim.value(rows[:, :R].T @ rows[:, :R])
     M = np.eye(R + count) + rows.T @ rows
     hidden = float(np.trace(np.linalg.solve(M, np.eye(R + count))[R:, R:])) / count
