@@ -50,13 +50,14 @@ CARDS = {"formula", "units", "typical", "source", "summary"}
 EXCUSED = {
     "twin/files/run_columns.py": "remarks of a reader on single lines, like its refusals",
     "twin/files/run_checks.py": "kinds of unit mistakes, put into one line of refusal",
+    "twin/foreign/machine_draft.py": "comments of a machine file that is written",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "artefact/place/placement.py": "what a refusal appends to the limit that binds",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
     "diagnosis/fit/unit_mistakes.py": "refusal, and the same where it is only suspected",
 }
-"""Files below `report` with prose outside a `raise` that is a refusal all the same."""
+"""Files below `report` with units in prose outside a `raise` all the same, and why."""
 UNSAID = {
     "sensitivity/first_order/workspace.py",
     "sensitivity/montecarlo/tally.py",
