@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from artefact.body.newton import ball_contact, foot_points, graph_normal
+from artefact.body.newton import ball_contact, foot_parameters, graph_normal
 from artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry, unit
 from artefact.body.spline import Jet, check_knots, clamped_knots, greville, height, jet
 from twin.errors import ShapeMismatch
@@ -171,7 +171,7 @@ class FreeformPatch:
             uv, shape (N, 2), mm; nan where no foot point lies on the spline.
         """
         local = apply(self.T_patch_artefact, rows(points))
-        return foot_points(self.jet, self.domain, local, self._nearest_node(local))
+        return foot_parameters(self.jet, self.domain, local, self._nearest_node(local))
 
     def contact(self, start: Array, direction: Array, radius: float) -> Hit:
         """First contact of a moving ball: ``S(u, v) + radius n(u, v) = start + t d``, by Newton.

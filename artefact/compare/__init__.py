@@ -1,6 +1,6 @@
 """A standard against other artefacts, stylus lengths and set-ups."""
 
-from artefact.compare.comparison import Rival, before, compare, judged, random_lots
+from artefact.compare.comparison import Rival, compare, evaluated, prior_rms, random_lots
 from artefact.compare.identifiability import (
     Alone,
     IdentifiabilityReport,
@@ -12,10 +12,10 @@ __all__ = [
     "Alone",
     "IdentifiabilityReport",
     "Rival",
-    "before",
     "compare",
+    "evaluated",
     "identifiability_report",
-    "judged",
+    "prior_rms",
     "random_lots",
     "write_identifiability",
 ]

@@ -126,11 +126,11 @@ def _largest_curvature(j: Jet, factor: float) -> float:
     return float((mean + np.sqrt(np.maximum(mean**2 - gauss, 0.0))).max())
 
 
-def random_sites(frame: Blank, count: int, rng: np.random.Generator) -> list[Site]:
+def random_sites(blank: Blank, count: int, rng: np.random.Generator) -> list[Site]:
     """Sites all over a blank, each with a random shape, its column within the blank's outline.
 
     Args:
-        frame: Base, blank height and limits.
+        blank: Base, blank height and limits.
         count: Number of sites, shared out over the rings.
         rng: Source of the random numbers.
 
@@ -141,14 +141,14 @@ def random_sites(frame: Blank, count: int, rng: np.random.Generator) -> list[Sit
     for ring in RINGS:
         n = max(1, round(ring.share * count))
         azimuth = 2.0 * np.pi * (rng.permutation(n) + rng.random(n)) / n
-        sites += [_site(frame, ring, float(a), rng) for a in azimuth]
+        sites += [_site(blank, ring, float(a), rng) for a in azimuth]
     return sites
 
 
-def _site(frame: Blank, ring: Ring, azimuth: float, rng: np.random.Generator) -> Site:
+def _site(blank: Blank, ring: Ring, azimuth: float, rng: np.random.Generator) -> Site:
     """One site of a ring, as near to an azimuth as its column can stand."""
-    wide = min(frame.base.half_size) / 140.0
-    tall = frame.blank_height / 220.0
+    wide = min(blank.base.half_size) / 140.0
+    tall = blank.height / 220.0
     for turn in range(_TRIES):
         half = rng.uniform(*ring.half_size, 2) * min(wide, 1.0)
         site = Site(
@@ -160,10 +160,10 @@ def _site(frame: Blank, ring: Ring, azimuth: float, rng: np.random.Generator) ->
             heights=np.zeros((CONTROL, CONTROL)),
             lean=float(rng.choice((-1.0, 1.0)) * rng.uniform(*ring.lean)),
         )
-        if _is_within(site, frame.base):
-            heights = smooth_heights(site.half_size, frame.limits, rng)
+        if _is_within(site, blank.base):
+            heights = smooth_heights(site.half_size, blank.limits, rng)
             return replace(site, heights=np.round(heights, 6))
-    a, b = (2.0 * side for side in frame.base.half_size)
+    a, b = (2.0 * side for side in blank.base.half_size)
     raise NotBuildable(f"no column stands within the outline of a blank of {a:g} x {b:g} mm")
 
 
@@ -175,7 +175,7 @@ def _is_within(site: Site, base: Base) -> bool:
         return False
 
 
-def neighbours_fit(sites: list[Site], frame: Blank) -> NDArray[np.bool_]:
+def neighbours_fit(sites: list[Site], blank: Blank) -> NDArray[np.bool_]:
     """Which sites can stand beside each other, (S, S).
 
     The ball must have room over every face before the other column, taken as a box as tall as the
@@ -184,16 +184,16 @@ def neighbours_fit(sites: list[Site], frame: Blank) -> NDArray[np.bool_]:
 
     Args:
         sites: S sites.
-        frame: Base, ball radius and gap.
+        blank: Base, ball radius and gap.
     """
-    limits = frame.limits
+    limits = blank.limits
     needed = 2.0 * limits.ball_radius + limits.gap + 2.0
     faces = np.stack([_face(site, limits.ball_radius) for site in sites])  # (S, K, 3)
     out = np.ones((len(sites), len(sites)), dtype=bool)
     for j, site in enumerate(sites):
         T = site.T_artefact_patch
         local = (faces - T[:3, 3]) @ T[:3, :3]
-        top, depth = float(site.heights.max()), patch_of_site("trial", site, frame.base).depth
+        top, depth = float(site.heights.max()), patch_of_site("trial", site, blank.base).depth
         middle = np.array([0.0, 0.0, 0.5 * (top - depth)])
         half = np.array([*site.half_size, 0.5 * (top + depth)])
         beyond = np.abs(local - middle) - half

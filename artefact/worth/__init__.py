@@ -3,7 +3,7 @@
 from artefact.worth.attribution import error_shares, parameter_symbols
 from artefact.worth.effect_visibility import Visibility, visibility
 from artefact.worth.touch_choice import (
-    PlacementOptions,
+    TouchOptions,
     chosen_poses,
     chosen_touches_on,
     each_at,
@@ -14,18 +14,25 @@ from artefact.worth.touch_choice import (
     table_poses,
     touches_to_choose_from,
 )
-from artefact.worth.touch_criterion import CRITERIA, Criterion, criterion, random_touches
+from artefact.worth.touch_criterion import (
+    CRITERIA,
+    Criterion,
+    CriterionOptions,
+    criterion_for,
+    random_touches,
+)
 from artefact.worth.touch_curves import TouchCurve, touch_curve
 
 __all__ = [
     "CRITERIA",
     "Criterion",
-    "PlacementOptions",
+    "CriterionOptions",
     "TouchCurve",
+    "TouchOptions",
     "Visibility",
     "chosen_poses",
     "chosen_touches_on",
-    "criterion",
+    "criterion_for",
     "each_at",
     "error_shares",
     "face_grid",

@@ -1,8 +1,35 @@
 """Solid, STEP and STL of a standard, built in a process of its own."""
 
 from cad_out.build.kernel import run_kernel
-from cad_out.build.mesh import Mesh, chord_errors, face_areas, is_watertight, manifold_volume, mesh_volume, owners, read_stl, write_stl
+from cad_out.build.mesh import (
+    Mesh,
+    chord_errors,
+    face_areas,
+    is_watertight,
+    manifold_volume,
+    mesh_volume,
+    owners,
+    read_stl,
+    write_stl,
+)
 from cad_out.build.process import note_refusal, run_apart
 from cad_out.build.worker import FACTS, MESH, STANDARD, STEP
 
-__all__ = ["FACTS", "MESH", "Mesh", "STANDARD", "STEP", "chord_errors", "face_areas", "is_watertight", "manifold_volume", "mesh_volume", "note_refusal", "owners", "read_stl", "run_apart", "run_kernel", "write_stl"]
+__all__ = [
+    "FACTS",
+    "MESH",
+    "STANDARD",
+    "STEP",
+    "Mesh",
+    "chord_errors",
+    "face_areas",
+    "is_watertight",
+    "manifold_volume",
+    "mesh_volume",
+    "note_refusal",
+    "owners",
+    "read_stl",
+    "run_apart",
+    "run_kernel",
+    "write_stl",
+]

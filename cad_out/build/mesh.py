@@ -6,9 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import DatumSphere
-from artefact.body import FreeformPatch
-from artefact.body import Standard
+from artefact.body import DatumSphere, FreeformPatch, Standard
 from twin.frames import Array, apply
 
 WELD = 1e-6

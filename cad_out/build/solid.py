@@ -25,9 +25,7 @@ from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec
 from OCP.ShapeCustom import ShapeCustom
 from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 
-from artefact.body import DatumSphere, MountingHole
-from artefact.body import FreeformPatch
-from artefact.body import Base, Standard
+from artefact.body import Base, DatumSphere, FreeformPatch, MountingHole, Standard
 from cad_out.build.faces import is_valid, named_faces, shells_of, solids_of, volume
 from twin.errors import NotBuildable
 from twin.frames import Array, apply

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.body import read_standard
+from artefact.body import Standard, read_standard
 from cad_out.build.mesh import Mesh, chord_errors, welded
 from cad_out.build.process import note_refusal
 from twin.errors import DesignError, NotBuildable
