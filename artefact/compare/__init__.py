@@ -1,4 +1,8 @@
-"""A standard against other artefacts, stylus lengths and set-ups."""
+"""A standard against other artefacts, stylus lengths and set-ups, at equal touches.
+
+In: a criterion and the touches of a design. Out: the figures of every `Rival`, and what the touches
+can and cannot know (`IdentifiabilityReport`), with what would resolve it.
+"""
 
 from artefact.compare.comparison import Rival, compare, evaluated, prior_rms, random_lots
 from artefact.compare.identifiability import (

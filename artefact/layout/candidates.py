@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Base, Jet, Limits, graph_patch, overhang
+from artefact.body import Base, Limits, graph_patch, overhang
 from artefact.layout.sites import Blank, Site, patch_of_site
 from twin.errors import NotBuildable
 from twin.frames import Array
@@ -110,20 +110,12 @@ def strength(
     low = 0.0
     for _ in range(20):
         middle = 0.5 * (low + high)
-        if _largest_curvature(j, middle) * _MARGIN * limits.min_concave_radius > 1.0:
+        largest = float(j.scaled(middle).curvature[:, 0].max())
+        if largest * _MARGIN * limits.min_concave_radius > 1.0:
             high = middle
         else:
             low = middle
     return low
-
-
-def _largest_curvature(j: Jet, factor: float) -> float:
-    """Largest principal curvature of a height field scaled by a factor, positive = concave."""
-    hu, hv, huu, huv, hvv = (factor * d for d in (j.hu, j.hv, j.huu, j.huv, j.hvv))
-    w2 = 1.0 + hu**2 + hv**2
-    mean = ((1 + hv**2) * huu - 2 * hu * hv * huv + (1 + hu**2) * hvv) / (2.0 * w2**1.5)
-    gauss = (huu * hvv - huv**2) / w2**2
-    return float((mean + np.sqrt(np.maximum(mean**2 - gauss, 0.0))).max())
 
 
 def random_sites(blank: Blank, count: int, rng: np.random.Generator) -> list[Site]:

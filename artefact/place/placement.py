@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Base, Constraint, Standard, constraints
+from artefact.body import Base, Standard, constraints
 from artefact.compare import Rival, compare, evaluated, prior_rms, random_lots
 from artefact.layout import (
     Blank,
@@ -234,7 +234,7 @@ def _standard(
             return standard
         refused = str(broken[0])
         for constraint in broken:
-            _blame(fits, constraint, order, chosen)
+            _blame(fits, constraint.features, order, chosen)
     raise NotBuildable(f"no choice of {options.patches} patches meets every limit; {refused}")
 
 
@@ -245,11 +245,11 @@ def _face_touches(name: str, site: Site, base: Base, poses: Array) -> Requests:
 
 
 def _blame(
-    fits: NDArray[np.bool_], constraint: Constraint, order: list[int], chosen: list[int]
+    fits: NDArray[np.bool_], features: tuple[str, ...], order: list[int], chosen: list[int]
 ) -> None:
     """Keep the sites that violate a limit from being chosen so again."""
     names = [f"FF{i}" for i in range(1, len(order) + 1)]
-    guilty = [order[names.index(name)] for name in constraint.features if name in names]
+    guilty = [order[names.index(name)] for name in features if name in names]
     if len(guilty) == 2 and guilty[0] != guilty[1]:
         fits[guilty[0], guilty[1]] = fits[guilty[1], guilty[0]] = False
     else:

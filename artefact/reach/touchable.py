@@ -8,8 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Meeting, Plate, Standard
-from artefact.reach.first_contact import contact
+from artefact.body import Meeting, Plate, Standard, contact
 from artefact.reach.probe_clearance import (
     TABLE_RADIUS,
     TABLE_THICKNESS,

@@ -1,4 +1,10 @@
-"""What touches on a standard are worth, and which of them to choose."""
+"""What touches on a standard are worth, and which of them to choose.
+
+In: machine with expected errors, blank, the user's workspace, wanted touches. Out: a `Criterion`
+that turns touches into rows of information, the best table poses and touches under quotas, the
+effects that touches could show, and the errors that each patch is for. A new criterion is an entry
+in `CRITERIA` and in `criterion_for`.
+"""
 
 from artefact.worth.attribution import error_shares, parameter_symbols
 from artefact.worth.effect_visibility import Visibility, visibility

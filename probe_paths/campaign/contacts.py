@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from artefact.body import Meeting, Standard
-from artefact.reach import contact
+from artefact.body import Meeting, Standard, contact
 from probe_paths.control import Clock, ReadProgram
 from probe_paths.language import Dialect
 from twin.frames import Array, apply, inverse, turn

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from artefact.body.first_contact import contact
 from artefact.body.limits import Limits, check
 from artefact.body.patch import Meeting
 from artefact.body.standard import Base
 from artefact.layout.sites import Blank
 from artefact.place.placement import PlacementOptions, place
-from artefact.reach.first_contact import contact
 from artefact.reach.probe_clearance import ProbeShape, clearance
 from artefact.reach.touchable import ProbeReach
 from artefact.worth.touch_choice import TouchOptions, table_poses

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from artefact.body.first_contact import contact
 from artefact.body.patch import Meeting
 from artefact.body.standard import Standard
-from artefact.reach.first_contact import contact
 from twin.units import NM, UM
 
 BALL = 3.0
