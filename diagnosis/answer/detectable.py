@@ -94,7 +94,15 @@ def _one(pool: Signatures, variant: int, length: float, survives: float) -> Dete
     effect = pool.variants[variant]
     first = effect.parameters[0]
     if not length < INVISIBLE:
-        return Detectable(effect, None, first.unit, None, survives)
+        return Detectable(
+            effect=effect, size=None, unit=first.unit, largest=None, survives=survives
+        )
     C = pool.complement.columns([effect]) * pool.complement.u[:, None]
     largest = length * float(np.sqrt((C**2).sum(axis=1).max()))
-    return Detectable(effect, length * first.sd, first.unit, largest, survives)
+    return Detectable(
+        effect=effect,
+        size=length * first.sd,
+        unit=first.unit,
+        largest=largest,
+        survives=survives,
+    )

@@ -50,7 +50,7 @@ class Plan:
     separation: float
 
 
-def offered(run: Run, rng: np.random.Generator) -> Touches:
+def candidate_touches(run: Run, rng: np.random.Generator) -> Touches:
     """Touches that could be made: known points of the standard, in poses and set-ups of the run.
 
     Every offer joins a touched point with rotary readings that the run has used, in the same or in
@@ -133,7 +133,7 @@ def plan(first: Fit, second: Fit, names: tuple[str, str], rng: np.random.Generat
         None where the run gives no touches to choose from, or they all agree.
     """
     run = first.run
-    offers = offered(run, rng)
+    offers = candidate_touches(run, rng)
     if len(offers) < WANTED:
         return None
     offers = _later(run.touches, offers)

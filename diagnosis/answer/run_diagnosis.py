@@ -9,19 +9,27 @@ from diagnosis.answer.detectable import detectable
 from diagnosis.answer.next_measurement import Plan, plan
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
-from diagnosis.evidence import EffectSet, Progress, ResidualSpace, ScaledEffect, projected, quiet
+from diagnosis.evidence import (
+    EffectSet,
+    Progress,
+    ResidualSpace,
+    ScaledEffect,
+    f_probability,
+    projected,
+    quiet,
+)
 from diagnosis.fit import Fit, GrossErrors, Prior
 from diagnosis.residual import Region, Structure, find_structure, regions, remarks
 from diagnosis.search import (
     LISTED,
     MOST_SETS,
+    DiagnosisTask,
     Search,
     SearchState,
-    Task,
     Verified,
-    rounds,
-    strongest,
-    tuned,
+    most_evident,
+    refined_named,
+    search_until_stable,
 )
 from twin.compute import one_blas_thread
 from twin.library import ordinary_model, proposals
@@ -46,7 +54,7 @@ def diagnose(
 
     Args:
         run: The measurements.
-        model: To begin with; None for the ordinary geometric one.
+        model: Starting model; None for the ordinary geometric one.
         prior: Of its parameters, as from a model file; None for what its effects state.
         named: Effects that the user adds, whatever they are worth.
         candidates: Effects that may be found; None for all of the library that make sense here.
@@ -61,17 +69,18 @@ def diagnose(
     """
     run = counted_once(run)
     start = model or ordinary_model(run.touches.chain)
-    task = Task(run, start, prior or Prior.of_effects(start.effects), prior is not None)
+    belief = prior or Prior.of_effects(start.effects)
+    task = DiagnosisTask(run, start, belief, is_known=prior is not None)
     library = proposals(run.touches) if candidates is None else list(candidates)
-    added = tuned(task, named, progress)
+    added = refined_named(task, named, progress)
     known = {e.name for e in (*start.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
-    final = rounds(task, added, library, progress)
+    final = search_until_stable(task, added, library, progress)
     return _result(task, added, final, progress, rng)
 
 
 def _result(
-    task: Task,
+    task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
     final: SearchState,
     progress: Progress,
@@ -96,17 +105,17 @@ def _result(
     seen = final.library.sample
     effects = EffectSet(seen.complement, projected(seen.complement, final.effects))
     return Diagnosis(
-        task.run,
-        verdict,
-        steps,
-        _candidates(final),
-        start,
-        left,
-        _dependences(left if unexplained else start),
-        _where(steps, verdict),
-        detectable(effects, seen, len(final.library.complement.u)),
-        _plans(task, added, classes, gross, rng),
-        _remarks(steps[-1].fit, final),
+        run=task.run,
+        verdict=verdict,
+        steps=steps,
+        candidates=_candidates(final),
+        structure=start,
+        left=left,
+        depends_on=_dependences(left if unexplained else start),
+        where=_where(steps, verdict),
+        detectable=detectable(effects, seen, len(final.library.complement.u)),
+        plans=_plans(task, added, classes, gross, rng),
+        remarks=_remarks(steps[-1].fit, final),
     )
 
 
@@ -123,7 +132,7 @@ def _remarks(fit: Fit, final: SearchState) -> tuple[str, ...]:
 
 
 def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
-    """Where the model to begin with fails; where what is left is unexplained, the last one."""
+    """Where the starting model fails; where what is left is unexplained, the last one."""
     first, last = steps[0].fit, steps[-1].fit
     if verdict is Verdict.UNEXPLAINED:
         return regions(last)
@@ -145,14 +154,14 @@ def _classes(final: SearchState) -> list[ConfusionClass]:
 
 
 def _steps(
-    task: Task,
+    task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
     final: SearchState,
     classes: Sequence[ConfusionClass],
     verified: dict[str, Verified],
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
-    """The error falling: the model to begin with, named effects, found effects by their worth."""
+    """The error falling: the starting model, named effects, found effects by their worth."""
     p_values = [verified[m.effect.name].p_value for m in final.chosen.members]
     order = _by_worth(final)
     heads = [classes[i].sized for i in order]
@@ -160,20 +169,20 @@ def _steps(
     last = task.fit(effects, gross, free_inner=True)
     first = task.fit((), gross)
     told = sizes(task, effects, gross, ResidualSpace.of(first))
-    out = [Step(None, first, 1.0, (), None)]
+    out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
     for k, sized in enumerate(effects):
         fit = last if k + 1 == len(effects) else task.fit(effects[: k + 1], gross)
         i = order[k - len(added)] if k >= len(added) else -1
         p = p_values[i] if i >= 0 else _named_probability(out[-1].fit, fit)
         confusion = classes[i] if i >= 0 else None
-        out.append(Step(sized.effect, fit, p, told[k], confusion))
+        out.append(
+            Step(effect=sized.effect, fit=fit, p_value=p, reported=told[k], confusion=confusion)
+        )
     return tuple(out)
 
 
 def _named_probability(before: Fit, after: Fit) -> float:
     """Probability by chance of the fall that an effect named by the user brings: no scan paid."""
-    from diagnosis.evidence import f_probability
-
     k = max(after.solution.effective_parameters - before.solution.effective_parameters, 0.5)
     scale = (before.noise.factor / after.noise.factor) ** 2
     drop = before.solution.objective * scale - after.solution.objective
@@ -200,22 +209,22 @@ def _by_worth(final: SearchState) -> list[int]:
 def _candidates(final: SearchState) -> tuple[Candidate, ...]:
     """Library effects by themselves, best first, with their held-out errors."""
     search = Search(final.pool)
-    nothing = search.chosen(())
+    nothing = search.evaluate(())
     scores = search.scores(nothing)
     n = len(final.pool.complement.u)
     out = []
     for variant in search.ranking(nothing)[:LISTED]:
         member = search.member(nothing, variant)
-        effects = search.chosen((member,)).effects
+        effects = search.evaluate((member,)).effects
         u = final.pool.complement.u
         out.append(
             Candidate(
-                member.effect.name,
-                member.effect.kind,
-                search.corrected(member.candidate, float(scores.p[variant])),
-                float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
-                effects.held_out.rms * float(np.sqrt(np.mean(u**2))),
-                float(effects.evidence - nothing.effects.evidence),
+                effect=member.effect.name,
+                kind=member.effect.kind,
+                p_value=search.corrected(member.candidate, float(scores.p[variant])),
+                rms=float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
+                test_rms=effects.held_out.rms * float(np.sqrt(np.mean(u**2))),
+                log_odds=float(effects.evidence - nothing.effects.evidence),
             )
         )
     return tuple(out)
@@ -230,7 +239,7 @@ def _structures(final: SearchState, progress: Progress) -> tuple[Structure, ...]
     while found:
         if not any(s.columns is not None for s in found):
             return (*out, found[0])
-        best = strongest(found)
+        best = most_evident(found)
         out.append(best)
         if len(out) == DEPENDENCES or best.columns is None:
             break
@@ -251,7 +260,7 @@ def _dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
 
 
 def _plans(
-    task: Task,
+    task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
     classes: Sequence[ConfusionClass],
     gross: GrossErrors,

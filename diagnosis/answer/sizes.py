@@ -23,7 +23,7 @@ from diagnosis.fit import (
     shifted,
     spacing,
 )
-from diagnosis.search import Task
+from diagnosis.search import DiagnosisTask
 from twin.frames import Array
 from twin.model import Effect, Inner, Model, Tunable
 
@@ -45,7 +45,10 @@ INSTANTS = 60
 
 
 def sizes(
-    task: Task, effects: Sequence[ScaledEffect], gross: GrossErrors, complement: ResidualSpace
+    task: DiagnosisTask,
+    effects: Sequence[ScaledEffect],
+    gross: GrossErrors,
+    complement: ResidualSpace,
 ) -> tuple[tuple[Reported, ...], ...]:
     """Parameters of every effect as a user reads them, with their uncertainties.
 
@@ -69,7 +72,7 @@ def sizes(
 
 
 def _settled(
-    task: Task, effects: Sequence[ScaledEffect], gross: GrossErrors
+    task: DiagnosisTask, effects: Sequence[ScaledEffect], gross: GrossErrors
 ) -> tuple[Fit, tuple[Effect, ...]]:
     """The fit with tangents at the inner parameters that suit it best, and the effects there."""
     at = [s.effect for s in effects]
@@ -124,7 +127,7 @@ def _instants(
     others = [s for k, s in enumerate(effects) if k != which]
     base: EffectSet | None = None
     for index, inner, value in continuous_inner(effect, complement.touches):
-        if inner.unit != "s" or inner.name.startswith("tau"):
+        if inner.acts != "at an instant":
             continue
         base = base or EffectSet(complement, projected(complement, others))
         out[index] = _weighed(base, effect, index, _jumps(complement, inner, value))

@@ -1,4 +1,10 @@
-"""Signatures of effects that are not in the model, free of all that the model can imitate."""
+"""Signatures of effects that are not in the model, free of all that the model can imitate.
+
+A column of an effect says what it does to every touch. What the fitted model could do as well is
+projected out of it; the rest is the effect's signature, and the only part of it that a residual can
+show. Columns are divided by the noise and scaled by the prior of the effect, so the length of its
+signature is how many standard deviations of noise the effect at its usual size stands out by.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -54,13 +60,20 @@ class ResidualSpace:
 
     @classmethod
     def of(cls, fit: Fit) -> "ResidualSpace":
-        """The complement of a fit."""
+        """What a fit leaves."""
         solution = fit.solution
         Q = np.vstack([solution.Q, solution.root])
         residual = np.concatenate([solution.residual, -solution.phi])
-        u = fit.u[fit.used]
-        gross = fit.gross.rows
-        return cls(fit.run.touches, fit.used, u, Q, residual, solution.dof, fit.groups, gross)
+        return cls(
+            touches=fit.run.touches,
+            used=fit.used,
+            u=fit.u[fit.used],
+            Q=Q,
+            residual=residual,
+            dof=solution.dof,
+            groups=fit.groups,
+            gross=fit.gross.rows,
+        )
 
     def thinned(self, count: int) -> "ResidualSpace":
         """The same model fitted to an even choice of so many of the touches."""
@@ -254,6 +267,14 @@ def signatures(
         size[start[first] : start[last]] = np.linalg.norm(raw, axis=0)
         C[:, start[first] : start[last]] = complement.project(raw)
         progress(last / len(variants), "signatures of effects")
-    names = tuple(grid.effect.name for grid in grids)
-    tries = np.array([grid.tries for grid in grids], dtype=np.int64)
-    return Signatures(complement, tuple(variants), owner, names, C, start, size, tries, tried)
+    return Signatures(
+        complement=complement,
+        variants=tuple(variants),
+        owner=owner,
+        names=tuple(grid.effect.name for grid in grids),
+        C=C,
+        start=start,
+        size=size,
+        tries=np.array([grid.tries for grid in grids], dtype=np.int64),
+        tried=tried,
+    )

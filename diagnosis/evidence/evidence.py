@@ -241,7 +241,13 @@ def _scores(effects: EffectSet, pool: Signatures, E: Array, g: Array, share: flo
         freedom[which] = seen.sum(axis=1)
     rest = np.maximum(effects.objective - free, 1e-9)
     p = f_probability(free, freedom, rest, effects.dof - freedom)
-    return Scores(free, freedom, evidence, scale, np.where(freedom > 0, p, 1.0))
+    return Scores(
+        free_drop=free,
+        freedom=freedom,
+        evidence=evidence,
+        scale=scale,
+        p=np.where(freedom > 0, p, 1.0),
+    )
 
 
 def _principal(S: Array, g: Array) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field
 
-from diagnosis.fit import Prior, file_unit, inner_unit
+from diagnosis.fit import Prior, file_unit
 from twin.errors import BadFile, DesignError
 from twin.files import (
     AxisTable,
@@ -91,17 +91,6 @@ def parameter_keys(effect: Effect) -> list[tuple[str, float]]:
     for parameter in effect.parameters:
         suffix, factor = file_unit(parameter.unit)
         out.append((f"{parameter.name.replace(' ', '_')}_{suffix}", factor))
-    return out
-
-
-def inner_keys(effect: Effect, units: dict[str, str]) -> list[tuple[str, float]]:
-    """Key of every inner parameter in files, and one of its unit in the base unit."""
-    if not isinstance(effect, Tunable):
-        return []
-    out = []
-    for name in effect.tuning:
-        suffix, factor = inner_unit(name, units.get(name, "1"))
-        out.append((f"{name}{suffix}", factor))
     return out
 
 

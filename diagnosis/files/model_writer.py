@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.files.model_file import FORMAT, SavedModel, inner_keys, parameter_keys
-from diagnosis.fit import Fit
+from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys
+from diagnosis.fit import Fit, inner_unit
 from twin.files import write_whole
 from twin.frames import Array
 from twin.machine import Chain
-from twin.model import Effect, Tunable
+from twin.model import Effect, inner_values
 from twin.units import DEG, UM
 
 
@@ -81,11 +81,11 @@ def _source(fit: Fit, run_name: str, before: SavedModel | None, made_with: str) 
 
 def _inner_values(fit: Fit, effect: Effect) -> dict[str, float]:
     """Inner parameters in the units of files."""
-    if not isinstance(effect, Tunable):
-        return {}
-    units = {p.name: p.unit for p in effect.inner(fit.run.touches)}
-    keys = inner_keys(effect, units)
-    return {k: v / f for (k, f), v in zip(keys, effect.tuning.values(), strict=True)}
+    out = {}
+    for inner, value in inner_values(effect, fit.run.touches):
+        suffix, factor = inner_unit(inner)
+        out[f"{inner.name}{suffix}"] = value / factor
+    return out
 
 
 def _triangle(covariance: Array) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.fit.identification import Fit
 from twin.frames import Array
-from twin.model import Effect, Tunable
+from twin.model import Effect, Inner, inner_values
 from twin.units import DEG, MINUTE, UM, URAD
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
@@ -53,16 +53,18 @@ def file_unit(unit: str) -> tuple[str, float]:
     return label + (_TAILS.get(tail, f"_per_{tail}") if tail else ""), factor
 
 
-def inner_unit(name: str, unit: str) -> tuple[str, float]:
+def inner_unit(inner: Inner) -> tuple[str, float]:
     """Suffix of an inner parameter in files, and one of it in the base unit.
 
+    Spans of time such as time constants are told in minutes, instants as the run tells time.
+
     Example:
-        >>> inner_unit("tau", "s")
+        >>> inner_unit(Inner("tau", "s", np.array([60.0, 600.0])))
         ('_min', 60.0)
     """
-    if unit == "s":
-        return ("_min", MINUTE) if name.startswith("tau") else ("_s", 1.0)
-    return {"mm": ("_mm", 1.0), "rad": ("_deg", DEG)}.get(unit, ("", 1.0))
+    if inner.unit == "s":
+        return ("_s", 1.0) if inner.acts == "at an instant" else ("_min", MINUTE)
+    return {"mm": ("_mm", 1.0), "rad": ("_deg", DEG)}.get(inner.unit, ("", 1.0))
 
 
 def reported(
@@ -121,9 +123,6 @@ def _inner(
     fit: Fit, effect: Effect, wider: float, settled: Mapping[int, InstantEstimate]
 ) -> Sequence[Reported]:
     """Inner parameters with the uncertainty that their tangents give."""
-    if not isinstance(effect, Tunable):
-        return []
-    described = {p.name: p.unit for p in effect.inner(fit.run.touches)}
     u = {
         tangent.index: float(np.sqrt(fit.covariance[place, place][0, 0])) * wider
         for tangent in fit.tangents
@@ -131,12 +130,9 @@ def _inner(
         for place in [fit.of_effect(tangent.name)]
     }
     out = []
-    for i, (name, value) in enumerate(effect.tuning.items()):
-        suffix, factor = inner_unit(name, described.get(name, "1"))
+    for i, (inner, value) in enumerate(inner_values(effect, fit.run.touches)):
+        suffix, factor = inner_unit(inner)
         value, own = settled.get(i, (value, u.get(i)))
-        out.append(
-            Reported(
-                f"{name}{suffix}", value / factor, None if own is None else own / factor, factor
-            )
-        )
+        own_u = None if own is None else own / factor
+        out.append(Reported(f"{inner.name}{suffix}", value / factor, own_u, factor))
     return out

@@ -90,11 +90,11 @@ def estimable(fit: Fit) -> Estimable:
     """
     W = columns(fit.effects, fit.run.touches)[fit.used] * fit.prior.sd / fit.u[fit.used, None]
     return Estimable(
-        fit,
-        W,
-        fit.solution.effective_parameters,
-        _combinations(fit, W),
-        _determined(fit),
+        fit=fit,
+        rows=W,
+        effective=fit.solution.effective_parameters,
+        combinations=_combinations(fit, W),
+        determined=_determined(fit),
     )
 
 
@@ -104,12 +104,12 @@ def _combinations(fit: Fit, W: Array) -> tuple[Combination, ...]:
     units = [p.unit for _, p in fit.parameters]
     return tuple(
         Combination(
-            c.words,
-            float(c.weights @ fit.theta),
-            float(np.linalg.norm(fit.spread.T @ c.weights)),
-            c.gain,
-            c.unit,
-            c.weights,
+            words=c.words,
+            value=float(c.weights @ fit.theta),
+            u=float(np.linalg.norm(fit.spread.T @ c.weights)),
+            gain=c.gain,
+            unit=c.unit,
+            weights=c.weights,
         )
         for c in combinations(W, fit.prior.sd, fit.names, units, free)
     )
@@ -121,7 +121,11 @@ def _determined(fit: Fit) -> tuple[Determined, ...]:
     order = [k for k in np.argsort(u / sd) if u[k] * DETERMINED < sd[k]]
     return tuple(
         Determined(
-            fit.names[k], float(theta[k]), float(u[k]), float(sd[k]), fit.parameters[k][1].unit
+            name=fit.names[k],
+            value=float(theta[k]),
+            u=float(u[k]),
+            prior_sd=float(sd[k]),
+            unit=fit.parameters[k][1].unit,
         )
         for k in order
     )

@@ -23,6 +23,7 @@ BY_HALVES = 0.5
 bend the fit make good touches look bad, until they are out."""
 
 ROUNDS = 30
+"""Most rounds; two touches that take turns would go on for ever."""
 
 FEWEST_DOF = 10.0
 """With fewer degrees of freedom there is no scale by which a touch could stand out."""
@@ -86,7 +87,7 @@ def find_gross(X: Array, y: Array, allowed: BoolArray) -> tuple[Solution, GrossE
     fit = solve(X[used], y[used])
     if fit.dof < FEWEST_DOF:
         zero, nothing = np.zeros(len(y)), np.zeros(len(y), dtype=bool)
-        return fit, GrossErrors(nothing, zero, zero, limit)
+        return fit, GrossErrors(rows=nothing, size=zero, score=zero, limit=limit)
     for _ in range(ROUNDS):
         error, variance = _left_out_each(X, y, fit, used)
         z = error / np.sqrt(variance)
@@ -101,10 +102,12 @@ def find_gross(X: Array, y: Array, allowed: BoolArray) -> tuple[Solution, GrossE
         if n - int(wanted.sum()) > MOST * n:
             fit = solve(X[allowed], y[allowed])
             nothing = np.zeros(len(y), dtype=bool)
-            return fit, GrossErrors(nothing, error, score, limit, too_many=True)
+            return fit, GrossErrors(
+                rows=nothing, size=error, score=score, limit=limit, too_many=True
+            )
         used = wanted
         fit = solve(X[used], y[used])
-    return fit, GrossErrors(allowed & ~used, error, score, limit)
+    return fit, GrossErrors(rows=allowed & ~used, size=error, score=score, limit=limit)
 
 
 def _alone(far: BoolArray) -> BoolArray:

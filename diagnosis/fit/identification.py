@@ -23,14 +23,12 @@ stated distributions, and the prior is widened."""
 
 PASSES = 5
 SETTLED = 0.005
-"""Passes of a fit, until the noise that it finds is the noise that it weights with."""
+"""Most passes of a fit, and the relative change of the noise below which it weights with the noise
+that it finds: gross errors and the widening of the prior then stay what they are."""
 
 MIN_POSES = 4
 BLOCKS = 10
 """With fewer table poses than that, held out are so many blocks of touches one after the other."""
-
-PASSES = 5
-"""Most passes until the gross errors stay what they are."""
 
 MIN_TOUCHES = 8
 """Fewer touches than this do not even place a standard and leave something to judge it by."""
@@ -215,13 +213,33 @@ def fit_run(
         factor, widened = better, max(widened, _widened(solution, len(machine)) * widened)
     used = train & ~found.rows
     noise = _noise(run, solution, (rest - X @ solution.phi) * factor, used, factor)
-    return Fit(run, model, setups, moved, belief, X, rest, used, solution, found, noise, widened)
+    return Fit(
+        run=run,
+        model=model,
+        setups=setups,
+        tangents=moved,
+        prior=belief,
+        X=X,
+        y=rest,
+        used=used,
+        solution=solution,
+        gross=found,
+        noise=noise,
+        widened=widened,
+    )
 
 
 def _noise(run: Run, solution: Solution, z: Array, used: BoolArray, factor: float) -> Noise:
     """Noise of a fit; z are its residuals over the stated uncertainty, all rows, (N,)."""
     ratio = float(z[used] @ z[used]) / max(solution.dof, 1e-9)
-    return Noise(factor, solution.dof, ratio, *replicate_factor(run, z, used))
+    replicates, count = replicate_factor(run, z, used)
+    return Noise(
+        factor=factor,
+        dof=solution.dof,
+        chi2_ratio=ratio,
+        replicates=replicates,
+        replicates_dof=count,
+    )
 
 
 def _solved(

@@ -116,5 +116,6 @@ def tangents(model: Model, touches: Touches, theta: Array) -> list[Tangent]:
             step = STEP * spacing(inner, value)
             if not is_smooth(effect, index, step, touches):
                 continue
-            out.append(Tangent(effect, index, own, step, WIDE * spacing(inner, value)))
+            sd = WIDE * spacing(inner, value)
+            out.append(Tangent(effect=effect, index=index, theta=own, step=step, sd=sd))
     return out

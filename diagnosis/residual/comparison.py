@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from diagnosis.fit import BoolArray, Fit, GrossErrors, Prior, fit_run, solve
+from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
 from diagnosis.residual.failing_regions import Region, regions
 from diagnosis.residual.run_remarks import remarks
 from diagnosis.residual.structure import Structure, find_structure
@@ -124,7 +124,11 @@ class Comparison:
             rms, normalised = np.sqrt(np.mean(r**2)), np.sqrt(np.mean(z**2))
             out.append(
                 GroupResidual(
-                    str(name), int(rows.sum()), float(r.mean()), float(rms), float(normalised)
+                    name=str(name),
+                    touches=int(rows.sum()),
+                    mean=float(r.mean()),
+                    rms=float(rms),
+                    normalised=float(normalised),
                 )
             )
         return tuple(out)
@@ -155,7 +159,14 @@ def compare(
         u = np.sqrt(run.u**2 + _prediction_variance(fit, estimates))
     nothing = EffectSet(ResidualSpace.of(fit), np.zeros((int(fit.used.sum()) + len(fit.prior), 0)))
     found = tuple(find_structure(nothing, progress))
-    return Comparison(fit, estimates is not None, u, found, regions(fit), remarks(fit))
+    return Comparison(
+        fit=fit,
+        is_prediction=estimates is not None,
+        u=u,
+        structure=found,
+        where=regions(fit),
+        remarks=remarks(fit),
+    )
 
 
 def _predicted(run: Run, model: Model, estimates: Prior) -> Fit:
@@ -164,9 +175,7 @@ def _predicted(run: Run, model: Model, estimates: Prior) -> Fit:
     """  # noqa: D205
     learnt = fit_run(run, model, estimates)
     known = Prior(estimates.mean, np.zeros_like(estimates.root))
-    gross = GrossErrors(
-        learnt.gross.rows, learnt.gross.size, learnt.gross.score, learnt.gross.limit
-    )
+    gross = replace(learnt.gross, too_many=False)
     everything = replace(run, split=np.full(len(run), "", dtype="U5"))
     return fit_run(everything, model, known, gross=gross)
 

@@ -15,7 +15,7 @@ from diagnosis.fit import Fit
 from diagnosis.residual.patterns import variables
 from twin.effects import normal_in_tool
 from twin.frames import Array
-from twin.model import Effect, Tunable, Where, columns
+from twin.model import Effect, Where, columns, inner_values
 from twin.record import IntArray, Touches
 from twin.units import DEG, MINUTE, UM, URAD
 from twin.words import noun
@@ -95,14 +95,14 @@ def _split(effect: Effect, touches: Touches, theta: Array) -> tuple[str, float, 
     if len(places) == 1:
         where = places.pop()
         whole = np.sum([theta[t.parameter] * t.amount for t in terms], axis=0)
-        return (*_place(where, touches), np.asarray(whole), _per_unit(where, touches))
+        return (*_place(where, touches), np.asarray(whole), touches.signature.of(where))
     deviation = columns([effect], touches) @ theta
     course = _common_course(np.stack([t.amount for t in terms]))
     if course is None:
         return "deviation along the normal, µm", UM, deviation, np.ones(len(touches))
     per_course = np.sum(
         [
-            theta[t.parameter] * w * _per_unit(t.where, touches)
+            theta[t.parameter] * w * touches.signature.of(t.where)
             for t, w in zip(terms, course[1], strict=True)
         ],
         axis=0,
@@ -124,23 +124,13 @@ def _place(where: Where, touches: Touches) -> tuple[str, float]:
     """Name of an entry of a contribution with its unit, and one of that unit in the base unit."""
     if where.part == "bias":
         return "bias along the normal, µm", UM
-    unit, factor = ("µm", UM) if where.component < 3 else ("µrad", URAD)
+    unit, factor = ("µrad", URAD) if where.is_angular else ("µm", UM)
     letter = LETTERS[where.component]
     if where.part == "shift":
         return f"shift of the standard in {letter}, {unit}", factor
     link = touches.chain.links[where.link].name
     zero = "0" if where.part == "place" else ""
     return f"E{letter}{zero}{link}, {unit}", factor
-
-
-def _per_unit(where: Where, touches: Touches) -> Array:
-    """Deviation along the normal per unit of an entry of a contribution, (N,)."""
-    if where.part == "bias":
-        return touches.signature.bias
-    if where.part == "shift":
-        return touches.signature.shift[:, where.component]
-    per_unit = getattr(touches.signature, where.part)
-    return np.asarray(per_unit[:, where.link, where.component])
 
 
 def _driver(
@@ -160,14 +150,16 @@ def _driver(
 def _drivers(effect: Effect, touches: Touches) -> Mapping[str, Array]:
     """Everything an effect may be a function of, with units for an axis of a picture, in order."""
     known = variables(touches)
-    tuning = effect.tuning if isinstance(effect, Tunable) else {}
+    scanned = inner_values(effect, touches)
+    periods = [value for inner, value in scanned if inner.acts == "with a period"]
     out: dict[str, Array] = {}
     time = _time(touches)
-    if isinstance(effect, Tunable) and any(i.unit == "s" for i in effect.inner(touches)):
+    if any(inner.unit == "s" for inner, _ in scanned):
         out |= time
     for axis in touches.chain.programmed_axes:
         q = touches.reading(axis)
-        out |= _folded(axis, q, tuning)
+        for period in periods:
+            out[f"{axis} within a period of {period:.4g} mm"] = q % period
         unit, factor = ("°", DEG) if touches.chain.link(axis).kind == "rotary" else ("mm", 1.0)
         out[f"{axis} in {unit}"] = q / factor
         out[f"last move of {axis}"] = touches.last_move(axis)
@@ -185,12 +177,6 @@ def _time(touches: Touches) -> dict[str, Array]:
     """Time in minutes, or in hours where the run is long."""
     hours = np.ptp(touches.time) > 600.0 * MINUTE
     return {f"time in {'h' if hours else 'min'}": touches.time / (3600.0 if hours else MINUTE)}
-
-
-def _folded(axis: str, q: Array, tuning: Mapping[str, float]) -> dict[str, Array]:
-    """A reading folded by a period, where the effect has one."""
-    period = tuning.get("period", 0.0)
-    return {f"{axis} within a period of {period:.4g} mm": q % period} if period > 0.0 else {}
 
 
 def roughness(x: Array, y: Array) -> float:

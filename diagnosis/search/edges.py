@@ -14,6 +14,7 @@ from scipy.special import gammaln
 from diagnosis.evidence import ScaledEffect
 from diagnosis.fit import BoolArray, GrossErrors
 from twin.frames import Array
+from twin.model import inner_values
 from twin.record import IntArray, Touches
 
 CHANCE = 1e-3
@@ -26,7 +27,9 @@ FEWEST = 2
 """Gross errors at an edge that may be no accidents."""
 
 
-def offered(touches: Touches, gross: GrossErrors, effects: Sequence[ScaledEffect]) -> BoolArray:
+def unexplained_near_slip(
+    touches: Touches, gross: GrossErrors, effects: Sequence[ScaledEffect]
+) -> BoolArray:
     """Gross errors that a slip may explain, (N,).
 
     At the edges of a set-up those that so few accidents would hardly ever form; at the instant of a
@@ -37,7 +40,14 @@ def offered(touches: Touches, gross: GrossErrors, effects: Sequence[ScaledEffect
         gross: Of the fit.
         effects: That were found.
     """
-    instants = np.array([_instant(s) for s in effects if "instant" in _tuning(s)])
+    instants = np.array(
+        [
+            value
+            for scaled in effects
+            for inner, value in inner_values(scaled.effect, touches)
+            if inner.acts == "at an instant"
+        ]
+    )
     out = np.zeros(len(touches), dtype=bool)
     bad = gross.rows
     edges = list(_edges(touches, instants))
@@ -58,14 +68,6 @@ def offered(touches: Touches, gross: GrossErrors, effects: Sequence[ScaledEffect
 def without(gross: GrossErrors, rows: BoolArray) -> GrossErrors:
     """Gross errors less some rows."""
     return replace(gross, rows=gross.rows & ~rows)
-
-
-def _tuning(sized: ScaledEffect) -> dict[str, float]:
-    return dict(getattr(sized.effect, "tuning", {}))
-
-
-def _instant(sized: ScaledEffect) -> float:
-    return _tuning(sized)["instant"]
 
 
 def _edges(touches: Touches, instants: Array) -> Iterator[tuple[IntArray, bool]]:

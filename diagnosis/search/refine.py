@@ -1,4 +1,12 @@
-"""Inner parameters beyond the grid: a finer and finer scan around the best point."""
+"""Inner parameters beyond the grid: a finer and finer scan around the best point.
+
+A time constant or a period enters a signature non-linearly, and the search sees it only at points
+of a grid. From the best point the evidence is scanned over one distance of the grid to either side,
+then four times finer around the best of that, and so on: the evidence has several maxima within a
+distance of the grid for a period, which a step along its slope would miss. Several inner parameters
+are scanned in turn until the evidence stays; several effects likewise, each with the others in
+place.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -88,7 +96,7 @@ def refined_set(
     return out
 
 
-def moved(pool: Signatures, to: Mapping[int, Effect]) -> Signatures:
+def with_moved_points(pool: Signatures, to: Mapping[int, Effect]) -> Signatures:
     """A pool with points of its grids moved, in the place of the old ones, which are lost.
 
     Args:

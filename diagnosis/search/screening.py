@@ -1,6 +1,14 @@
-"""Candidates of a run: all of the library for most, a screened choice of it for a long run."""
+"""Candidates of a run: all of the library for most, a screened choice of it for a long run.
 
-from collections.abc import Sequence
+The cost of a search is touches times points of all grids. Up to `WHOLE_BELOW` touches that is paid
+in full. In a long run the library is first scored against an even choice of the touches: what a
+signature has in common with the residual is counted over all touches, which is one product, and
+only its length after the projection, which is the work, over the choice. A shortlist names the
+points of grids that may matter beside a set of effects; the search then has exact signatures of
+those points alone, and whoever searches asks for another shortlist once it knows more effects.
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -35,6 +43,16 @@ POINTS = 12
 """Best points of a candidate's grid that it lets through."""
 
 
+Shortlist = Mapping[int, frozenset[int]]
+"""Points of grids, as numbers of variants, by the number of the candidate."""
+
+
+def joined_shortlists(first: Shortlist, second: Shortlist) -> Shortlist:
+    """Every candidate of two shortlists at the points of either."""
+    nothing: frozenset[int] = frozenset()
+    return {k: first.get(k, nothing) | second.get(k, nothing) for k in {*first, *second}}
+
+
 @dataclass(frozen=True, eq=False)
 class Library:
     """Candidate effects with what is needed to search among them in one run.
@@ -53,7 +71,7 @@ class Library:
     def of(
         cls, complement: ResidualSpace, candidates: Sequence[Effect], progress: Progress = quiet
     ) -> "Library":
-        """Candidates of a run."""
+        """Candidates at every point of their grids, with their signatures."""
         grids = whole_grids(candidates, complement.touches)
         n = len(complement.u)
         seen = complement if n <= WHOLE_BELOW else complement.thinned(WHOLE_BELOW)
@@ -69,51 +87,31 @@ class Library:
         """Every candidate at every point, in the order of the signatures."""
         return self.sample.variants
 
-    def pool(self, keep: Sequence[str]) -> Signatures:
-        """Signatures over all touches, of the whole library or of what a screening keeps.
-
-        Args:
-            keep: Names of candidates that have been let through so far.
-        """
+    def pool(self, shortlist: Shortlist) -> Signatures:
+        """Signatures over all touches, of the whole library or of a shortlist of it."""
         if self.is_whole:
             return self.sample
-        grids = [g for g in self._screened if g.effect.name in keep]
+        grids = []
+        for index in sorted(shortlist):
+            variants = tuple(self.variants[v] for v in sorted(shortlist[index]))
+            grid = self.grids[index]
+            grids.append(Grid(grid.effect, variants, grid.tries))
         return signatures(self.complement, grids, len(self.grids))
 
-    def shortlist(self, found: Sequence[ScaledEffect], effects: EffectSet) -> list[str]:
-        """Names of the candidates that may matter beside a set of effects, the best first.
+    def shortlist(self, found: Sequence[ScaledEffect], effects: EffectSet) -> Shortlist:
+        """Candidates that may matter beside a set of effects; empty where all are searched.
 
         Args:
             found: Effects of the set.
             effects: The set over all touches.
         """
         if self.is_whole:
-            return list(self.sample.names)
+            return {}
         scores = self._screen(found, effects)
         best: dict[int, list[int]] = {}
         for variant in np.argsort(-scores.evidence, kind="stable"):
             best.setdefault(int(self.sample.owner[variant]), []).append(int(variant))
-        for index in list(best)[:SHORT]:
-            self._let_through(index, best[index][:POINTS])
-        return [self.sample.names[index] for index in list(best)[:SHORT]]
-
-    @cached_property
-    def _points(self) -> dict[int, set[int]]:
-        """Variants of every candidate that have been let through."""
-        return {}
-
-    def _let_through(self, index: int, variants: Sequence[int]) -> None:
-        self._points.setdefault(index, set()).update(variants)
-
-    @property
-    def _screened(self) -> list[Grid]:
-        """Candidates let through, at the points let through."""
-        out = []
-        for index in sorted(self._points):
-            variants = tuple(self.variants[v] for v in sorted(self._points[index]))
-            grid = self.grids[index]
-            out.append(Grid(grid.effect, variants, grid.tries))
-        return out
+        return {index: frozenset(best[index][:POINTS]) for index in list(best)[:SHORT]}
 
     def _screen(self, found: Sequence[ScaledEffect], effects: EffectSet) -> Scores:
         """Scores of all variants beside a set of effects."""

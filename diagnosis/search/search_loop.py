@@ -1,4 +1,16 @@
-"""Gross errors, effects and structure in turn, until nothing changes."""
+"""Gross errors, effects and structure in turn, until nothing changes.
+
+Three findings depend on one another: a touch is a gross error only beside the right effects, an
+effect is found only among touches that are none, and a pattern without a name counts only for what
+no effect explains. So they are looked for in turn:
+
+1. the starting model is fitted, and gross errors are set aside;
+2. the library is searched for the set of effects that the touches in use ask for;
+3. the model is fitted again with that set, and gross errors are looked for anew; if they have
+   changed, or lie at an edge in time where a slip may explain them, it begins again;
+4. once they stay, what the set leaves is tested for structure. Structure joins the set as a pattern
+   without a name, and the effects must stand beside it: what only imitated it falls.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,17 +29,17 @@ from diagnosis.evidence import (
 )
 from diagnosis.fit import Fit, GrossErrors, Prior, fit_run
 from diagnosis.residual import Structure, find_structure
-from diagnosis.search.edges import offered, without
+from diagnosis.search.edges import unexplained_near_slip, without
 from diagnosis.search.refine import refined_set
-from diagnosis.search.screening import Library
+from diagnosis.search.regrid import regridded
+from diagnosis.search.screening import Library, joined_shortlists
 from diagnosis.search.selection import Budget, EffectSubset, Search
-from diagnosis.search.settle import settled
 from twin.frames import Array
 from twin.model import Effect, Model
 from twin.record import Run
 
 ROUNDS = 4
-"""Most rounds of looking for gross errors and effects in turn."""
+"""Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
 
 NAMELESS = 3
 """Most patterns without a name that are put beside the effects of an unexplained run."""
@@ -45,12 +57,12 @@ what is usual, and an estimate shall not be drawn to zero."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Task:
-    """What is diagnosed: a run, the model to begin with, and what is believed of it.
+class DiagnosisTask:
+    """What is diagnosed: a run, the starting model, and what is believed of it.
 
     Attributes:
         run: The measurements.
-        model: Machine and effects to begin with.
+        model: Machine and effects of the starting model.
         prior: Of its parameters.
         is_known: Whether the prior is an earlier fit, rather than what is usual.
     """
@@ -87,12 +99,12 @@ class SearchState:
     """Result of the search at given gross errors.
 
     Attributes:
-        base: The model to begin with, and what the user added, fitted.
+        base: The starting model, and what the user added, fitted.
         library: Candidates of the run.
         search: The last search.
         chosen: Its result.
         effects: The same effects with their inner parameters refined.
-        at_start: Structure that the model to begin with leaves.
+        at_start: Structure that the starting model leaves.
         left: Structure that the effects and the patterns leave.
         nameless: Patterns without a name that had to be put beside them.
     """
@@ -117,8 +129,8 @@ class SearchState:
         return self.search.fixed
 
 
-def tuned(
-    task: Task, named: Sequence[Effect], progress: Progress = quiet
+def refined_named(
+    task: DiagnosisTask, named: Sequence[Effect], progress: Progress = quiet
 ) -> tuple[ScaledEffect, ...]:
     """Named effects with their inner parameters at the best point of their grids, refined.
 
@@ -132,16 +144,16 @@ def tuned(
     complement = ResidualSpace.of(task.fit())
     grids = whole_grids(named, task.run.touches)
     search = Search(signatures(complement, grids, len(grids), progress))
-    chosen = search.chosen(())
+    chosen = search.evaluate(())
     for _ in named:
         best = search.ranking(chosen)[0]
-        chosen = search.chosen((*chosen.members, search.member(chosen, best)))
+        chosen = search.evaluate((*chosen.members, search.member(chosen, best)))
     ordered = sorted(search.polished(chosen).members, key=lambda m: m.candidate)
     return tuple(refined_set(complement, [ScaledEffect(m.effect, m.scale) for m in ordered]))
 
 
-def rounds(
-    task: Task,
+def search_until_stable(
+    task: DiagnosisTask,
     added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
     progress: Progress = quiet,
@@ -159,7 +171,7 @@ def rounds(
     """
     touches = task.run.touches
     base = task.fit(added)
-    tried = offered(touches, base.gross, ())
+    tried = unexplained_near_slip(touches, base.gross, ())
     if tried.any():
         base = task.fit(added, gross=without(base.gross, tried))
     found: Sequence[str] = ()
@@ -167,47 +179,47 @@ def rounds(
     for remaining in reversed(range(ROUNDS)):
         library = Library.of(ResidualSpace.of(base), candidates, progress)
         search, chosen = _searched(library, found, budget, progress)
-        effects = refined_set(library.complement, _sized(chosen))
+        effects = refined_set(library.complement, _scaled(chosen))
         again = task.fit((*added, *effects)).gross
-        further = offered(touches, again, effects) & ~tried & (remaining > 1)
+        further = unexplained_near_slip(touches, again, effects) & ~tried & (remaining > 1)
         is_settled = np.array_equal(again.rows, base.gross.rows) and not further.any()
         if is_settled or not remaining:
             break
         tried |= further
         base = task.fit(added, gross=without(again, further))
         found = [s.effect.name for s in effects]
-    return _judged(base, library, search, chosen, progress)
+    return _with_structure(base, library, search, chosen, progress)
 
 
-def _judged(
+def _with_structure(
     base: Fit, library: Library, search: Search, chosen: EffectSubset, progress: Progress
 ) -> SearchState:
     """The search's result with the structure that it leaves, which may bring it down."""
-    nothing = search.chosen(())
+    nothing = search.evaluate(())
     at_start = find_structure(nothing.effects, progress)
     left = find_structure(chosen.effects, progress) if chosen.members else at_start
     if not left:
-        left = _beaten(at_start, nothing, chosen)
+        left = _patterns_that_win(at_start, nothing, chosen)
     nameless: list[Structure] = []
     while any(s.columns is not None for s in left) and len(nameless) < NAMELESS:
-        nameless.append(strongest(left))
+        nameless.append(most_evident(left))
         fixed = np.hstack([s.columns for s in nameless if s.columns is not None])
         search = Search(search.pool, fixed, progress, search.budget)
         chosen = search.run(chosen.members)
         left = find_structure(chosen.effects, progress)
     return SearchState(
-        base,
-        library,
-        search,
-        chosen,
-        tuple(refined_set(library.complement, _sized(chosen))),
-        tuple(at_start),
-        tuple(left),
-        tuple(nameless),
+        base=base,
+        library=library,
+        search=search,
+        chosen=chosen,
+        effects=tuple(refined_set(library.complement, _scaled(chosen))),
+        at_start=tuple(at_start),
+        left=tuple(left),
+        nameless=tuple(nameless),
     )
 
 
-def _sized(chosen: EffectSubset) -> list[ScaledEffect]:
+def _scaled(chosen: EffectSubset) -> list[ScaledEffect]:
     return [ScaledEffect(m.effect, m.scale) for m in chosen.members]
 
 
@@ -217,32 +229,32 @@ def _searched(
     """The best set of effects; of a long run among those that screenings let through."""
     complement = library.complement
     empty = EffectSet(complement, np.zeros((len(complement.residual), 0)))
-    names = library.shortlist((), empty)
+    shortlist = library.shortlist((), empty)
     for _ in range(SCREENINGS):
-        search = Search(library.pool(names), None, progress, budget)
-        nothing = search.chosen(())
+        search = Search(library.pool(shortlist), None, progress, budget)
+        nothing = search.evaluate(())
         ranked = search.ranking(nothing)
         start = [search.member(nothing, v) for v in ranked if search.name_of(v) in found]
-        search, chosen = settled(search, search.run(start))
-        further = library.shortlist(_sized(chosen), chosen.effects)
-        if set(further) <= set(names) or _same(chosen, found):
+        search, chosen = regridded(search, search.run(start))
+        further = library.shortlist(_scaled(chosen), chosen.effects)
+        if set(further) <= set(shortlist) or _found_again(chosen, found):
             break
-        names = [*names, *(n for n in further if n not in names)]
+        shortlist = joined_shortlists(shortlist, further)
         found = [m.effect.name for m in chosen.members]
     return search, chosen
 
 
-def _same(chosen: EffectSubset, found: Sequence[str]) -> bool:
+def _found_again(chosen: EffectSubset, found: Sequence[str]) -> bool:
     """Whether a search among more candidates found what was found before."""
     return bool(chosen.members) and {m.effect.name for m in chosen.members} == set(found)
 
 
-def strongest(found: Sequence[Structure]) -> Structure:
+def most_evident(found: Sequence[Structure]) -> Structure:
     """The pattern with most evidence among those that have columns."""
     return max((s for s in found if s.columns is not None), key=lambda s: s.evidence)
 
 
-def _beaten(
+def _patterns_that_win(
     at_start: Sequence[Structure], nothing: EffectSubset, chosen: EffectSubset
 ) -> list[Structure]:
     """Patterns that explain the run clearly better than all found effects together."""

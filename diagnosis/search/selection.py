@@ -43,6 +43,7 @@ OPENED = 8
 """Ways to begin anew where two members of a set are taken out."""
 
 REOPENINGS = 3
+"""Most turns of growing a set and of taking two members out of it."""
 
 MOST_EFFECTS = 6
 """Largest number of effects that one run is asked for."""
@@ -176,8 +177,8 @@ class Search:
         self._scores: dict[tuple[tuple[int, float], ...], Scores] = {}
         self._products: dict[int, Array] = {}
 
-    def chosen(self, members: Iterable[Member]) -> EffectSubset:
-        """A set in the projection."""
+    def evaluate(self, members: Iterable[Member]) -> EffectSubset:
+        """Put a set into the projection; the budget is charged for it."""
         members = tuple(members)
         effects = effect_set(self.complement, self.pool, members, self.fixed)
         self.budget.spend(*effects.A.shape)
@@ -240,7 +241,7 @@ class Search:
             direction = self.explained(chosen, variant)
             if all(abs(direction @ d) < ALIKE for d in directions):
                 directions.append(direction)
-                out.append(self.chosen((*chosen.members, self.member(chosen, variant))))
+                out.append(self.evaluate((*chosen.members, self.member(chosen, variant))))
         return out
 
     def explained(self, chosen: EffectSubset, variant: int) -> Array:
@@ -260,19 +261,19 @@ class Search:
         while improved and chosen.members and not self.budget.is_spent:
             improved = False
             for i in range(len(chosen.members)):
-                others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
+                others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
                 best = self.ranking(others)[0]
                 gain = self.scores(others).evidence[best] - chosen.effects.evidence
                 if gain > 1e-6:
                     members = list(chosen.members)
                     members[i] = self.member(others, best)
-                    chosen, improved = self.chosen(members), True
+                    chosen, improved = self.evaluate(members), True
         return chosen
 
     def stands(self, chosen: EffectSubset) -> bool:
         """Whether every member of a set passes its tests, the quick ones first."""
         for i, member in enumerate(chosen.members):
-            others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
+            others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
             p = float(self.scores(others).p[member.variant])
             gained = chosen.effects.evidence - others.effects.evidence
             if self.corrected(member.candidate, p) >= CHANCE or gained <= WORTH:
@@ -283,7 +284,7 @@ class Search:
         """Tests of every member of a set with the others in place."""
         out = []
         for i, member in enumerate(chosen.members):
-            others = self.chosen(chosen.members[:i] + chosen.members[i + 1 :])
+            others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
             out.append(self.verified(others, chosen, member))
         return out
 
@@ -291,12 +292,13 @@ class Search:
         """Tests of one member, given the set without it and the set with it."""
         scores = self.scores(others)
         ratio = whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300)
+        density = whole.effects.held_out_log_density - others.effects.held_out_log_density
         return Verified(
-            member,
-            self.corrected(member.candidate, float(scores.p[member.variant])),
-            float(whole.effects.evidence - others.effects.evidence),
-            ratio,
-            float(whole.effects.held_out_log_density - others.effects.held_out_log_density),
+            member=member,
+            p_value=self.corrected(member.candidate, float(scores.p[member.variant])),
+            evidence=float(whole.effects.evidence - others.effects.evidence),
+            held_out=ratio,
+            density=float(density),
         )
 
     def corrected(self, candidate: int, p: float) -> float:
@@ -309,7 +311,7 @@ class Search:
         Args:
             start: Members of a set to begin with, as from an earlier round.
         """
-        best = self.backward(self.polished(self.chosen(start)))
+        best = self.backward(self.polished(self.evaluate(start)))
         for _ in range(REOPENINGS):
             best = self.backward(self.grown(best))
             other = self.reopened(best)
@@ -344,7 +346,7 @@ class Search:
         for pair in combinations(chosen.members, 2):
             if self.budget.is_spent:
                 break
-            rest = self.chosen(m for m in chosen.members if m not in pair)
+            rest = self.evaluate(m for m in chosen.members if m not in pair)
             for first in self.extensions(rest, OPENED):
                 for second in self.extensions(first, 1):
                     found = self.polished(second)
@@ -366,6 +368,6 @@ class Search:
                 break
             weakest = min(fallen, key=lambda v: v.evidence)
             chosen = self.polished(
-                self.chosen(m for m in chosen.members if m is not weakest.member)
+                self.evaluate(m for m in chosen.members if m is not weakest.member)
             )
         return chosen

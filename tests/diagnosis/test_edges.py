@@ -9,7 +9,7 @@ from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
 from diagnosis.evidence.effect_signatures import ScaledEffect
 from diagnosis.fit.gross import GrossErrors
-from diagnosis.search.edges import offered
+from diagnosis.search.edges import unexplained_near_slip
 from twin.effects.artefact import ArtefactSlip
 from twin.library.catalogue import parse_effect
 from twin.units import UM
@@ -78,11 +78,14 @@ def test_offered_is_what_accidents_hardly_form(run) -> None:
     t = run.touches
     rows = in_time(t, 2)
     last_two = np.sort(rows[-2:])
-    assert np.flatnonzero(offered(t, gross(t, last_two), ())).tolist() == last_two.tolist()
-    assert not offered(t, gross(t, rows[100:102]), ()).any()  # not at an edge
-    assert not offered(t, gross(t, rows[-1:]), ()).any()  # one alone
+    assert (
+        np.flatnonzero(unexplained_near_slip(t, gross(t, last_two), ())).tolist()
+        == last_two.tolist()
+    )
+    assert not unexplained_near_slip(t, gross(t, rows[100:102]), ()).any()  # not at an edge
+    assert not unexplained_near_slip(t, gross(t, rows[-1:]), ()).any()  # one alone
     chips = [3, 50, 101, 155, 230, 300, 410, *last_two]
-    assert not offered(t, gross(t, chips), ()).any()  # with so many, chance does it
+    assert not unexplained_near_slip(t, gross(t, chips), ()).any()  # with so many, chance does it
 
 
 def test_what_adjoins_the_instant_of_a_slip_is_offered(run) -> None:
@@ -90,5 +93,5 @@ def test_what_adjoins_the_instant_of_a_slip_is_offered(run) -> None:
     rows = in_time(t, 0)
     instant = 0.5 * (t.time[rows[50]] + t.time[rows[51]])
     slip = [ScaledEffect(ArtefactSlip(float(instant)))]
-    found = offered(t, gross(t, rows[[48, 49, 50, 52]]), slip)
+    found = unexplained_near_slip(t, gross(t, rows[[48, 49, 50, 52]]), slip)
     assert np.flatnonzero(found).tolist() == sorted(rows[[48, 49, 50]])

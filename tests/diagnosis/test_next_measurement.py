@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnosis.answer.next_measurement import CONE, offered
+from diagnosis.answer.next_measurement import CONE, candidate_touches
 from twin.machine.kinematics import tip
 from twin.units import NM
 
@@ -19,7 +19,7 @@ def spindle_in_artefact(touches):
 def test_offers_reach_known_points_from_known_sides(case, key) -> None:
     run = case(*key).run
     t = run.touches
-    offers = offered(run, np.random.default_rng(0))
+    offers = candidate_touches(run, np.random.default_rng(0))
     assert len(offers) > 100
     # the ball stands on the point
     ball = tip(t.chain, offers.q, offers.length)

@@ -109,7 +109,7 @@ class Ordinary:
         found = []
         for effect in proposals(self.touches):
             inner = effect.inner(self.touches)[0] if isinstance(effect, Tunable) else None
-            if effect.name == own_name or (inner is not None and inner.name == "period"):
+            if effect.name == own_name or (inner is not None and inner.acts == "with a period"):
                 continue
             variants = [effect] if inner is None else [effect.tuned(v) for v in inner.grid]
             share = self.best_share(target, columns(variants, self.touches), len(variants))

@@ -1,6 +1,7 @@
 """The sensitivity page: every map once and in order, regions in words, 3-D scenes of the study."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,9 +24,9 @@ from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
 from twin.units import DEG, UM
 
-from .test_design import EXAMPLES
-
 NM = 1e-6  # mm
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")

@@ -4,78 +4,22 @@ import itertools
 
 import numpy as np
 import pytest
+from made_up import MACHINES, made_up
 
 from twin.effects.thermal_lag import lagged
-from twin.frames import fixed_xyz, pose
 from twin.library.catalogue import parse_effect, proposals
 from twin.library.ordinary import ordinary_model
-from twin.machine.chain import Axis, make_chain
 from twin.machine.contribution import Contribution
 from twin.model.effect import Effect, Tunable, contribution
 from twin.model.model import Model, columns
-from twin.record.touches import Setup, Touches, linear_approach
-from twin.units import DEG, NM
+from twin.units import NM
 
-MACHINES = {
-    "hsm600u": ("[w C' B' X' f Y Z (C1) t]", (0.0, 0.0, -500.0)),
-    "fork": ("[w C' X' f Y Z B (C1) t]", (0.0, 0.0, -700.0)),
-    "hmc1995": ("[w X' Z' f Y (C1) t]", (0.0, -150.0, -560.0)),
-}
 SECOND_ORDER = 60 * NM
 """What products of two errors of 50 um and 100 urad on arms below 1 m may come to."""
 RELATIVE_ROUNDING = 1e-9
 
 
-def machine(label: str):
-    notation, origin = MACHINES[label]
-    rotary = [a for a in "BC" if f" {a}" in notation]
-    axes = {a: Axis((-400.0, 350.0)) for a in "XYZ"}
-    axes |= {a: Axis((-110.0 * DEG, 110.0 * DEG), (1.0, 2.0, -200.0)) for a in rotary}
-    return make_chain(label, notation, axes, origin)
-
-
-def run(label: str, n: int = 300) -> Touches:
-    """Touches of a made-up run with every kind of record in it."""
-    chain = machine(label)
-    rng = np.random.default_rng(7)
-    q = np.stack([rng.uniform(*chain.link(a).range, n) for a in chain.axes], axis=1)
-    q[:, chain.axis_index("C1")] = 0.0
-    for axis in chain.rotary_axes:  # ten readings, as of table poses
-        q[:, chain.axis_index(axis)] = np.repeat(q[:10, chain.axis_index(axis)], n // 10)
-    normal = rng.normal(size=(n, 3)) + np.array([0.0, 0.0, 1.5])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    setups = (Setup("a"), Setup("b", pose(fixed_xyz(np.array([0.1, 0.2, 0.5])), np.ones(3))))
-    time = np.sort(rng.uniform(0.0, 9000.0, n))
-    touches = Touches(
-        chain=chain,
-        q=q,
-        length=np.full(n, 160.0),
-        radius=np.full(n, 3.0),
-        point=rng.uniform(-100.0, 100.0, (n, 3)),
-        normal=normal,
-        setups=setups,
-        setup=(np.arange(n) >= n // 2).astype(np.int64),
-        time=time,
-        approach=np.zeros(q.shape),
-        temperature={
-            "room": 20.0 + np.sin(time / 3000.0),
-            "columnFront": 20.0 + time / 3000.0,
-            "columnBack": 20.0 + time / 6000.0,
-            "dead": np.full(n, np.nan),
-            "constant": np.full(n, 21.0),
-        },
-        spindle_rpm=np.where(time > 4000.0, 8000.0, 0.0),
-        force=rng.normal(size=(n, 3)) * 50.0,
-        feature=np.array([f"pad{i}" for i in rng.integers(0, 4, n)]),
-    )
-    approach = linear_approach(chain, q, touches.normal_table)
-    for axis in chain.rotary_axes:
-        approach[:, chain.axis_index(axis)] = np.where(np.arange(n) % 60 < 30, 1.0, -1.0)
-    object.__setattr__(touches, "approach", approach)
-    return touches
-
-
-RUNS = {label: run(label) for label in MACHINES}
+RUNS = {label: made_up(label) for label in MACHINES}
 ALL = [(label, e) for label, touches in RUNS.items() for e in proposals(touches)]
 # thirty of a kind on a machine are the same code: every one that differs in kind and in axis
 SOME = list(

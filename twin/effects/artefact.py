@@ -112,7 +112,7 @@ class ArtefactSlip:
             instants.append(middle[ON_EACH_SIDE - 1 : len(middle) - ON_EACH_SIDE + 1])
         every = np.unique(np.concatenate(instants))
         step = int(np.ceil(len(every) / INSTANTS)) or 1
-        return (Inner("instant", "s", every[::step]),)
+        return (Inner("instant", "s", every[::step], acts="at an instant"),)
 
     def tuned(self, *values: float) -> "ArtefactSlip":
         """With this instant, s."""

@@ -70,7 +70,8 @@ class Periodic:
         travel = max(float(np.ptp(touches.reading(self.symbol.link))), LONGEST)
         low, high = 1.0 / min(LONGEST, travel / 2.0), 1.0 / SHORTEST
         count = int(np.ceil(OVERSAMPLING * travel * (high - low))) + 1
-        return (Inner("period", "mm", 1.0 / np.linspace(high, low, count)),)
+        grid = 1.0 / np.linspace(high, low, count)
+        return (Inner("period", "mm", grid, acts="with a period"),)
 
     def tuned(self, *values: float) -> "Periodic":
         """With this period, mm."""

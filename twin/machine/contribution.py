@@ -1,10 +1,37 @@
 """Everything that disturbs a measurement ends here; nothing downstream asks which effect it was."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from twin.frames import Array
+
+Part = Literal["twist", "place", "shift", "bias"]
+
+
+class Where(NamedTuple):
+    """One entry of a contribution: the part, the link (0 for shift, bias) and the component."""
+
+    part: Part
+    link: int = 0
+    component: int = 0
+
+    @property
+    def moves_tip(self) -> bool:
+        """Whether the tip moves; a shift moves the standard, a bias only what is measured."""
+        return self.part in ("twist", "place")
+
+    @property
+    def entry(self) -> tuple[slice | int, ...]:
+        """Of the entry at all touches in the array of its part."""
+        if self.moves_tip:
+            return (slice(None), self.link, self.component)
+        return (slice(None), self.component) if self.part == "shift" else (slice(None),)
+
+    @property
+    def is_angular(self) -> bool:
+        """Whether the entry is an angle (rad) rather than a length (mm)."""
+        return self.component >= 3
 
 
 class Contribution(NamedTuple):
@@ -28,3 +55,7 @@ class Contribution(NamedTuple):
     def zeros(cls, n: int, links: int) -> "Contribution":
         """Nothing disturbed at n touches of a machine with that many links."""
         return cls(np.zeros((n, links, 6)), np.zeros((n, links, 6)), np.zeros((n, 3)), np.zeros(n))
+
+    def add(self, where: Where, amount: Array) -> None:
+        """Add an amount (N,) to one entry, in place."""
+        getattr(self, where.part)[where.entry] += amount

@@ -12,7 +12,7 @@ import numpy as np
 from twin.errors import NotReachable, ShapeMismatch
 from twin.frames import Array, apply, inverse, pose, rotation, turned_about
 from twin.machine.chain import Chain, Link
-from twin.machine.contribution import Contribution
+from twin.machine.contribution import Contribution, Where
 
 
 class Reach(NamedTuple):
@@ -25,6 +25,18 @@ class Reach(NamedTuple):
 
     twist: Array
     place: Array
+
+    def of(self, where: Where) -> Array:
+        """Displacement of the tip relative to the standard per unit of one entry, (N, 3).
+
+        A shift moves the standard, so the tip moves against it; a bias moves nothing.
+        """
+        if where.moves_tip:
+            return np.asarray(getattr(self, where.part)[where.entry])
+        out = np.zeros((len(self.twist), 3))
+        if where.part == "shift":
+            out[:, where.component] = -1.0
+        return out
 
 
 def checked_readings(chain: Chain, q: Array) -> Array:

@@ -1,6 +1,16 @@
 """What an effect is and how effects add up: columns of the linear model, the exact product."""
 
-from twin.model.effect import Effect, Inner, Parameter, Term, Tunable, Where, contribution
+from twin.machine import Where
+from twin.model.effect import (
+    Acts,
+    Effect,
+    Inner,
+    Parameter,
+    Term,
+    Tunable,
+    contribution,
+    inner_values,
+)
 from twin.model.kind import (
     Kind,
     base_unit,
@@ -18,6 +28,7 @@ from twin.model.kind import (
 from twin.model.model import Model, columns
 
 __all__ = [
+    "Acts",
     "Effect",
     "Inner",
     "Kind",
@@ -33,6 +44,7 @@ __all__ = [
     "component_symbol",
     "contribution",
     "counted",
+    "inner_values",
     "moving_axes",
     "own_component",
     "refusal",

@@ -6,18 +6,11 @@ from typing import Literal, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from twin.frames import Array
-from twin.machine import Contribution
+from twin.machine import Contribution, Where
 from twin.record import Touches
 
-Part = Literal["twist", "place", "shift", "bias"]
-
-
-class Where(NamedTuple):
-    """One entry of a contribution: the part, the link (0 for shift, bias) and the component."""
-
-    part: Part
-    link: int = 0
-    component: int = 0
+Acts = Literal["smoothly", "with a period", "at an instant"]
+"""How deviations depend on an inner parameter."""
 
 
 class Term(NamedTuple):
@@ -85,34 +78,28 @@ def contribution(
     pairs = effects.items() if isinstance(effects, Mapping) else effects
     for effect, theta in pairs:
         for term in effect.terms(touches):
-            add(total, term.where, np.asarray(theta, dtype=float)[term.parameter] * term.amount)
+            total.add(term.where, np.asarray(theta, dtype=float)[term.parameter] * term.amount)
     return total
-
-
-def add(total: Contribution, where: Where, amount: Array) -> None:
-    """Add an amount (N,) to one entry of a contribution, in place."""
-    if where.part == "bias":
-        total.bias[:] += amount
-    elif where.part == "shift":
-        total.shift[:, where.component] += amount
-    else:
-        getattr(total, where.part)[:, where.link, where.component] += amount
 
 
 class Inner(NamedTuple):
     """A parameter that an effect depends on non-linearly: scanned on a grid, then refined.
 
     Attributes:
-        name: Word of the trade: "tau", "period", "instant", "lobes" ...
+        name: Any word, unique within its effect; nothing is read out of it.
         unit: Base unit: "s", "mm", "rad", "1".
         grid: Values to scan, ascending, (G,), base units.
         continuous: Whether values between those of the grid make sense.
+        acts: "smoothly", such as a time constant or a width; "with a period", the reading in which
+            the effect repeats; "at an instant", a time at which something jumps, so that every
+            instant between two touches is as good as another.
     """
 
     name: str
     unit: str
     grid: Array
     continuous: bool = True
+    acts: Acts = "smoothly"
 
 
 @runtime_checkable
@@ -131,3 +118,10 @@ class Tunable(Effect, Protocol):
     def tuning(self) -> Mapping[str, float]:
         """Present values of the inner parameters, base units."""
         ...
+
+
+def inner_values(effect: Effect, touches: Touches) -> list[tuple[Inner, float]]:
+    """Inner parameters of an effect with their present values, base units; none for most."""
+    if not isinstance(effect, Tunable):
+        return []
+    return list(zip(effect.inner(touches), effect.tuning.values(), strict=True))

@@ -50,27 +50,23 @@ class Model:
 
         What moves only the standard or the reading of the probe does not move the tip.
         """
-        return self._displacements(touches, {"twist", "place"})
+        return self._displacements(touches, with_standard=False)
 
     def relative_columns(self, touches: Touches) -> Array:
         """Displacement of the tip relative to the standard per unit of every parameter, (N, 3, P).
 
         In the table frame: the deviation of the tip minus the shift of the standard.
         """
-        return self._displacements(touches, {"twist", "place", "shift"})
+        return self._displacements(touches, with_standard=True)
 
-    def _displacements(self, touches: Touches, parts: set[str]) -> Array:
+    def _displacements(self, touches: Touches, with_standard: bool) -> Array:
         out = np.zeros((len(touches), 3, len(self.parameters)))
         start = 0
         for effect in self.effects:
             for term in effect.terms(touches):
-                part, link, component = term.where
-                column = out[:, :, start + term.parameter]
-                if part in parts and part == "shift":
-                    column[:, component] -= term.amount
-                elif part in parts:
-                    per_unit = getattr(touches.reach, part)[:, link, component]
-                    column += term.amount[:, None] * per_unit
+                if with_standard or term.where.moves_tip:
+                    per_unit = touches.reach.of(term.where)
+                    out[:, :, start + term.parameter] += term.amount[:, None] * per_unit
             start += len(effect.parameters)
         return out
 
@@ -126,13 +122,6 @@ def columns(effects: Sequence[Effect], touches: Touches) -> Array:
     start = 0
     for effect in effects:
         for term in effect.terms(touches):
-            part, link, component = term.where
-            if part == "bias":
-                per_unit = signature.bias
-            elif part == "shift":
-                per_unit = signature.shift[:, component]
-            else:
-                per_unit = getattr(signature, part)[:, link, component]
-            out[:, start + term.parameter] += term.amount * per_unit
+            out[:, start + term.parameter] += term.amount * signature.of(term.where)
         start += len(effect.parameters)
     return out

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from twin.errors import ShapeMismatch
 from twin.frames import Array, apply, inverse, turn
-from twin.machine import Chain, Reach, checked_readings, linear_directions, reach, tip
+from twin.machine import Chain, Reach, Where, checked_readings, linear_directions, reach, tip
 
 IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]
@@ -41,6 +41,10 @@ class Signature:
         self.place = -np.einsum("nlci,ni->nlc", reached.place, normal)
         self.shift = normal
         self.bias = np.ones(len(normal))
+
+    def of(self, where: Where) -> Array:
+        """Deviation along the normal per unit of one entry, (N,)."""
+        return getattr(self, where.part)[where.entry]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,16 +1,21 @@
-"""A search that is not misled by coarse grids: refined inner parameters take the grid's place."""
+"""A search that is not misled by coarse grids: refined inner parameters take the grid's place.
+
+Between two points of a grid lies an effect that neither fits. What the better one leaves looks like
+a further effect, or like structure. So what was found is refined, its points of the grid are moved
+there, and the search is made again from that set: whatever only mopped up the difference falls.
+"""
 
 from dataclasses import replace
 
 from diagnosis.evidence import EffectSet, ScaledEffect, projected
-from diagnosis.search.refine import moved, refined_set
+from diagnosis.search.refine import refined_set, with_moved_points
 from diagnosis.search.selection import WORTH, EffectSubset, Search
 
 SETTLINGS = 3
 """Most searches with points of the grid moved to refined inner parameters."""
 
 
-def settled(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubset]:
+def regridded(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubset]:
     """Search again where refined inner parameters are clearly better than the points of the grid.
 
     What a coarse grid leaves would otherwise pass for a further effect, or for structure that no
@@ -30,7 +35,7 @@ def settled(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubset]
         if effects.evidence < chosen.effects.evidence + WORTH:
             break
         pairs = list(zip(chosen.members, members, strict=True))
-        pool = moved(search.pool, {m.variant: s.effect for m, s in pairs})
+        pool = with_moved_points(search.pool, {m.variant: s.effect for m, s in pairs})
         search = Search(pool, search.fixed, search.progress, search.budget)
         chosen = search.run([replace(m, effect=s.effect, scale=s.scale) for m, s in pairs])
     return search, chosen

@@ -1,0 +1,49 @@
+"""The words of inner parameters are free: nothing is read out of a name."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.fit.describe import inner_unit
+from twin.effects.thermal_lag import ThermalLag
+from twin.library.catalogue import parse_effect
+from twin.model.effect import Inner
+
+HIDDEN = (5, "hsm600u", ("thermal-lag(EXC)",))
+
+
+@dataclass(frozen=True)
+class Settling(ThermalLag):
+    """The same lag by another word for its time constant."""
+
+    def inner(self, touches):
+        return (super().inner(touches)[0]._replace(name="settling"),)
+
+    def tuned(self, *values):
+        return Settling(self.symbol, self.drive, float(values[0]))
+
+    @property
+    def tuning(self):
+        return {"settling": self.tau}
+
+
+def test_a_span_of_time_is_told_in_minutes_whatever_its_name() -> None:
+    grid = np.array([60.0, 600.0])
+    for name in ("tau", "settling", "x"):
+        assert inner_unit(Inner(name, "s", grid)) == ("_min", 60.0)
+        assert inner_unit(Inner(name, "s", grid, acts="at an instant")) == ("_s", 1.0)
+    assert inner_unit(Inner("tau", "mm", grid)) == ("_mm", 1.0)
+
+
+def test_the_same_lag_by_another_word_gives_the_same_answer(case) -> None:
+    """EXC after switching on, hidden by the simulator: size, time constant, uncertainties alike."""
+    run = case(*HIDDEN).run
+    lag = parse_effect("thermal-lag(EXC)", run.touches.chain)
+    told = {}
+    for effect in (lag, Settling(lag.symbol, lag.drive)):
+        (step,) = diagnose(run, candidates=[effect]).steps[1:]
+        told[type(effect).__name__] = {r.name: (r.value, r.u) for r in step.reported}
+    assert told["Settling"]["settling_min"] == told["ThermalLag"].pop("tau_min")
+    del told["Settling"]["settling_min"]
+    assert told["Settling"] == told["ThermalLag"]
