@@ -12,7 +12,7 @@ import numpy as np
 
 from artefact.reach import ProbeReach, Requests
 from artefact.worth import Criterion
-from information.criteria import Posterior, purpose, whitened
+from information.criteria import Posterior, mean_prediction, whitened
 from information.identifiability import seen
 from information.selection import Quota, Selection, fill
 from twin.errors import DesignError
@@ -180,7 +180,7 @@ def _bought(
     tips = np.concatenate([criterion.tip_volume, criterion.tip_user])
     extra = found.W.shape[1] - tips.shape[2]
     G = np.concatenate([tips, np.zeros((*tips.shape[:2], extra))], axis=2)
-    objective = purpose(G, found.W, found.prior_sd)
+    objective = mean_prediction(G, found.W, found.prior_sd)
     start = np.arange(len(found.W)) < len(half)
     selection = Selection(objective, objective.rows(found.W), start)
     kind = (~start).astype(np.int64)

@@ -16,8 +16,8 @@ from artefact.worth import (
     random_touches,
     some_touches,
 )
-from information.criteria import Posterior, prior_sd_of_tip
-from information.selection import DesignCriterion, Selection, exchange, fill
+from information.criteria import DesignCriterion, Posterior, prior_sd_of_tip
+from information.selection import Selection, exchange, fill
 from twin.frames import Array
 
 _TRIED = 3000  # touches that the ideal scatter may choose from

@@ -11,15 +11,10 @@ from artefact.reach import ProbeReach, Requests
 from artefact.worth.potential import Potential, potential
 from information.criteria import (
     DesignCriterion,
-    determinant,
-    parameters,
-    purpose,
+    five_criteria,
     robust,
     whitened,
     with_potential,
-    without_potential,
-    worst_pattern,
-    worst_pose,
 )
 from sensitivity.first_order import Box, Workspace, latin_hypercube
 from sensitivity.population import Population, drawn_scales
@@ -40,7 +35,7 @@ CRITERIA = {
     "G": "largest variance of the predicted tool point at any pose of probed volume and workspace",
     "D": "volume of what stays unknown of the parameters, in units of what is expected",
     "A": "mean variance of the parameters, in units of what is expected",
-    "E": "variance of the error pattern that is known worst, as the tool point feels it",
+    "E": "variance of the least well determined error pattern, as the tool point feels it",
 }
 """What touches can be chosen for."""
 
@@ -90,7 +85,7 @@ class Criterion:
         """The same criterion without potential terms, for choices that do not hang on them."""
         if self.potential is None:
             return self
-        plain = {name: without_potential(one) for name, one in self.objectives.items()}
+        plain = {name: one.primary or one for name, one in self.objectives.items()}
         return replace(self, objectives=plain, potential=None)
 
     def whitened(self, wanted: Requests) -> Array:
@@ -179,20 +174,15 @@ def criterion_for(
     free = reach.touches(scatter)
     W = whitened(model.columns(free), prior_sd, noise)
     G = np.concatenate(tips)
-    objective = purpose(G, W, prior_sd)
+    objectives = five_criteria(G, W, prior_sd)
     if options.drawn_machines:
         scales = _scales(reach, model, population, options.drawn_machines, rng)
-        objective = robust(objective, scales, options.worst_share)
-    objectives = {
-        "I": objective,
-        "G": worst_pose(objective, G, prior_sd),
-        "D": determinant(objective),
-        "A": parameters(objective),
-        "E": worst_pattern(objective),
-    }
+        objectives = {
+            key: robust(one, scales, options.worst_share) for key, one in objectives.items()
+        }
     terms = None
     if options.potential > 0.0:
-        reduced = objective.rows(W)
+        reduced = objectives[options.name].rows(W)
         terms = potential(free, reduced, touches)
         rows = np.concatenate([reduced, terms.rows(free, reduced)], axis=1)[:touches]
         objectives = {
@@ -216,9 +206,7 @@ def criterion_for(
 
 def _sharing(objective: DesignCriterion, rows: Array, count: int, share: float) -> DesignCriterion:
     """An objective of which potential terms have some share after touches taken at random."""
-    R = len(objective.K)
-    if objective.is_determinant:
-        return with_potential(objective, count, 0.0)
+    R = objective.size
     value = objective.value(rows[:, :R].T @ rows[:, :R])
     M = np.eye(R + count) + rows.T @ rows
     hidden = float(np.trace(np.linalg.solve(M, np.eye(R + count))[R:, R:])) / count

@@ -13,7 +13,7 @@ import numpy as np
 
 from artefact.reach import Requests
 from artefact.worth.touch_criterion import Criterion
-from information.criteria import purpose
+from information.criteria import mean_prediction
 from information.selection import Selection, fill
 from twin.errors import DesignError
 from twin.frames import Array
@@ -68,7 +68,7 @@ def touch_curve(
     numbers = tuple(sorted({*counts, designed}))
     areas = (criterion.tip_volume, criterion.tip_user)
     rows = criterion.whitened(touches)
-    predict = purpose(np.concatenate(areas), rows, criterion.prior_sd)
+    predict = mean_prediction(np.concatenate(areas), rows, criterion.prior_sd)
     W = predict.rows(rows)
     forms = [_form(criterion, tip, predict.directions) for tip in areas]
     left = np.empty((2, len(numbers)))

@@ -10,11 +10,13 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
+from report.words.probe_words import ordering_words
 
 __all__ = [
     "comparison_sentence",
     "microns",
     "named_value",
+    "ordering_words",
     "rivals_words",
     "sizes",
     "stated_noise",
