@@ -108,10 +108,9 @@ def _placement(
         blank(project),
         workspace,
         rng,
-        project.ranges,
+        project.population,
         placement_options(project),
         progress,
-        project.expected.distributions,
     )
 
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from artefact.body import Meeting, Standard
-from artefact.reach import Mask, contact
+from artefact.body import Meeting, Standard, contact
+from artefact.reach import Mask
 from probe_paths.control import Clock, ReadProgram
 from probe_paths.language import Dialect
 from twin.frames import Array, apply, inverse, turn

@@ -10,6 +10,7 @@ import pytest
 from artefact.body.limits import Limits
 from artefact.brief.project_file import read_project
 from artefact.place.placement import PlacementOptions
+from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
 from matstd.cli import main
 from matstd.from_project import blank, placement_options, probe_reach
@@ -207,7 +208,7 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
     project = read_project(path)
     made = blank(project)
     assert made.base.half_size == (120.0, 100.0)
-    assert made.blank_height == 180.0
+    assert made.height == 180.0
     assert max(made.fittings.sphere_heights) < 180.0
     assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0)
     assert probe_reach(project).table_radius == 130.0
@@ -218,23 +219,22 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert placement_options(read_project(path)) == PlacementOptions(
-        name="FFS-600U", serial="001", patches=8, touches=240
+        name="FFS-600U", serial="001", patches=8, choice=TouchOptions(touches=240)
     )
     plain = re.sub(
         r"(?m)^(criterion|potential|drawn_machines|worst_share|poses = 30).*\n", "", text
     )
     assert "potential" not in re.sub("#.*", "", plain)
     path.write_text(plain)
-    assert placement_options(read_project(path)).wishes == CriterionOptions(0.3, 240)
+    assert placement_options(read_project(path)).criterion == CriterionOptions("I", 0.3)
     for criterion in CRITERIA:
         wanted = text.replace('criterion = "I"', f'criterion = "{criterion}"')
         for key, value in (("drawn_machines", "8"), ("worst_share", "0.5"), ("potential", "0.1")):
             wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
         path.write_text(wanted.replace("poses = 30 ", "poses = 12 "))
         options = placement_options(read_project(path))
-        assert options.criterion == criterion
-        assert options.poses == 12
-        assert options.wishes == CriterionOptions(0.1, 240, 8, 0.5)
+        assert options.choice == TouchOptions(touches=240, poses=12)
+        assert options.criterion == CriterionOptions(criterion, 0.1, 8, 0.5)
 
 
 def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:
