@@ -12,6 +12,7 @@ COMMANDS = {
     "sensitivity": "sensitivity of the tool point to every error parameter at every pose",
     "simulate": "run an emitted probing program on the machine's twin and write a run file",
     "evaluate": "logs of our probing programs from the control, made a run file",
+    "import": "tables of instruments, CMMs and spreadsheets made a run file",
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
     "effects": "the effects that can be added, each with its formula and units",

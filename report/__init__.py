@@ -1,4 +1,4 @@
 """The only home of drawings, pages and prose."""
 
-PARTS = ("words", "maps", "plots", "scenes", "pages")
+PARTS = ("style", "words", "maps", "plots", "scenes", "pages")
 """From bottom to top: each imports only from those before it."""

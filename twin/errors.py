@@ -31,15 +31,30 @@ def _restore(kind: type[DesignError], message: str, facts: dict[str, object]) ->
     return error
 
 
+class BadValue(DesignError, ValueError):
+    """A value that does not fit, wherever it came from; `BadFile.of` adds the file.
+
+    Args:
+        key: What it is the value of.
+        found: What was given.
+        expected: What should stand there.
+    """
+
+    def __init__(self, key: str, found: object, expected: str) -> None:
+        message = f"{key}: found {found}, expected {expected}"
+        super().__init__(message, key=key, found=found, expected=expected)
+
+
 class UnknownAxis(DesignError, KeyError):
     """An axis letter that the machine does not have."""
 
     def __init__(self, axis: str, available: Iterable[str]) -> None:
-        available = list(available)
+        shown = ", ".join(available)
         super().__init__(
-            f"unknown axis '{axis}'; this machine has {', '.join(available)}",
-            axis=axis,
-            available=available,
+            f"unknown axis '{axis}'; this machine has {shown}",
+            key=axis,
+            found="an unknown axis",
+            expected=f"one of {shown}",
         )
 
 
@@ -49,11 +64,12 @@ class UnknownSymbol(DesignError, KeyError):
     def __init__(self, symbol: str, available: Iterable[str]) -> None:
         available = list(available)
         shown = ", ".join(available[:12]) + (" ..." if len(available) > 12 else "")
+        meant = did_you_mean(symbol, available)
         super().__init__(
-            f"unknown error parameter '{symbol}'{did_you_mean(symbol, available)}; "
-            f"available: {shown}",
-            symbol=symbol,
-            available=available,
+            f"unknown error parameter '{symbol}'{meant}; available: {shown}",
+            key=symbol,
+            found=f"an unknown error name{meant}",
+            expected=f"one of {shown}",
         )
 
 
@@ -103,3 +119,16 @@ class BadFile(DesignError, ValueError):
             found=found,
             expected=expected,
         )
+
+    @classmethod
+    def of(cls, path: str | Path, error: DesignError, within: str = "", key: str = "") -> "BadFile":
+        """A refused value as a fault of the file that it stood in.
+
+        Args:
+            path: The file.
+            error: With the facts found and expected: BadValue, UnknownAxis, UnknownSymbol.
+            within: Key of the table that the value stood in.
+            key: Of the value; empty for the key that the error tells.
+        """
+        where = ".".join(part for part in (within, key or str(error.facts["key"])) if part)
+        return cls(path, where, error.facts["found"], str(error.facts["expected"]))

@@ -16,7 +16,7 @@ from sensitivity.population import (
     Population,
     grouped,
 )
-from twin.errors import BadFile, DesignError, UnknownSymbol
+from twin.errors import BadFile, BadValue, DesignError, UnknownSymbol
 from twin.files import Pair, Table
 from twin.machine import DEFAULT_RANGES, Chain, Ranges, ShapeName
 from twin.units import UM, URAD
@@ -112,7 +112,7 @@ def _known(name: str, chain: Chain, path: Path, key: str) -> Any:
     try:
         return chain.symbol(name)
     except UnknownSymbol as error:
-        raise BadFile(path, key, "an unknown error name", str(error).split("; ")[-1]) from None
+        raise BadFile.of(path, error, key=key) from None
 
 
 def _amplitudes(pair: Pair, unit: float, path: Path, key: str) -> tuple[float, float]:
@@ -128,9 +128,8 @@ def _distributions(table: ErrorsTable, chain: Chain, path: Path) -> Distribution
         key = f"errors.shapes.{name}"
         try:
             made = Mix(tuple(mix.shapes), tuple(mix.periods), tuple(mix.weights))
-        except DesignError as error:
-            found, _, expected = str(error).partition(": expected ")
-            raise BadFile(path, key, found, expected) from error
+        except BadValue as error:
+            raise BadFile.of(path, error, within=key) from error
         if name in CLASSES:
             by_class[name] = made
             continue

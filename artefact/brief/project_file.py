@@ -196,12 +196,7 @@ def _workspace(
     out = {axis: chain.link(axis).range for axis in chain.programmed_axes}
     for axis, pair in given.items():
         if axis not in chain.programmed_axes:
-            raise BadFile(
-                path,
-                f"workspace.{axis}",
-                "an unknown axis",
-                str(UnknownAxis(axis, chain.programmed_axes)).split("; ")[-1],
-            )
+            raise BadFile.of(path, UnknownAxis(axis, chain.programmed_axes), within="workspace")
         low, high = _pair(pair, path, f"workspace.{axis}")
         factor = 1.0 if chain.link(axis).kind == "linear" else DEG
         travel = chain.link(axis).range

@@ -20,7 +20,7 @@ from twin.files import (
 )
 from twin.frames import Array
 from twin.library import parse_effect
-from twin.machine import Axis, Chain, difference, make_chain
+from twin.machine import Axis, Chain, make_chain
 from twin.model import Effect, Model, Tunable
 from twin.units import DEG
 
@@ -100,7 +100,7 @@ def check_machine(saved: SavedModel, chain: Chain, path: str | Path) -> None:
     Raises:
         BadFile: Key, what the model has, what the machine of the run has.
     """
-    found = difference(saved.model.chain, chain)
+    found = saved.model.chain.difference(chain)
     if found is not None:
         key, here, there = found
         raise BadFile(path, f"machine.{key}", here, f"{there}, as of the machine of the run")

@@ -1,31 +1,29 @@
-"""What stays unknown after touches, and the design criteria made of it."""
+"""What stays unknown after touches, and the design criteria made of it.
+
+Whitened rows of touches go in; out come the posterior of a machine's parameters and criteria that a
+choice of touches can be made for. A new criterion is a new `Measure` (`measures.py`) with one of
+the two tangents (`tangents.py`).
+"""
 
 from information.criteria.design_criterion import (
     DesignCriterion,
-    Tangent,
-    determinant,
-    parameters,
-    purpose,
+    five_criteria,
+    mean_prediction,
     robust,
     with_potential,
-    without_potential,
-    worst_pattern,
-    worst_pose,
 )
 from information.criteria.posterior import Posterior, prior_sd_of_tip, whitened
+from information.criteria.tangents import RowStep, Tangent
 
 __all__ = [
     "DesignCriterion",
     "Posterior",
+    "RowStep",
     "Tangent",
-    "determinant",
-    "parameters",
+    "five_criteria",
+    "mean_prediction",
     "prior_sd_of_tip",
-    "purpose",
     "robust",
     "whitened",
     "with_potential",
-    "without_potential",
-    "worst_pattern",
-    "worst_pose",
 ]

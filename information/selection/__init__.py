@@ -1,20 +1,18 @@
-"""Choosing touches: exchange, groups, relaxed optimum and certificate."""
+"""Choosing touches: which rows, of all that could be measured, tell most.
+
+Rows of candidates and a criterion go in, a choice comes out: greedy and mended by exchanges
+(`touch_selection`), of groups that belong together (`groups`), or by fractions that are nearly the
+best possible (`relaxation`), which also bound what any choice could reach (`certificate`). `Quota`
+limits how many of a kind are chosen.
+"""
 
 from information.selection.certificate import Certificate, relaxed, rounded
 from information.selection.groups import best_groups
 from information.selection.shares import heaviest
-from information.selection.touch_selection import (
-    DesignCriterion,
-    Mask,
-    Quota,
-    Selection,
-    exchange,
-    fill,
-)
+from information.selection.touch_selection import Mask, Quota, Selection, exchange, fill
 
 __all__ = [
     "Certificate",
-    "DesignCriterion",
     "Mask",
     "Quota",
     "Selection",

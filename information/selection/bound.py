@@ -2,7 +2,7 @@
 
 Every touch may be made by a fraction, ``0 <= x_i <= 1``, ``sum x_i = n``, with the shares of poses
 and features that the choice itself has to keep: a convex problem, whose optimum no whole choice can
-beat. With the tangent ``sum_s trace(K_s M_s^-1)`` of a criterion (`DesignCriterion.tangent`),
+beat. With the tangent ``sum_s trace(K_s M_s^-1)`` of a criterion (`DesignCriterion.tangents`),
 which is nowhere above it, both
 
     phi = 1 / sum_s trace(K_s M_s^-1)       and for D       phi = prod_s det(M_s)^(w_s/R)
@@ -53,40 +53,43 @@ class Slope:
         total = self.S.sum(axis=0)
         return np.asarray(np.einsum("nr,nr->n", W @ total, W), dtype=np.float64)
 
+    def bound(self, largest: float) -> float:
+        """What no choice can beat whose gains sum up to `largest` at most."""
+        return self.value * self.degree / (self.constant + largest)
 
-def slope(aim: DesignCriterion, information: Array) -> Slope:
+
+def slope(criterion: DesignCriterion, information: Array) -> Slope:
     """Slope of a criterion at an information (R, R)."""
-    M = aim.prior + information
+    M = criterion.prior + information
     inverse = np.asarray(np.linalg.solve(M, np.broadcast_to(np.eye(M.shape[1]), M.shape)))
-    tangent = aim.tangent(information)
-    if aim.is_determinant:
-        S = tangent.weight[:, None, None] * inverse
-        logarithms = -np.linalg.slogdet(M)[1]
-        value = float(np.exp(tangent.weight @ logarithms / M.shape[1]))
-        return Slope(inverse, S, float(np.sum(S * aim.prior)), value, float(M.shape[1]))
-    S = inverse @ tangent.K @ inverse
-    S = 0.5 * (S + np.swapaxes(S, 1, 2))
-    value = float(np.sum(inverse * tangent.K))
-    return Slope(inverse, S, float(np.sum(S * aim.prior)), value, value)
+    tangents = criterion.tangents(information)
+    S = np.stack([t.slope(i) for t, i in zip(tangents, inverse, strict=True)])
+    raw = sum(t.value(m, i) for t, m, i in zip(tangents, M, inverse, strict=True))
+    return Slope(
+        inverse=inverse,
+        S=S,
+        constant=float(np.sum(S * criterion.prior)),
+        value=criterion.measure.shown(raw),
+        degree=sum(t.degree(i) for t, i in zip(tangents, inverse, strict=True)),
+    )
 
 
 def bound_at(
-    aim: DesignCriterion, W: Array, information: Array, count: int, quotas: tuple[Quota, ...] = ()
-) -> tuple[float, Array]:
+    criterion: DesignCriterion,
+    W: Array,
+    information: Array,
+    count: int,
+    quotas: tuple[Quota, ...] = (),
+) -> float:
     """What no choice of rows can beat, by the tangent at some information.
 
     Args:
-        aim: Criterion.
+        criterion: What the choice is for.
         W: Rows of all candidates, (N, R).
         information: ``W^T diag(x) W`` of fractions or of a choice, (R, R); any will do, the nearer
             to the best the tighter.
         count: Number of touches.
         quotas: Shares that every choice has to keep.
-
-    Returns:
-        The bound, and the gain g of every candidate, (N,).
     """
-    here = slope(aim, information)
-    gain = here.gains(W)
-    top = largest_sum(gain, count, quotas).most
-    return here.value * here.degree / (here.constant + top), gain
+    here = slope(criterion, information)
+    return here.bound(largest_sum(here.gains(W), count, quotas).most)

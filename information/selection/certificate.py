@@ -1,9 +1,8 @@
 """How near a choice of touches is to the best that any choice could be, certified.
 
 The efficiency is the bound of `information.selection.bound` over the criterion of the choice; the
-fractions
-of `information.selection.relaxation` make the bound tight, their heaviest touches a good start for
-exchanges.
+fractions of `information.selection.relaxation` make the bound tight, their heaviest touches a good
+start for exchanges.
 """
 
 from dataclasses import dataclass
@@ -50,7 +49,7 @@ class Certificate:
 
 
 def certificate(
-    aim: DesignCriterion,
+    criterion: DesignCriterion,
     W: Array,
     chosen: Mask,
     tolerance: float = 2e-3,
@@ -59,7 +58,7 @@ def certificate(
     """Certified efficiency of a choice among candidates.
 
     Args:
-        aim: Criterion.
+        criterion: What the choice is for.
         W: Rows of all candidates, (N, R).
         chosen: The choice, (N,).
         tolerance: Relative gap to which the relaxed problem is solved.
@@ -69,13 +68,13 @@ def certificate(
         DesignError: The choice does not keep the shares.
     """
     count = int(chosen.sum())
-    best = relaxed(aim, W, count, chosen, tolerance, quotas)
+    best = relaxed(criterion, W, count, chosen, tolerance, quotas)
     rows = W[chosen]
-    return Certificate(len(W), count, aim.value(rows.T @ rows), best.bound, bool(quotas))
+    return Certificate(len(W), count, criterion.value(rows.T @ rows), best.bound, bool(quotas))
 
 
 def rounded(
-    aim: DesignCriterion,
+    criterion: DesignCriterion,
     W: Array,
     weight: Array,
     count: int,
@@ -85,7 +84,7 @@ def rounded(
     """A choice of whole touches from fractions: the heaviest, then exchanged until none helps.
 
     Args:
-        aim: Criterion.
+        criterion: What the choice is for.
         W: Rows of all candidates, (N, R).
         weight: Fractions, (N,).
         count: Number of touches.
@@ -95,6 +94,6 @@ def rounded(
     Raises:
         DesignError: No whole choice near the fractions keeps the shares.
     """
-    selection = Selection(aim, W, heaviest(weight, count, quotas))
+    selection = Selection(criterion, W, heaviest(weight, count, quotas))
     exchange(selection, quotas, most=most)
     return selection

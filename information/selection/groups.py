@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from information.criteria import DesignCriterion
+from information.criteria import DesignCriterion, Tangent
 from twin.compute import blocks
 from twin.frames import Array
 from twin.record import IntArray
@@ -12,7 +12,7 @@ _GROUPS_A_BLOCK = 100
 
 
 def best_groups(
-    aim: DesignCriterion,
+    criterion: DesignCriterion,
     W: Array,
     group: IntArray,
     count: int,
@@ -26,7 +26,7 @@ def best_groups(
     before it; greedy, then every chosen group is once weighed against all that are left out.
 
     Args:
-        aim: What for.
+        criterion: What for.
         W: Rows in the directions that matter, (N, R).
         group: Of every row, (N,), from 0.
         count: Number of groups.
@@ -37,7 +37,8 @@ def best_groups(
     Returns:
         The chosen groups, in the order of choice; fewer than `count` where no other fits.
     """
-    board = _Groups(aim, W, group, take, np.zeros_like(aim.K) if start is None else start)
+    nothing = np.zeros((criterion.size, criterion.size))
+    board = _Groups(criterion, W, group, take, nothing if start is None else start)
     fits = np.ones((board.count, board.count), dtype=bool) if apart is None else apart
     chosen: list[int] = []
     while len(chosen) < count:
@@ -57,9 +58,9 @@ class _Groups:
     """Information that groups of rows bring."""
 
     def __init__(
-        self, aim: DesignCriterion, W: Array, group: IntArray, take: int, start: Array
+        self, criterion: DesignCriterion, W: Array, group: IntArray, take: int, start: Array
     ) -> None:
-        self.aim, self.take, self.start = aim, take, start
+        self.criterion, self.take, self.start = criterion, take, start
         order = np.argsort(group, kind="stable")
         self.W = W[order]
         self.count = int(group.max(initial=-1)) + 1
@@ -71,26 +72,24 @@ class _Groups:
         information: Array = self.start.copy()
         for k in chosen:
             information = information + self.brought[k]
-        tangent = self.aim.tangent(information)
-        reaches = [np.linalg.solve(prior + information, self.W.T).T for prior in self.aim.prior]
+        tangents = self.criterion.tangents(information)
+        prior = self.criterion.prior
+        reaches = [np.linalg.solve(p + information, self.W.T).T for p in prior]
         gain = np.zeros(len(self.W))
-        for reach, K, weight in zip(reaches, tangent.K, tangent.weight, strict=True):
+        for reach, tangent in zip(reaches, tangents, strict=True):
             leverage = np.einsum("nr,nr->n", reach, self.W)
-            if self.aim.is_determinant:
-                gain += weight * np.log1p(leverage)
-            else:
-                gain += np.einsum("nr,nr->n", reach @ K, reach) / (1.0 + leverage)
+            gain += tangent.fall(tangent.numerators(reach, leverage), leverage)
         free = np.all(fits[chosen], axis=0) if chosen else np.ones(self.count, dtype=bool)
         free[chosen] = False
         open_groups = np.flatnonzero(free & (np.diff(self.edges) > 0))
         if not len(open_groups):
             return None
         top = self._most_useful(open_groups, gain)
-        drop = np.zeros(len(top))
-        for reach, K, weight in zip(reaches, tangent.K, tangent.weight, strict=True):
+        fall = np.zeros(len(top))
+        for reach, tangent in zip(reaches, tangents, strict=True):
             for some in blocks(len(top), _GROUPS_A_BLOCK):
-                drop[some] += self._drops(top[some], reach, K, weight)
-        i = int(np.argmax(drop))
+                fall[some] += self._falls(top[some], reach, tangent)
+        i = int(np.argmax(fall))
         rows = top[i][top[i] >= 0]
         best = int(open_groups[i])
         self.brought[best] = self.W[rows].T @ self.W[rows]
@@ -105,17 +104,8 @@ class _Groups:
             out[i, : len(rows)] = rows
         return out
 
-    def _drops(self, top: IntArray, reach: Array, K: Array, weight: float) -> Array:
-        """``trace(K M^-1) - trace(K (M + w^T w)^-1)`` of every group, by Woodbury, (groups,).
-
-        ``trace((1 + w M^-1 w^T)^-1  w M^-1 K M^-1 w^T)`` with reach = w M^-1; for D the logarithm
-        of ``det(1 + w M^-1 w^T)``, times the weight of the machine.
-        """
+    def _falls(self, top: IntArray, reach: Array, tangent: Tangent) -> Array:
+        """By how much the tangent falls with the rows of every group, (groups,)."""
         there = (top >= 0)[:, :, None]
         w, v = np.where(there, self.W[top], 0.0), np.where(there, reach[top], 0.0)
-        inner = np.eye(self.take) + v @ np.swapaxes(w, 1, 2)
-        if self.aim.is_determinant:
-            return weight * np.asarray(np.linalg.slogdet(inner)[1], dtype=np.float64)
-        spread = v @ K @ np.swapaxes(v, 1, 2)
-        drops: Array = np.trace(np.linalg.solve(inner, spread), axis1=1, axis2=2)
-        return drops
+        return tangent.group_fall(v, np.eye(self.take) + v @ np.swapaxes(w, 1, 2))

@@ -11,11 +11,12 @@ Reference:
     Quarterly 3 (1956) 95.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from information.criteria import DesignCriterion
+from information.criteria import DesignCriterion, Tangent
 from information.selection.bound import slope
 from information.selection.shares import cells, keeps, largest_sum
 from information.selection.touch_selection import Mask, Quota
@@ -55,7 +56,7 @@ class Relaxed:
 
 
 def relaxed(
-    aim: DesignCriterion,
+    criterion: DesignCriterion,
     W: Array,
     count: int,
     start: Mask,
@@ -68,7 +69,7 @@ def relaxed(
     kept; it is true however far the fractions are from the best.
 
     Args:
-        aim: Criterion.
+        criterion: What the touches are for.
         W: Rows of all candidates, (N, R).
         count: Number of touches.
         start: A choice of as many rows to start from, (N,).
@@ -89,27 +90,27 @@ def relaxed(
     for _ in range(_ROUNDS):
         there = np.flatnonzero(x > 0.0)
         information = (W[there] * x[there, None]).T @ W[there]
-        here = slope(aim, information)
+        here = slope(criterion, information)
         gain = here.gains(W)
         top = largest_sum(gain, count, quotas)
-        bound = max(bound, here.value * here.degree / (here.constant + top.most))
-        value = aim.value(information)
+        bound = max(bound, here.bound(top.most))
+        value = criterion.value(information)
         stalled = 0 if value < lowest * (1.0 - 0.05 * tolerance) else stalled + 1
         if value < lowest:
             lowest, best = value, x
         if bound >= (1.0 - tolerance) * lowest:
             break
         if stalled >= _PATIENCE:
-            if aim.roots is None or aim.sharpness > _SHARPEST:
+            if criterion.sharpness > _SHARPEST:
                 break
-            aim, stalled = replace(aim, sharpness=2.0 * aim.sharpness), 0
+            criterion, stalled = criterion.sharper(2.0), 0
         few = _worth_looking_at(gain, there, count, cell)
-        after, made = _exchanged(aim, W[few], x[few], tuple(_of(q, few) for q in quotas))
+        after, made = _exchanged(criterion, W[few], x[few], tuple(_of(q, few) for q in quotas))
         steps += made
         new = x.copy()
         new[few] = after
-        if aim.is_curved or made == 0:
-            new = _stepped(aim, W, x, new if made else top.x)
+        if criterion.is_curved or made == 0:
+            new = _stepped(criterion, W, x, new if made else top.x)
         x = new
     return Relaxed(best, lowest, bound, steps)
 
@@ -132,16 +133,16 @@ def _worth_looking_at(gain: Array, there: IntArray, count: int, cell: IntArray) 
     return np.union1d(few, order[rank < 4 + 2 * count // len(start)])
 
 
-def _stepped(aim: DesignCriterion, W: Array, x: Array, towards: Array) -> Array:
+def _stepped(criterion: DesignCriterion, W: Array, x: Array, towards: Array) -> Array:
     """Some way from fractions towards others, as far as halving finds that the criterion falls."""
     ends = []
     for weight in (x, towards):
         there = np.flatnonzero(weight > 0.0)
         ends.append((W[there] * weight[there, None]).T @ W[there])
-    best, part = aim.merit(ends[0]), 0.0
+    best, part = criterion.merit(ends[0]), 0.0
     for k in range(_HALVINGS):
         t = 0.5**k
-        merit = aim.merit((1.0 - t) * ends[0] + t * ends[1])
+        merit = criterion.merit((1.0 - t) * ends[0] + t * ends[1])
         if merit < best:
             best, part = merit, t
         elif part > 0.0:
@@ -190,16 +191,16 @@ class _Board:
 
 
 def _exchanged(
-    aim: DesignCriterion, W: Array, x: Array, quotas: tuple[Quota, ...]
+    criterion: DesignCriterion, W: Array, x: Array, quotas: tuple[Quota, ...]
 ) -> tuple[Array, int]:
     """Vertex exchanges among a few candidates: their new weights, and how many were made."""
     x = x.copy()
     board = _Board(quotas, len(x))
-    forms = aim.tangent((W * x[:, None]).T @ W)
-    most_steps = _CURVED if aim.is_curved else _STEPS
+    tangents = criterion.tangents((W * x[:, None]).T @ W)
+    most_steps = _CURVED if criterion.is_curved else _STEPS
     for step in range(most_steps):
         if step % _REFRESH == 0:
-            here = slope(aim, (W * x[:, None]).T @ W)
+            here = slope(criterion, (W * x[:, None]).T @ W)
             inverse, gain = here.inverse.copy(), here.gains(W)
         up, down, room = board.best(gain, x)
         if not gain[up] > gain[down] * (1.0 + 1e-9):
@@ -207,41 +208,20 @@ def _exchanged(
         pair = W[[up, down]]
         reach = inverse @ pair.T  # (S, R, 2)
         most = min(1.0 - x[up], x[down], room)
-        h, k = pair @ reach, np.swapaxes(reach, 1, 2) @ forms.K @ reach
-        flow = _best_flow(aim.is_determinant, forms.weight, h, k, most)
+        h = pair @ reach
+        flow = _best_flow(
+            tangents, h, np.stack([t.pair(r) for t, r in zip(tangents, reach, strict=True)]), most
+        )
         x[up] = 1.0 if flow == 1.0 - x[up] else x[up] + flow
         x[down] = 0.0 if flow == x[down] else x[down] - flow
-        gain = gain + _turned(aim, W, inverse, reach, h, flow, forms.K, forms.weight)
+        turned = np.linalg.solve(np.diag([1.0 / flow, -1.0 / flow]) + h, np.eye(2)[None])
+        for s, tangent in enumerate(tangents):
+            gain = gain + tangent.after_flow(W, inverse[s], reach[s], turned[s])
+            inverse[s] -= reach[s] @ turned[s] @ reach[s].T
     return x, most_steps
 
 
-def _turned(
-    aim: DesignCriterion,
-    W: Array,
-    inverse: Array,
-    reach: Array,
-    h: Array,
-    flow: float,
-    K: Array,
-    weight: Array,
-) -> Array:
-    """By how much a flow changes the gains of all, (N,); the inverses are updated in place."""
-    out = np.zeros(len(W))
-    turned = np.linalg.solve(np.diag([1.0 / flow, -1.0 / flow]) + h, np.eye(2)[None])
-    for s, inner in enumerate(turned):
-        along = W @ reach[s]  # (N, 2)
-        if aim.is_determinant:
-            out -= weight[s] * np.einsum("ni,ij,nj->n", along, inner, along)
-        else:
-            other = W @ (inverse[s] @ (K[s] @ reach[s]))
-            kappa = inner @ (reach[s].T @ K[s] @ reach[s]) @ inner
-            out -= 2.0 * np.einsum("ni,ij,nj->n", other, inner, along)
-            out += np.einsum("ni,ij,nj->n", along, kappa, along)
-        inverse[s] -= reach[s] @ inner @ reach[s].T
-    return out
-
-
-def _best_flow(is_determinant: bool, weight: Array, h: Array, k: Array, most: float) -> float:
+def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> float:
     """How much weight should flow from the second touch of a pair to the first.
 
     Along the flow t the determinant of a machine's information grows by ``1 + b t - d t^2``, and
@@ -249,8 +229,7 @@ def _best_flow(is_determinant: bool, weight: Array, h: Array, k: Array, most: fl
     slope of the sum is bisected.
 
     Args:
-        is_determinant: Whether the criterion is D.
-        weight: Of the machines, (S,).
+        tangents: Of the machines, S.
         h: ``w M^-1 w`` of the pair, (S, 2, 2).
         k: ``w M^-1 K M^-1 w`` of the pair, (S, 2, 2).
         most: Largest flow.
@@ -259,17 +238,10 @@ def _best_flow(is_determinant: bool, weight: Array, h: Array, k: Array, most: fl
     d = (h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2).tolist()
     a = (k[:, 0, 0] - k[:, 1, 1]).tolist()
     c = k[:, 0, 0] * h[:, 1, 1] + k[:, 1, 1] * h[:, 0, 0] - 2.0 * k[:, 0, 1] * h[:, 0, 1]
-    parts = list(zip(a, b, c.tolist(), d, weight.tolist(), strict=True))
+    terms = list(zip(tangents, a, b, c.tolist(), d, strict=True))
 
     def falls(t: float) -> float:
-        total = 0.0
-        for a, b, c, d, w in parts:
-            det, turn = 1.0 + b * t - d * t * t, b - 2.0 * d * t
-            if is_determinant:
-                total += w * turn / det
-            else:
-                total += ((a - 2.0 * t * c) * det - (t * a - t * t * c) * turn) / (det * det)
-        return total
+        return sum(tangent.flow_slope(t, *abcd) for tangent, *abcd in terms)
 
     if falls(most) >= 0.0:
         return float(most)

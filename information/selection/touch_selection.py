@@ -11,17 +11,15 @@ optimum and is called nothing else. `information.selection.certificate` says how
 best.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from information.criteria import DesignCriterion, Tangent, purpose
+from information.criteria import DesignCriterion, RowStep, Tangent
 from twin.errors import DesignError
 from twin.frames import Array
 from twin.record import IntArray
-
-__all__ = ["DesignCriterion", "Quota", "Selection", "exchange", "fill", "purpose"]
 
 Mask = NDArray[np.bool_]
 
@@ -30,41 +28,36 @@ _WORTH = 1e-6  # relative gain below which an exchange is not made
 _PATIENCE = 8  # chosen rows, the least useful first, that are tried before an exchange is given up
 _TURN = 20  # rows chosen greedily along one tangent of a criterion that is curved
 _SHARPER = (1.0, 4.0, 16.0)  # power means that stand for the largest, one after another
+_WHOLE = 1.0 - 1e-12  # largest leverage of a row that is in; beyond it is rounding
 _BATCH = 16  # exchanges along one tangent of a criterion that is curved
 
 
 class _Machine:
     """Inverse information, and what every row would add, for one drawn machine."""
 
-    def __init__(self, M: Array, K: Array | None, W: Array) -> None:
-        self.W, self.K = W, K
+    def __init__(self, M: Array, tangent: Tangent, W: Array) -> None:
+        self.W, self.tangent = W, tangent
         self.inverse = np.asarray(np.linalg.solve(M, np.eye(len(M))), dtype=np.float64)
         reach = W @ self.inverse
         self.leverage = np.einsum("nr,nr->n", reach, W)
-        self.gain = self.leverage
-        if K is not None:
-            self.gain = np.einsum("nr,nr->n", reach @ K, reach)
+        self.numerator = tangent.numerators(reach, self.leverage)
 
     def update(self, row: int, sign: float) -> float:
-        """Rank-one update of everything (Sherman and Morrison), sign 1 in and -1 out.
+        """Rank-one update of everything, sign 1 in and -1 out.
 
         Returns:
-            By how much the value falls; for D by how much the log determinant grows.
+            By how much the tangent falls.
         """
         a = self.inverse @ self.W[row]
-        h = float(self.leverage[row])
-        c = sign / (1.0 + sign * h)
-        along_a = self.W @ a
-        self.leverage = self.leverage - c * along_a**2
-        if self.K is None:
-            self.inverse -= c * np.outer(a, a)
-            self.gain = self.leverage
-            return float(np.log1p(sign * h))
-        Ka = self.K @ a
-        kappa, along_b = float(a @ Ka), self.W @ (self.inverse @ Ka)
+        signed = sign * float(self.leverage[row])
+        c = sign / (1.0 + signed)
+        along = self.W @ a
+        step = RowStep(W=self.W, inverse=self.inverse, a=a, along=along, signed=signed, c=c)
+        change, fall = self.tangent.step(step)
+        self.leverage = self.leverage - c * along**2
+        self.numerator = self.numerator + change
         self.inverse -= c * np.outer(a, a)
-        self.gain = self.gain + c * c * kappa * along_a**2 - 2.0 * c * along_a * along_b
-        return c * kappa
+        return fall
 
 
 class Selection:
@@ -72,15 +65,17 @@ class Selection:
 
     Attributes:
         chosen: Which rows are in, (N,).
-        value: The criterion, smaller is better (`DesignCriterion.value`); between refreshes of a
-        curved
-            one that of its tangent.
     """
 
-    def __init__(self, aim: DesignCriterion, W: Array, chosen: Mask | None = None) -> None:
-        self.aim, self.W = aim, W
+    def __init__(self, criterion: DesignCriterion, W: Array, chosen: Mask | None = None) -> None:
+        self.criterion, self.W = criterion, W
         self.chosen = np.zeros(len(W), dtype=bool) if chosen is None else chosen.copy()
         self.refresh()
+
+    @property
+    def value(self) -> float:
+        """The criterion, smaller is better; between refreshes of a curved one its tangent."""
+        return self.criterion.measure.shown(self._raw)
 
     @property
     def information(self) -> Array:
@@ -91,44 +86,36 @@ class Selection:
     def refresh(self) -> None:
         """Everything from scratch: sweeps out rounding, and turns the tangent."""
         information = self.information
-        self.value = self.aim.value(information)
-        self._tangent: Tangent = self.aim.tangent(information)
+        self._raw = self.criterion.raw(information)
+        self._tangents = self.criterion.tangents(information)
         self._sweep(information)
 
     def _sweep(self, information: Array) -> None:
-        """Inverses, leverages and gains anew, along the tangent as it is."""
-        forms = [None] * len(self.aim.prior) if self.aim.is_determinant else self._tangent.K
+        """Inverses, leverages and numerators anew, along the tangent as it is."""
         self._machines = [
-            _Machine(prior + information, K, self.W)
-            for prior, K in zip(self.aim.prior, forms, strict=True)
+            _Machine(prior + information, tangent, self.W)
+            for prior, tangent in zip(self.criterion.prior, self._tangents, strict=True)
         ]
         self._updates = 0
 
     @property
     def gains(self) -> Array:
-        """How much less the value is with each row in, (N,); for a row that is in: once more.
-
-        For D how much more the mean logarithm of the determinants is.
-        """
-        if self.aim.is_determinant:
-            return self._sum([np.log1p(m.leverage) for m in self._machines])
-        return np.sum([m.gain / (1.0 + m.leverage) for m in self._machines], axis=0)
+        """By how much the tangent falls with each row in, (N,); for a row that is in: once more."""
+        falls = [m.tangent.fall(m.numerator, m.leverage) for m in self._machines]
+        return np.sum(falls, axis=0)
 
     @property
     def losses(self) -> Array:
-        """How much more the value is with each chosen row out, (N,); inf for rows not chosen."""
-        out = np.full(len(self.W), np.inf)
-        i = self.chosen
-        left = [np.maximum(1.0 - m.leverage[i], 1e-12) for m in self._machines]
-        if self.aim.is_determinant:
-            out[i] = self._sum([-np.log(x) for x in left])
-        else:
-            out[i] = np.sum([m.gain[i] / x for m, x in zip(self._machines, left, strict=True)], 0)
+        """By how much it grows with each chosen row out, (N,); inf for rows not chosen."""
+        out, i = np.full(len(self.W), np.inf), self.chosen
+        out[i] = -np.sum(
+            [
+                m.tangent.fall(m.numerator[i], np.minimum(m.leverage[i], _WHOLE), sign=-1.0)
+                for m in self._machines
+            ],
+            axis=0,
+        )
         return out
-
-    def _sum(self, each: list[Array]) -> Array:
-        """Mean over the machines with the weights that they have now."""
-        return np.asarray(self._tangent.weight @ np.stack(each), dtype=np.float64)
 
     def add(self, row: int) -> None:
         """Choose a row."""
@@ -144,14 +131,10 @@ class Selection:
         if self._updates >= _REFRESH:
             information = self.information
             self._sweep(information)
-            if not self.aim.is_curved:
-                self.value = self.aim.value(information)
+            if not self.criterion.is_curved:
+                self._raw = self.criterion.raw(information)
         self._updates += 1
-        falls = np.array([m.update(row, sign) for m in self._machines])
-        if self.aim.is_determinant:
-            self.value *= float(np.exp(-(self._tangent.weight @ falls) / len(self.aim.K)))
-        else:
-            self.value -= float(falls.sum())
+        self._raw -= sum(m.update(row, sign) for m in self._machines)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +153,7 @@ class Quota:
     least: IntArray | None = None
 
     def count(self, chosen: Mask) -> IntArray:
-        """EffectSubset rows of each kind."""
+        """Chosen rows of each kind."""
         return np.bincount(self.kind[chosen], minlength=len(self.most))
 
     def open(self, chosen: Mask) -> Mask:
@@ -207,7 +190,7 @@ def fill(selection: Selection, count: int, quotas: tuple[Quota, ...] = ()) -> No
                 f"{chosen} of {count} touches can be chosen under the shares of each kind"
             )
         selection.add(int(np.argmax(np.where(free, selection.gains, -np.inf))))
-        if selection.aim.is_curved and chosen % _TURN == 0:
+        if selection.criterion.is_curved and chosen % _TURN == 0:
             selection.refresh()
     selection.refresh()
 
@@ -236,13 +219,13 @@ def exchange(
         Fedorov, Theory of Optimal Experiments (1972); Cook and Nachtsheim (1980).
     """
     stays = np.zeros(len(selection.W), dtype=bool) if kept is None else kept
-    if not selection.aim.is_curved:
+    if not selection.criterion.is_curved:
         return _exchange(selection, quotas, stays, most)
-    given, total = selection.aim, 0
-    for sharper in _SHARPER if given.roots is not None else (1.0,):
-        selection.aim = replace(given, sharpness=sharper * given.sharpness)
+    given, total = selection.criterion, 0
+    for factor in _SHARPER if np.isfinite(given.sharpness) else (1.0,):
+        selection.criterion = given.sharper(factor)
         total += _exchange_curved(selection, quotas, stays, most - total)
-    selection.aim = given
+    selection.criterion = given
     selection.refresh()
     return total
 
@@ -253,11 +236,11 @@ def _exchange_curved(
     """Exchanges in lots, each along one tangent, as long as the smooth criterion falls."""
     selection.refresh()
     total, batch = 0, _BATCH
-    merit = selection.aim.merit(selection.information)
+    merit = selection.criterion.merit(selection.information)
     while batch and total < most:
         before = selection.chosen.copy()
         made = _exchange(selection, quotas, stays, min(batch, most - total))
-        now = selection.aim.merit(selection.information)
+        now = selection.criterion.merit(selection.information)
         if made and now < merit * (1.0 - _WORTH):
             merit, total = now, total + made
         else:

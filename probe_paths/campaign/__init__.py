@@ -1,15 +1,21 @@
-"""Programs run on the twin, logs evaluated to measurements."""
+"""Programs run on the twin, logs evaluated to measurements.
 
-from probe_paths.campaign.contacts import VirtualMachine
+In: program files and a `VirtualMachine` (the machine as it really is), or the logs of a real one.
+Out: a `Run`. `simulate` checks every move for collisions before it runs the programs; `evaluate`
+never learns what the virtual machine knew. `orders` and `probing_time` say what a plan costs.
+"""
+
+from probe_paths.campaign.contact_points import foot_points
+from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.duration import probing_time
 from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.foot_point_search import foot_points
-from probe_paths.campaign.order_study import Order, orders
+from probe_paths.campaign.order_study import Order, Ordering, orders
 from probe_paths.campaign.simulation import Campaign, simulate
 
 __all__ = [
     "Campaign",
     "Order",
+    "Ordering",
     "VirtualMachine",
     "evaluate",
     "foot_points",

@@ -7,7 +7,7 @@ import numpy as np
 from artefact.body import Standard
 from artefact.reach import TABLE_RADIUS
 from probe_paths.control import Move, ProbeStep, ReadProgram
-from probe_paths.plan import Probe, Room, obstacles, swing_height, top_height
+from probe_paths.plan import Probe, ToolClearance, solid_hull, swing_height, top_height
 from twin.errors import BadFile
 from twin.frames import Array, apply, inverse
 from twin.machine import Chain, tip
@@ -52,7 +52,7 @@ def check_moves(
     """
     probe = Probe(program.heading.radius, program.heading.length)
     setup = program.heading.setup
-    solid = obstacles(standard, setup, table_radius)
+    solid = solid_hull(standard, setup, table_radius)
     moves = _moves(program)
     rotary = [chain.axis_index(name) for name in chain.rotary_axes]
     z = chain.axis_index("Z")
@@ -66,11 +66,11 @@ def check_moves(
     low = straight[
         np.flatnonzero(lowest < top_height(chain, straight.after[:, rotary], solid, probe))
     ]
-    room = Room(chain, standard, setup, probe, table_radius)
+    clearance = ToolClearance(chain, standard, setup, probe, table_radius)
     if len(low.line):
-        gap, nearest = room.gap(low.after)
+        gap, nearest = clearance.gap(low.after)
         _refuse(program, low.line, gap, nearest)
-        _refuse(program, low.line, _marched(room, low), np.full(len(low.line), "the standard"))
+        _refuse(program, low.line, _marched(clearance, low), np.full(len(low.line), "the standard"))
 
 
 def _moves(program: ReadProgram) -> _Moves:
@@ -94,11 +94,11 @@ def _moves(program: ReadProgram) -> _Moves:
     )
 
 
-def _marched(room: Room, moves: _Moves) -> Array:
+def _marched(clearance: ToolClearance, moves: _Moves) -> Array:
     """Smallest gap of the ball along straight moves, (M,), mm; from below."""
-    T_artefact_table = inverse(room.setup.T_table_artefact)
+    T_artefact_table = inverse(clearance.setup.T_table_artefact)
     start, end = (
-        apply(T_artefact_table, tip(room.chain, q, room.probe.length))
+        apply(T_artefact_table, tip(clearance.chain, q, clearance.probe.length))
         for q in (moves.before, moves.after)
     )
     length = np.linalg.norm(end - start, axis=1)
@@ -107,7 +107,7 @@ def _marched(room: Room, moves: _Moves) -> Array:
     active = np.arange(len(length))
     for _ in range(_MARCHES):
         centre = start[active] + travel[active, None] * direction[active]
-        gap = room.standard.distance(centre) - room.probe.radius
+        gap = clearance.standard.distance(centre) - clearance.probe.radius
         smallest[active] = np.minimum(smallest[active], gap)
         # the gap cannot shrink faster than the ball moves
         travel[active] += np.maximum(gap - SMALLEST_GAP, _SMALLEST_STEP)

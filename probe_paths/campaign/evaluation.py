@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from artefact.body import Standard
-from probe_paths.campaign.anchors import anchored
-from probe_paths.campaign.foot_point_search import foot_points
+from probe_paths.campaign.contact_points import at_true_contacts, foot_points
 from probe_paths.control import LogPart
 from probe_paths.language import Dialect
 from probe_paths.plan import LINEAR, Probe, ProgramFrame
@@ -38,7 +37,7 @@ def evaluate(
     The ball centre that a nominal machine would have is taken into the frame of the standard. The
     set-up is fitted first (six parameters each, Gauss-Newton on the deviations, foot points anew
     every round), then the machine's errors as far as the touches tell
-    (`probe_paths.campaign.anchors`), as a
+    (`probe_paths.campaign.contact_points`), as a
     ball that met the surface beside its foot point would have the curvature in between pass for a
     deviation. Then ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 
@@ -71,7 +70,7 @@ def evaluate(
     touches = _touches(parts, chain, q, (radius, length), setups, setup, feature, point, normal)
     run = Run(touches, computed_deviation(touches), np.full(len(q), u))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
-    return anchored(run, standard)
+    return at_true_contacts(run, standard)
 
 
 def _gaps(

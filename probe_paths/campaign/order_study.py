@@ -7,6 +7,7 @@ machine, and their standard deviations tell how well the order separates them fr
 """
 
 from dataclasses import dataclass, replace
+from enum import Enum
 from pathlib import Path
 
 import numpy as np
@@ -23,19 +24,28 @@ _FREE = 1e3
 """Prior of what is looked for, in units of its typical size: nearly none."""
 
 
+class Ordering(Enum):
+    """How the same touches can be put in order."""
+
+    AS_PLANNED = "as planned"
+    WITHOUT_ANCHORS = "without anchor touches"
+    ONCE = "every pose once"
+    SHORTEST = "shortest way"
+
+
 @dataclass(frozen=True)
 class Order:
     """One order of the same touches.
 
     Attributes:
-        name: In words.
+        ordering: Which.
         touches: Number, anchor touches included.
         duration: Of all programs, s.
         drift: Standard deviation of the rate of a drift, its worst direction, mm/h.
         reversal: Standard deviation of the reversal of every rotary axis, in chain order, rad.
     """
 
-    name: str
+    ordering: Ordering
     touches: int
     duration: float
     drift: float
@@ -53,15 +63,15 @@ def orders(plan: TouchPlan, model: Model, noise: float) -> tuple[Order, ...]:
     bare = _rows(plan, np.flatnonzero(plan.request >= 0))
     once = _once(bare)
     tried = (
-        ("as planned: mixed, twice, from both sides, anchor touches", plan),
-        ("the same without the anchor touches", bare),
-        ("mixed, every pose once", once),
-        ("shortest ways, every pose once, from whatever side", _shortest(once)),
+        (Ordering.AS_PLANNED, plan),
+        (Ordering.WITHOUT_ANCHORS, bare),
+        (Ordering.ONCE, once),
+        (Ordering.SHORTEST, _shortest(once)),
     )
-    return tuple(_judged(name, one, model, noise) for name, one in tried)
+    return tuple(_judged(ordering, one, model, noise) for ordering, one in tried)
 
 
-def _judged(name: str, plan: TouchPlan, model: Model, noise: float) -> Order:
+def _judged(ordering: Ordering, plan: TouchPlan, model: Model, noise: float) -> Order:
     touches, duration = _timed(plan)
     rotary = plan.chain.rotary_axes
     sought: list[Effect] = [parse_effect("drift", plan.chain)]
@@ -72,7 +82,7 @@ def _judged(name: str, plan: TouchPlan, model: Model, noise: float) -> Order:
     )
     drift = float(sd[:3].max())
     reversal = tuple(float(value) for value in sd[3:])
-    return Order(name, len(plan), duration, drift, reversal)
+    return Order(ordering, len(plan), duration, drift, reversal)
 
 
 def _sd_beside(C: Array, W: Array) -> Array:

@@ -9,12 +9,11 @@ import numpy as np
 from artefact.body import Standard
 from artefact.reach import TABLE_RADIUS
 from probe_paths.campaign.collisions import check_moves
-from probe_paths.campaign.contacts import VirtualMachine
+from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual import VirtualRun, run_programs
+from probe_paths.campaign.virtual_run import VirtualRun, run_programs
 from probe_paths.control import read_log, read_program
 from probe_paths.plan import Probe
-from twin.errors import NotReachable
 from twin.record import Run
 
 SMALLEST_U = 1e-5
@@ -66,8 +65,7 @@ def simulate(
     for text in texts:
         check_moves(text, standard, machine.chain, table_radius)
     runs = run_programs(texts, standard, machine, rng)
-    if runs[-1].why:
-        raise NotReachable(runs[-1].why, runs=runs)
+    runs[-1].check_done()
     parts = [
         part
         for one in runs

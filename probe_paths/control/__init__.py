@@ -1,6 +1,11 @@
-"""The control as our programs see it: reader, interpreter, clock and log."""
+"""The control as our programs see it: reader, interpreter, clock and log.
 
-from probe_paths.control.clock import Clock
+In: the text of a program (`read_program`) or of a log (`read_log`). Out: the steps that the program
+takes (`ReadProgram`), and what one run of it logged (`LogPart`). Rules for single blocks are in
+`modes` and `motion`, those for a whole program in `structure` and `runner`.
+"""
+
+from probe_paths.control.clock import Clock, step_times
 from probe_paths.control.interpreter import interpret, read_program, stated_probe
 from probe_paths.control.log import LogPart, read_log
 from probe_paths.control.steps import (
@@ -14,7 +19,6 @@ from probe_paths.control.steps import (
     Step,
     Value,
 )
-from probe_paths.control.timeline import step_times
 
 __all__ = [
     "STATUS",

@@ -102,14 +102,14 @@ class _Reader:
     def is_at_end(self) -> bool:
         return self.place == len(self.lines)
 
-    def refuse(self, found: str, expected: str) -> BadFile:
+    def refusal(self, found: str, expected: str) -> BadFile:
         line = self.lines[min(self.place, len(self.lines) - 1)][0] if self.lines else 1
         return BadFile(self.path, f"line {line}", found, expected)
 
     def peek(self, expected: str) -> str:
         """The line to be read next; refuses the end of the file."""
         if self.is_at_end:
-            raise self.refuse("the end of the file", expected)
+            raise self.refusal("the end of the file", expected)
         return self.lines[self.place][1]
 
     def taken(self, expected: str) -> str:
@@ -124,7 +124,7 @@ class _Reader:
         found = _PAIR.findall(text)
         rest = _PAIR.sub("", text).strip()
         if rest or [n for n, _ in found] != list(names):
-            raise self.refuse(repr(text), expected)
+            raise self.refusal(repr(text), expected)
         self.place += 1
         return [float(v) for _, v in found]
 
@@ -132,12 +132,12 @@ class _Reader:
         """A time of day, on the day of `after` or, past midnight, on the next one."""
         match = _CLOCK.match(self.peek("T <h>:<m>:<s>"))
         if match is None:
-            raise self.refuse(repr(self.lines[self.place][1]), "T <h>:<m>:<s>")
+            raise self.refusal(repr(self.lines[self.place][1]), "T <h>:<m>:<s>")
         hour, minute, second = (int(v) for v in match.groups())
         try:
             now = (after or day).replace(hour=hour, minute=minute, second=second)
         except ValueError:
-            raise self.refuse(repr(match[0]), "a time of day") from None
+            raise self.refusal(repr(match[0]), "a time of day") from None
         self.place += 1
         return now + timedelta(days=1) if after is not None and now < after else now
 
@@ -145,20 +145,20 @@ class _Reader:
         """One run of a program."""
         if self.taken(LOG_HEAD) != LOG_HEAD:
             self.place -= 1
-            raise self.refuse(repr(self.lines[self.place][1]), LOG_HEAD)
+            raise self.refusal(repr(self.lines[self.place][1]), LOG_HEAD)
         words = self.taken("PGM <name>").split()
         if len(words) != 2 or words[0] != "PGM":
             self.place -= 1
-            raise self.refuse(repr(" ".join(words)), "PGM <name>")
+            raise self.refusal(repr(" ".join(words)), "PGM <name>")
         heading = parse_heading(self.lines[self.place : self.place + 4], self.path)
         self.place += 4
         match = _DATE.match(self.peek("DATE <y>-<m>-<d>"))
         if match is None:
-            raise self.refuse(repr(self.lines[self.place][1]), "DATE <y>-<m>-<d>")
+            raise self.refusal(repr(self.lines[self.place][1]), "DATE <y>-<m>-<d>")
         try:
             day = datetime(int(match[1]), int(match[2]), int(match[3]))
         except ValueError:
-            raise self.refuse(repr(match[0]), "a date") from None
+            raise self.refusal(repr(match[0]), "a date") from None
         self.place += 1
         begin = self.clock(day, None)
         self.pairs(("TOOL", "PRESET"))

@@ -19,7 +19,7 @@ def system_datum(block: Block, state: State) -> float:
     letters = {SYSTEM_INDEX[a]: a for a in state.frame.letters if a not in LINEAR}
     if (group, number) == (240, 1) and index in letters:
         if not state.is_synchronous:
-            raise state.refuse(block, "a position read ahead", "FN 20: WAIT FOR SYNC before it")
+            raise state.refusal(block, "a position read ahead", "FN 20: WAIT FOR SYNC before it")
         return float(state.q[state.frame.chain.axis_index(letters[index])]) / DEG
     known = {
         (350, 11, 0): probe.radius,
@@ -30,7 +30,7 @@ def system_datum(block: Block, state: State) -> float:
     if (group, number, index) == (20, 1, 0) and state.tool is not None:
         return float(state.tool)
     if (group, number, index) not in known:
-        raise state.refuse(
+        raise state.refusal(
             block,
             f"ID{group} NR{number} IDX{index}",
             "ID20 NR1, ID240 NR1 of a rotary axis, or ID350 NR11, NR12, NR14 IDX1, IDX2",
@@ -41,13 +41,13 @@ def system_datum(block: Block, state: State) -> float:
 def check_cycle(state: State, block: Block, vector: Block, length: float) -> None:
     """Numbers of a cycle 4 that make sense."""
     if abs(length - 1.0) > 1e-3:
-        raise state.refuse(vector, f"a vector of length {length:.4f}", "length 1")
+        raise state.refusal(vector, f"a vector of length {length:.4f}", "length 1")
     if block.word("system") != "0":
-        raise state.refuse(block, "REFERENCE SYSTEM:1", "REFERENCE SYSTEM:0")
+        raise state.refusal(block, "REFERENCE SYSTEM:1", "REFERENCE SYSTEM:0")
     if not 0.0 < block.number("feed") <= MAX_PROBING_FEED:
-        raise state.refuse(block, f"F{block.word('feed')}", f"F1 to F{MAX_PROBING_FEED:.0f}")
+        raise state.refusal(block, f"F{block.word('feed')}", f"F1 to F{MAX_PROBING_FEED:.0f}")
     if not 0.0 <= block.number("back") <= block.number("distance"):
-        raise state.refuse(
+        raise state.refusal(
             block, repr(block.text), "a path above zero and MB between zero and the path"
         )
 
@@ -56,7 +56,7 @@ def set_mode(block: Block, state: State) -> None:
     """Execute a block that changes a mode or sets a parameter; raises BadFile."""
     setter = _SETTERS.get(block.kind)
     if setter is None:
-        raise state.refuse(block, repr(block.text), "a subprogram that is called, after M30")
+        raise state.refusal(block, repr(block.text), "a subprogram that is called, after M30")
     setter(block, state)
 
 
@@ -75,7 +75,7 @@ def _plane_off(block: Block, state: State) -> None:
 def _shift(block: Block, state: State) -> None:
     axis = LINEAR[int(block.word("index")) - 1]
     if block.word("axis") != axis or block.number("value") != 0.0:
-        raise state.refuse(block, repr(block.text), f"{axis}+0: only the preset may shift")
+        raise state.refusal(block, repr(block.text), f"{axis}+0: only the preset may shift")
     state.shift_off.add(axis)
 
 
@@ -85,9 +85,9 @@ def _preset(block: Block, state: State) -> None:
 
 def _tool_call(block: Block, state: State) -> None:
     if block.words["speed"] is not None:
-        raise state.refuse(block, repr(block.text), "no speed: there is a probe in the spindle")
+        raise state.refusal(block, repr(block.text), "no speed: there is a probe in the spindle")
     if not state.is_tcpm_off or not state.is_retracted:
-        raise state.refuse(block, repr(block.text), "M129 and a retract with M91 before it")
+        raise state.refusal(block, repr(block.text), "M129 and a retract with M91 before it")
     state.tool = int(block.word("tool"))
     state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length
     # the tool changer leaves the linear axes wherever its builder wanted
@@ -106,7 +106,7 @@ def _assign(block: Block, state: State) -> None:
 def _subtract(block: Block, state: State) -> None:
     value = state.value(block, int(block.word("from")))
     if not isinstance(value, float):
-        raise state.refuse(block, repr(block.text), "a number, not the result of a touch")
+        raise state.refusal(block, repr(block.text), "a number, not the result of a touch")
     state.write(block, int(block.word("q")), value - block.number("value"))
 
 

@@ -27,10 +27,10 @@ def straight_line(state: State, block: Block) -> Move:
     functions = set(block.word("functions").split())
     if not functions <= _FUNCTIONS:
         extra = " ".join(sorted(functions - _FUNCTIONS))
-        raise state.refuse(block, extra, "M91 or M126 and no other M function in an L block")
+        raise state.refusal(block, extra, "M91 or M126 and no other M function in an L block")
     state.is_radius_off = state.is_radius_off or block.words["radius"] is not None
     if not state.is_radius_off:
-        raise state.refuse(block, repr(block.text), "R0 on the first move")
+        raise state.refusal(block, repr(block.text), "R0 on the first move")
     target, letters = _target(state, block, "M91" in functions)
     feed = _feed(state, block)
     state.is_shorter_way = state.is_shorter_way or "M126" in functions
@@ -54,9 +54,9 @@ def _target(state: State, block: Block, is_machine_datum: bool) -> tuple[Array, 
     for letter, number in _AXIS.findall(block.word("axes")):
         if letter not in state.frame.letters:
             available = ", ".join(state.frame.letters)
-            raise state.refuse(block, f"axis {letter}", f"an axis of the machine: {available}")
+            raise state.refusal(block, f"axis {letter}", f"an axis of the machine: {available}")
         if letter in letters:
-            raise state.refuse(block, f"axis {letter} twice", "every axis once in a block")
+            raise state.refusal(block, f"axis {letter} twice", "every axis once in a block")
         letters.append(letter)
         column = state.frame.chain.axis_index(letter)
         if is_machine_datum and letter in LINEAR:
@@ -76,21 +76,21 @@ def _feed(state: State, block: Block) -> float | None:
     if word is not None:
         state.feed = float(word)
     if not state.feed:
-        raise state.refuse(block, repr(block.text), "a feed above zero, or FMAX")
+        raise state.refusal(block, repr(block.text), "a feed above zero, or FMAX")
     return state.feed
 
 
 def _turn(state: State, block: Block, target: Array, letters: list[str], rotary: list[str]) -> None:
     """Rules for a block with rotary axes; notes the direction that every axis came from."""
     if len(rotary) != len(letters):
-        raise state.refuse(block, repr(block.text), "rotary axes in a block of their own")
+        raise state.refusal(block, repr(block.text), "rotary axes in a block of their own")
     if not state.is_retracted:
-        raise state.refuse(block, repr(block.text), "a retract (L Z.. R0 FMAX M91) before it")
+        raise state.refusal(block, repr(block.text), "a retract (L Z.. R0 FMAX M91) before it")
     for letter in rotary:
         column = state.frame.chain.axis_index(letter)
         step = target[column] - state.q[column]
         if state.is_shorter_way and abs(step) > np.pi + SAME:
-            raise state.refuse(
+            raise state.refusal(
                 block,
                 f"{letter} turning by {step / DEG:.1f} degrees with M126 active",
                 "at most 180 degrees, or the control takes the other way round",
@@ -102,15 +102,15 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
 def _retract(state: State, block: Block, target: Array, letters: list[str]) -> None:
     """Rules for a block with M91: Z alone, up, to the top of its travel."""
     if not state.is_tcpm_off:
-        raise state.refuse(block, repr(block.text), "M129 before M91")
+        raise state.refusal(block, repr(block.text), "M129 before M91")
     if letters != ["Z"]:
-        raise state.refuse(block, repr(block.text), "Z alone with M91")
+        raise state.refusal(block, repr(block.text), "Z alone with M91")
     column = state.frame.chain.axis_index("Z")
     top = state.frame.chain.link("Z").range[1]
     if target[column] < top - TOP:
-        raise state.refuse(block, f"Z{target[column]:+.4f} M91", f"at least Z{top - TOP:+.4f}")
+        raise state.refusal(block, f"Z{target[column]:+.4f} M91", f"at least Z{top - TOP:+.4f}")
     if target[column] < state.q[column] - SAME:
-        raise state.refuse(block, repr(block.text), "a retract that does not go down")
+        raise state.refusal(block, repr(block.text), "a retract that does not go down")
     state.is_retracted, state.clearance = True, None
 
 
@@ -121,25 +121,25 @@ def _check_height(
     column = state.frame.chain.axis_index("Z")
     before, after = state.q[column], target[column]
     if not np.isfinite(before):
-        raise state.refuse(block, repr(block.text), "a retract (L Z.. R0 FMAX M91) first")
+        raise state.refusal(block, repr(block.text), "a retract (L Z.. R0 FMAX M91) first")
     if state.is_retracted:
         if "Z" not in letters:
             return
         if letters != ["Z"] or not np.all(np.isfinite(target[state.frame.linear])):
-            raise state.refuse(block, repr(block.text), "X and Y at the retract, then Z alone")
+            raise state.refusal(block, repr(block.text), "X and Y at the retract, then Z alone")
         state.is_retracted, state.clearance = False, after
         return
     assert state.clearance is not None
     is_up = letters == ["Z"] and after >= before
     if is_rapid and not is_up and min(before, after) < state.clearance - SAME:
-        raise state.refuse(
+        raise state.refusal(
             block,
             repr(block.text),
             "no rapid move below the clearance height, where this pose was entered",
         )
     is_back = state.way_back is not None
     if letters != ["Z"] and not is_back and min(before, after) < state.clearance - SAME:
-        raise state.refuse(
+        raise state.refusal(
             block,
             repr(block.text),
             "below the clearance height only moves along Z, or back from a touch",
@@ -150,7 +150,7 @@ def _arrive(state: State, block: Block, target: Array) -> None:
     """The machine stands at the target."""
     if state.way_back is not None:
         if not np.allclose(target, state.way_back, rtol=0.0, atol=SAME, equal_nan=True):
-            raise state.refuse(
+            raise state.refusal(
                 block, repr(block.text), "a move back to the start of the touch first"
             )
         state.way_back = None
@@ -166,7 +166,7 @@ def retract_max(state: State, block: Block) -> Move:
     """Execute `M140 MB MAX`: along the tool axis to the end of the travel."""
     state.check_status_was_tested(block)
     if not state.is_tcpm_off:
-        raise state.refuse(block, repr(block.text), "M129 before M140")
+        raise state.refusal(block, repr(block.text), "M129 before M140")
     target = state.q.copy()
     column = state.frame.chain.axis_index("Z")
     target[column] = state.frame.chain.link("Z").range[1]

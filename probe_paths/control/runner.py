@@ -60,9 +60,9 @@ class Runner:
             block = self.blocks[i]
             executed += 1
             if executed > 100 * len(self.blocks):
-                raise state.refuse(block, "a loop without end", "a program that comes to M30")
+                raise state.refusal(block, "a loop without end", "a program that comes to M30")
             if block.kind is Kind.END:
-                raise state.refuse(block, "END PGM", "M30 or LBL 0 before it")
+                raise state.refusal(block, "END PGM", "M30 or LBL 0 before it")
             if block.kind is Kind.PROGRAM_STOP:
                 self._check_end(state, block, returns)
                 return steps
@@ -78,11 +78,11 @@ class Runner:
         if block.kind is Kind.CALL:
             returns.append(i + 1)
             if len(returns) > MAX_CALLS:
-                raise state.refuse(block, f"{len(returns)} nested calls", f"at most {MAX_CALLS}")
+                raise state.refusal(block, f"{len(returns)} nested calls", f"at most {MAX_CALLS}")
             return self.places[int(block.word("label"))] + 1
         if block.kind is Kind.LABEL and block.word("label") == "0":
             if not returns:
-                raise state.refuse(block, "LBL 0 that nobody called", "M30 before subprograms")
+                raise state.refusal(block, "LBL 0 that nobody called", "M30 before subprograms")
             return returns.pop()
         if block.kind is Kind.JUMP:
             return self._jump(i, block, state)
@@ -101,10 +101,10 @@ class Runner:
         if not isinstance(value, Result):
             return target if (value < limit if is_less else value > limit) else i + 1
         if value.part != STATUS or limit != 0.0 or not is_less:
-            raise state.refuse(block, repr(block.text), "the status (fourth result) LT +0")
+            raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
         state.untested = None
         missed = state.copied()
-        self.touches[value.touch].miss.extend(self.run(target, missed, is_branch=True))
+        self.touches[value.touch].on_miss.extend(self.run(target, missed, is_branch=True))
         return i + 1
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
@@ -132,13 +132,13 @@ class Runner:
         column = state.frame.chain.axis_index("Z")
         moving = [*state.frame.linear, *state.frame.rotary]
         if not np.all(np.isfinite(state.q[moving])):
-            raise state.refuse(block, "a touch", "a position of every axis before it")
+            raise state.refusal(block, "a touch", "a position of every axis before it")
         if (
             state.clearance is None
             or state.q[column] > state.clearance
             or state.way_back is not None
         ):
-            raise state.refuse(block, "a touch", "a move down to its start before it")
+            raise state.refusal(block, "a touch", "a move down to its start before it")
         direction = np.zeros(len(state.q))
         direction[state.frame.linear] = [vector.number(a) for a in "xyz"]
         length = float(np.linalg.norm(direction))
@@ -161,7 +161,7 @@ class Runner:
         for part in range(4):
             state.write(block, result + part, Result(touch.index, part))
         if not isinstance(left_over, float) or left_over >= 0.0:
-            raise state.refuse(
+            raise state.refusal(
                 block, "the status of the touch before", f"FN 0: Q{result + STATUS} = -1 before it"
             )
         state.untested, state.way_back = touch.index, state.q.copy()
@@ -172,12 +172,12 @@ class Runner:
     def _check_sides(self, block: Block, state: State, touch: ProbeStep) -> None:
         """The sides that the log will state are those that the axes really came from."""
         if any(other.number == touch.number for other in self.touches):
-            raise state.refuse(block, f"touch number {touch.number} again", "a number of its own")
+            raise state.refusal(block, f"touch number {touch.number} again", "a number of its own")
         names = state.frame.chain.rotary_axes
         for q, column, name in zip((Q.SIDE_1, Q.SIDE_2), state.frame.rotary, names, strict=False):
             stated = state.whole(block, q, f"side of {name}")
             if stated != touch.side[column]:
-                raise state.refuse(
+                raise state.refusal(
                     block,
                     f"{name} said to come from side {stated:+d}",
                     f"{touch.side[column]:+.0f}, as it last moved",
@@ -187,7 +187,7 @@ class Runner:
         """FN 16 with the values of this moment."""
         state.check_status_was_tested(block)
         if not state.is_synchronous:
-            raise state.refuse(block, "a line printed ahead", "FN 20: WAIT FOR SYNC before it")
+            raise state.refusal(block, "a line printed ahead", "FN 20: WAIT FOR SYNC before it")
         lines = self._mask(block, state)
         wanted = {a for line in lines for a in line.arguments if isinstance(a, int)}
         values = {q: state.value(block, q) for q in sorted(wanted)}
@@ -199,16 +199,16 @@ class Runner:
         if name not in self.masks:
             text = self.source(name)
             if text is None:
-                raise state.refuse(block, f"mask {name}", "a mask file beside the program")
+                raise state.refusal(block, f"mask {name}", "a mask file beside the program")
             self.masks[name] = parse_mask(text, self.path.parent / name)
         return self.masks[name]
 
     def _check_end(self, state: State, block: Block, returns: list[int]) -> None:
         state.check_status_was_tested(block)
         if returns:
-            raise state.refuse(block, "M30 inside a subprogram", "LBL 0 at its end")
+            raise state.refusal(block, "M30 inside a subprogram", "LBL 0 at its end")
         if not state.is_retracted:
-            raise state.refuse(block, "M30", "a retract (L Z.. R0 FMAX M91) at the end")
+            raise state.refusal(block, "M30", "a retract (L Z.. R0 FMAX M91) at the end")
 
     def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
         """Only a touch without contact may end a program early, and only after a retract."""

@@ -70,7 +70,7 @@ class State:
         other.parameters, other.shift_off = dict(self.parameters), set(self.shift_off)
         return other
 
-    def refuse(self, block: Block, found: str, expected: str) -> BadFile:
+    def refusal(self, block: Block, found: str, expected: str) -> BadFile:
         """The one clear line about a block."""
         return BadFile(self.path, f"line {block.line}", found, expected)
 
@@ -88,12 +88,12 @@ class State:
             if not there
         ]
         if missing:
-            raise self.refuse(block, what, f"{missing[0]} before it")
+            raise self.refusal(block, what, f"{missing[0]} before it")
 
     def check_status_was_tested(self, block: Block) -> None:
         """Nothing may happen between a touch and the look at its status."""
         if self.untested is not None:
-            raise self.refuse(
+            raise self.refusal(
                 block,
                 f"{block.text!r} after touch {self.untested + 1}",
                 "FN 12 on the status of the touch first",
@@ -102,20 +102,22 @@ class State:
     def write(self, block: Block, q: int, value: Value) -> None:
         """Set a Q parameter of the free range."""
         if q not in FREE:
-            raise self.refuse(block, f"Q{q}", f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}")
+            raise self.refusal(block, f"Q{q}", f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}")
         self.parameters[q] = value
 
     def value(self, block: Block, q: int) -> Value:
         """A Q parameter that has been set in this run; nothing left over from others counts."""
         if q not in self.parameters:
-            raise self.refuse(block, f"Q{q} without a value", "a parameter set by this program")
+            raise self.refusal(block, f"Q{q} without a value", "a parameter set by this program")
         return self.parameters[q]
 
     def whole(self, block: Block, q: int, name: str) -> int:
         """A counter that must be set before a touch."""
         value = self.parameters.get(q)
         if not isinstance(value, float) or value != int(value):
-            raise self.refuse(block, f"Q{q} = {value}", f"a whole number ({name}) before the touch")
+            raise self.refusal(
+                block, f"Q{q} = {value}", f"a whole number ({name}) before the touch"
+            )
         return int(value)
 
     def check_travel(self, block: Block, target: Array) -> None:
@@ -126,7 +128,7 @@ class State:
             value = target[chain.axis_index(letter)]
             if np.isfinite(value) and not low - SAME <= value <= high + SAME:
                 scale = self.frame.coordinate(letter, 1.0) if letter not in "XYZ" else 1.0
-                raise self.refuse(
+                raise self.refusal(
                     block,
                     f"{letter} reading {value * scale:.4f}",
                     f"{low * scale:g} to {high * scale:g}, the travel of {letter}",

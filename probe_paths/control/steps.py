@@ -10,7 +10,7 @@ from probe_paths.plan import Heading
 from twin.frames import Array
 
 STATUS = 3
-"""Part of a cycle's result that tells whether there was a contact; negative: none."""
+"""Part of a cycle's result that states whether there was a contact; negative: none."""
 
 
 class Result(NamedTuple):
@@ -56,7 +56,7 @@ class ProbeStep:
         number: Of the touch, as the log will name it.
         pose: Number of the table pose, likewise.
         feature: Number of the feature, likewise.
-        miss: What the program does when there is no contact.
+        on_miss: What the program does when there is no contact.
     """
 
     line: int
@@ -70,7 +70,7 @@ class ProbeStep:
     number: int
     pose: int
     feature: int
-    miss: list["Step"] = field(default_factory=list)
+    on_miss: list["Step"] = field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,8 @@
-"""A plan as the control's programs."""
+"""A plan as the control's programs.
+
+In: a `TouchPlan` and a `Dialect`. Out: a `ProgramSet`, text of programs and masks that the strict
+interpreter has read back. What stands in a program, and in which order, is in `writer`.
+"""
 
 from probe_paths.emit.program import ProgramSet, make_programs
 from probe_paths.emit.writer import Feeds

@@ -6,19 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from probe_paths.language import (
-    END_MASK,
-    INPUT_VALUE_INCORRECT,
     LENGTH_LIMIT,
-    LOG_LABEL,
-    MISS_LABEL,
-    MISS_MASK,
-    POINT_MASK,
-    PROBE_LABEL,
     SYSTEM_INDEX,
     TOOL_LENGTH,
-    TOUCH_POINT_INACCESSIBLE,
     Dialect,
+    ErrorText,
+    Label,
     Q,
+    SharedMask,
 )
 from probe_paths.language import klartext as k
 from probe_paths.plan import (
@@ -141,8 +136,8 @@ class Writer:
             k.system_read(Q.TOOL, 20, 1),
             k.assign(Q.PRESET, self.dialect.preset),
             k.difference(Q.LENGTH_OFF, TOOL_LENGTH, self.plan.probe.tool_length),
-            k.jump_if_less(Q.LENGTH_OFF, -LENGTH_LIMIT, PROBE_LABEL),
-            k.jump_if_greater(Q.LENGTH_OFF, LENGTH_LIMIT, PROBE_LABEL),
+            k.jump_if_less(Q.LENGTH_OFF, -LENGTH_LIMIT, Label.OTHER_PROBE),
+            k.jump_if_greater(Q.LENGTH_OFF, LENGTH_LIMIT, Label.OTHER_PROBE),
             self._print(f"{name}.A", name),
         )
 
@@ -184,34 +179,34 @@ class Writer:
                     feeds.probing,
                     options.standoff,
                 ),
-                k.call(LOG_LABEL),
+                k.call(Label.LOG),
                 k.line(start, feeds.approach),
                 up,
             )
 
     def _finish(self, out: k.Listing, name: str) -> None:
-        out.add(k.structure("END"), self.retract, k.WAIT, self._print(f"{END_MASK}.A", name))
+        out.add(k.structure("END"), self.retract, k.WAIT, self._print(f"{SharedMask.END}.A", name))
         out.add(*self._home(), k.PROGRAM_STOP)
 
     def _subprograms(self, out: k.Listing, name: str) -> None:
         """Look at the status and log; retract and stop where there was no contact."""
         places = zip((Q.ROTARY_1, Q.ROTARY_2), self.rotary, strict=False)
         out.add(
-            k.label(LOG_LABEL, "CHECK AND LOG ONE TOUCH"),
-            k.jump_if_less(Q.STATUS, 0, MISS_LABEL),
+            k.label(Label.LOG, "CHECK AND LOG ONE TOUCH"),
+            k.jump_if_less(Q.STATUS, 0, Label.NO_CONTACT),
             k.WAIT,
             *(k.system_read(q, 240, 1, SYSTEM_INDEX[a]) for q, a in places),
-            self._print(f"{POINT_MASK}.A", name),
+            self._print(f"{SharedMask.POINT}.A", name),
             k.LABEL_END,
-            k.label(MISS_LABEL, "NOTRIGGER: NO CONTACT"),
+            k.label(Label.NO_CONTACT, "NOTRIGGER: NO CONTACT"),
             k.RETRACT_MAX,
             k.WAIT,
-            self._print(f"{MISS_MASK}.A", name),
+            self._print(f"{SharedMask.NO_CONTACT}.A", name),
             k.OPERATOR_STOP,
-            k.stop_with_error(TOUCH_POINT_INACCESSIBLE),
-            k.label(PROBE_LABEL, "NOT THE PROBE OF THE PLAN"),
+            k.stop_with_error(ErrorText.TOUCH_POINT_INACCESSIBLE),
+            k.label(Label.OTHER_PROBE, "NOT THE PROBE OF THE PLAN"),
             k.OPERATOR_STOP,
-            k.stop_with_error(INPUT_VALUE_INCORRECT),
+            k.stop_with_error(ErrorText.INPUT_VALUE_INCORRECT),
         )
 
 

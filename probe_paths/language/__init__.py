@@ -1,49 +1,44 @@
-"""Heidenhain Klartext: words, dialects, masks, blocks."""
+"""Heidenhain Klartext: words, dialects, masks, blocks.
+
+A closed list: `klartext` writes its blocks, `read_blocks` takes no others. `Dialect` holds what
+differs between controls and workshops, `Q` the parameters that our programs use. A new block needs
+a function in `klartext`, a pattern in `Kind` and an execution in `probe_paths.control`.
+"""
 
 from probe_paths.language.blocks import Block, Kind, read_blocks
 from probe_paths.language.dialect import (
     FREE,
-    INPUT_VALUE_INCORRECT,
     LENGTH_LIMIT,
-    LOG_LABEL,
-    MISS_LABEL,
-    PROBE_LABEL,
     SYSTEM_INDEX,
     TOOL_LENGTH,
-    TOUCH_POINT_INACCESSIBLE,
     Dialect,
+    ErrorText,
+    Label,
     Q,
 )
 from probe_paths.language.masks import (
-    END_MASK,
     LOG_HEAD,
-    MISS_MASK,
-    POINT_MASK,
     MaskLine,
+    SharedMask,
     head_mask,
     parse_mask,
     shared_masks,
 )
 
 __all__ = [
-    "END_MASK",
     "FREE",
-    "INPUT_VALUE_INCORRECT",
     "LENGTH_LIMIT",
     "LOG_HEAD",
-    "LOG_LABEL",
-    "MISS_LABEL",
-    "MISS_MASK",
-    "POINT_MASK",
-    "PROBE_LABEL",
     "SYSTEM_INDEX",
     "TOOL_LENGTH",
-    "TOUCH_POINT_INACCESSIBLE",
     "Block",
     "Dialect",
+    "ErrorText",
     "Kind",
+    "Label",
     "MaskLine",
     "Q",
+    "SharedMask",
     "head_mask",
     "parse_mask",
     "read_blocks",

@@ -39,17 +39,24 @@ FREE = range(1600, 2000)
 SYSTEM_INDEX = {letter: i + 1 for i, letter in enumerate("XYZABCUVW")}
 """Order of the axes in the control's system data (IDX of ID240)."""
 
-LOG_LABEL, MISS_LABEL, PROBE_LABEL = 90, 91, 92
-"""Subprograms: check and log one touch; no contact; another probe than planned."""
+
+class Label(IntEnum):
+    """Subprograms of our programs."""
+
+    LOG = 90
+    NO_CONTACT = 91
+    OTHER_PROBE = 92
+
+
+class ErrorText(IntEnum):
+    """Numbers of the control's error texts that end a program early."""
+
+    INPUT_VALUE_INCORRECT = 1011
+    TOUCH_POINT_INACCESSIBLE = 1014
+
 
 LENGTH_LIMIT = 1
-"""By how much the probe's length may differ from the planned one, mm: the room that is planned."""
-
-INPUT_VALUE_INCORRECT = 1011
-"""Number of the control's error text that ends a program with another probe."""
-
-TOUCH_POINT_INACCESSIBLE = 1014
-"""Number of the control's error text that ends a program without contact."""
+"""By how much the probe's length may differ from the planned one, mm: the gap that is planned."""
 
 
 @dataclass(frozen=True)

@@ -4,14 +4,21 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from enum import StrEnum
 from pathlib import Path
 
 from probe_paths.language.dialect import TOOL_LENGTH, Dialect, Q
 from probe_paths.language.klartext import LINE_END, MAX_LINE, checked_name
 from twin.errors import BadFile, DesignError
 
-POINT_MASK, END_MASK, MISS_MASK = "MSPOINT", "MSEND", "MSMISS"
-"""Names of the masks that all programs share, without their ending."""
+
+class SharedMask(StrEnum):
+    """Names of the masks that all programs share, without their ending."""
+
+    POINT = "MSPOINT"
+    END = "MSEND"
+    NO_CONTACT = "MSMISS"
+
 
 LOG_HEAD = "MATSTD LOG 1"
 """First line of every part of a log."""
@@ -126,9 +133,9 @@ def shared_masks(dialect: Dialect, rotary: Sequence[str]) -> dict[str, str]:
     if turned:
         point += [_fields(turned, f"%{d + 7}.{d}LF"), _fields(came_from, "%5.1LF")]
     return {
-        f"{POINT_MASK}.A": _mask([*point, clock]),
-        f"{END_MASK}.A": _mask([("END T%3d:%3d:%3d", clock[1])]),
-        f"{MISS_MASK}.A": _mask([_fields([("NOCONTACT P", Q.TOUCH)], "%8.1LF"), clock]),
+        f"{SharedMask.POINT}.A": _mask([*point, clock]),
+        f"{SharedMask.END}.A": _mask([("END T%3d:%3d:%3d", clock[1])]),
+        f"{SharedMask.NO_CONTACT}.A": _mask([_fields([("NOCONTACT P", Q.TOUCH)], "%8.1LF"), clock]),
     }
 
 

@@ -1,6 +1,12 @@
-"""What is touched, in which order, from which side."""
+"""What is touched, in which order, from which side.
 
-from probe_paths.plan.clearance import Room, obstacles, swing_height, top_height
+In: a standard, a machine, a probe, a set-up, wanted touches. Out: a `TouchPlan` in axis readings,
+with the requests that were refused. Heights and gaps of the tool are worked out here for plan and
+collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of poses goes into
+`order`.
+"""
+
+from probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
 from probe_paths.plan.frame import LINEAR, ProgramFrame
 from probe_paths.plan.heading import Heading, parse_heading
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, waypoints
@@ -14,15 +20,15 @@ __all__ = [
     "PlanOptions",
     "Probe",
     "ProgramFrame",
-    "Room",
+    "ToolClearance",
     "TouchPlan",
     "Visit",
     "home_readings",
     "nearest_neighbours",
-    "obstacles",
     "parse_heading",
     "plan_touches",
     "requests_at",
+    "solid_hull",
     "swing_height",
     "top_height",
     "waypoints",

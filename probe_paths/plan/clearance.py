@@ -1,4 +1,4 @@
-"""Room for the probe: heights at which nothing stands in the way, and gaps at a touch."""
+"""Space for the probe: heights at which nothing stands in the way, and gaps at a touch."""
 
 from dataclasses import dataclass
 from itertools import product
@@ -17,14 +17,14 @@ _SWING = 7
 """Samples of every rotary axis over one move: both axes turn, in no order that is known."""
 
 
-class Obstacles(NamedTuple):
+class SolidHull(NamedTuple):
     """Balls (points with radii) whose hull holds everything solid on the table, table frame."""
 
     points: Array  # (K, 3)
     radii: Array  # (K,)
 
 
-def obstacles(standard: Standard, setup: Setup, table_radius: float) -> Obstacles:
+def solid_hull(standard: Standard, setup: Setup, table_radius: float) -> SolidHull:
     """Corners of base, core and columns, the spheres, and the rim of the table."""
     points = [_box(standard.base.half_size, 0.0, standard.base.thickness)]
     for column in standard.columns.values():
@@ -38,7 +38,7 @@ def obstacles(standard: Standard, setup: Setup, table_radius: float) -> Obstacle
     rim = _ring(table_radius, 0.0)
     radii = np.zeros(len(on_table) + len(rim))
     radii[len(solid) : len(on_table)] = [s.radius for s in standard.spheres]
-    return Obstacles(np.concatenate([on_table, rim]), radii)
+    return SolidHull(np.concatenate([on_table, rim]), radii)
 
 
 def _box(half_size: tuple[float, float], low: float, high: float) -> Array:
@@ -60,7 +60,7 @@ def readings_at(chain: Chain, rotary: Array) -> Array:
     return q
 
 
-def top_height(chain: Chain, rotary: Array, solid: Obstacles, probe: Probe) -> Array:
+def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> Array:
     """Reading of Z at which the lowest point of the tool is level with the highest obstacle.
 
     Args:
@@ -82,7 +82,7 @@ def top_height(chain: Chain, rotary: Array, solid: Obstacles, probe: Probe) -> A
     return level
 
 
-def swing_height(chain: Chain, path: Array, solid: Obstacles, probe: Probe) -> Array:
+def swing_height(chain: Chain, path: Array, solid: SolidHull, probe: Probe) -> Array:
     """Highest `top_height` while the rotary axes turn along a path, whichever turns first.
 
     Args:
@@ -103,8 +103,8 @@ def swing_height(chain: Chain, path: Array, solid: Obstacles, probe: Probe) -> A
 
 
 @dataclass(frozen=True, eq=False)
-class Room:
-    """Looks at readings one by one: what is in the way of stylus, body and spindle.
+class ToolClearance:
+    """How near stylus, body and spindle come to anything solid at single readings.
 
     Attributes:
         chain: The machine.

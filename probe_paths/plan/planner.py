@@ -6,7 +6,7 @@ import numpy as np
 
 from artefact.body import Standard
 from artefact.reach import ProbeReach, Requests, joined
-from probe_paths.plan.clearance import obstacles, readings_at, swing_height, top_height
+from probe_paths.plan.clearance import readings_at, solid_hull, swing_height, top_height
 from probe_paths.plan.frame import LINEAR, ProgramFrame
 from probe_paths.plan.heading import rounded_setup
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, rotary_path, visits
@@ -39,7 +39,7 @@ class _Task:
             self.probe.shape,
             self.probe.length,
             steepest=o.steepest,
-            room=o.room,
+            room=o.smallest_gap,
             standoff=o.standoff,
             search=o.search,
             table_radius=o.table_radius,
@@ -96,12 +96,12 @@ def plan_touches(
     height = np.empty(len(requests))
     for stop in stops:
         height[stop.rows] = stop.height
-    wanted = _looked_at(task, replace(requests, rotary=rotary), height)
-    refused = [Refusal(i, str(r)) for i, r in enumerate(wanted.reason) if r]
+    wanted = _examined(task, replace(requests, rotary=rotary), height)
+    refused = [_refusal(task, wanted, i, i) for i, r in enumerate(wanted.reason) if r]
     if len(refused) > options.tolerated:
         raise NotReachable(
             f"{len(refused)} of {len(requests)} touches cannot be made, "
-            f"{options.tolerated} tolerated; the first: {refused[0].reason}",
+            f"{options.tolerated} tolerated; the first: {refused[0]}",
             refused=refused,
         )
     plan, failed = _assembled(task, stops, wanted)
@@ -123,7 +123,7 @@ def _check_requests(standard: Standard, chain: Chain, requests: Requests) -> Non
 def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
     """Visits with their clearance heights, after checking that the table can turn between them."""
     chain, probe, options = task.chain, task.probe, task.options
-    solid = obstacles(task.standard, task.setup, options.table_radius)
+    solid = solid_hull(task.standard, task.setup, options.table_radius)
     retract = chain.link("Z").range[1] - options.retract
     rotary = np.array([stop.rotary for stop in stops])
     frame = ProgramFrame(chain, probe)
@@ -141,7 +141,7 @@ def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
     return [replace(stop, height=float(h)) for stop, h in zip(stops, heights, strict=True)]
 
 
-def _looked_at(task: _Task, wanted: Requests, height: Array) -> _Touches:
+def _examined(task: _Task, wanted: Requests, height: Array) -> _Touches:
     """Touches in readings, with the first reason against each."""
     chain, options, probing = task.chain, task.options, task.probing
     contact = probing.readings(wanted)
@@ -153,29 +153,34 @@ def _looked_at(task: _Task, wanted: Requests, height: Array) -> _Touches:
     against = np.where(
         (against == "") & too_high, "its start lies above the clearance height", against
     )
-    named = [
-        f"{f}, {_pose_words(chain, q)}: {r}" if r else ""
-        for f, q, r in zip(wanted.feature, contact, against, strict=True)
-    ]
-    reason = np.array(named, dtype="U200")
-    return _Touches(wanted.feature, wanted.point, wanted.normal, start, contact, direction, reason)
+    return _Touches(
+        feature=wanted.feature,
+        point=wanted.point,
+        normal=wanted.normal,
+        start=start,
+        contact=contact,
+        direction=direction,
+        reason=against,
+    )
 
 
-def _pose_words(chain: Chain, q: Array) -> str:
-    return " ".join(f"{a}{q[chain.axis_index(a)] / DEG:+.1f}" for a in chain.rotary_axes)
+def _refusal(task: _Task, touches: _Touches, row: int, request: int) -> Refusal:
+    chain, q = task.chain, touches.contact[row]
+    rotary = {a: float(q[chain.axis_index(a)]) for a in chain.rotary_axes}
+    return Refusal(request, str(touches.feature[row]), rotary, str(touches.reason[row]))
 
 
-def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, str]]:
+def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, Refusal | None]]:
     """The best anchor touch that can be made at every pose, or none and what is against it."""
     poses = list({stop.pose: stop for stop in stops}.values())
     if not task.standard.spheres or not poses:
         return {}
     lots = [_anchor_requests(task, stop) for stop in poses]
     height = np.repeat([stop.height for stop in poses], [len(lot) for lot in lots])
-    looked_at = _looked_at(task, joined(lots), height)
+    examined = _examined(task, joined(lots), height)
     ends = np.cumsum([len(lot) for lot in lots])
     return {
-        stop.pose: _first_good(looked_at[slice(int(end) - len(lot), int(end))])
+        stop.pose: _first_good(task, examined[slice(int(end) - len(lot), int(end))])
         for stop, lot, end in zip(poses, lots, ends, strict=True)
     }
 
@@ -213,9 +218,9 @@ def _assembled(
     linear = [task.chain.axis_index(name) for name in LINEAR]
     for stop in stops:
         rows = stop.rows[wanted.reason[stop.rows] == ""]
-        anchor, why = anchors.get(stop.pose, (wanted[rows[:0]], ""))
-        if why:
-            failed.append(Refusal(-1, f"no anchor touch: {why}"))
+        anchor, refusal = anchors.get(stop.pose, (wanted[rows[:0]], None))
+        if refusal is not None:
+            failed.append(refusal)
         first = anchor.start[0] if len(anchor.point) else wanted.start[rows[0]]
         order = nearest_neighbours(wanted.start[rows][:, linear], first[linear])
         parts += [anchor, wanted[rows[order]]]
@@ -243,9 +248,7 @@ def _assembled(
     return plan, failed
 
 
-def _first_good(candidates: _Touches) -> tuple[_Touches, str]:
-    """The first candidate that nothing is against, or none and the reason against the first."""
+def _first_good(task: _Task, candidates: _Touches) -> tuple[_Touches, Refusal | None]:
+    """The first candidate that nothing is against, or none and the refusal of the first."""
     good = np.flatnonzero(candidates.reason == "")
-    if len(good):
-        return candidates[good[:1]], ""
-    return candidates[good], str(candidates.reason[0])
+    return candidates[good[:1]], None if len(good) else _refusal(task, candidates, 0, -1)

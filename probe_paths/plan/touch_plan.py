@@ -5,12 +5,13 @@ time backwards, so that every pose has the same mean time and a linear drift dro
 On every visit a datum sphere is touched first, at the same point in both visits of a pose.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from artefact.body import Standard
-from artefact.reach import TABLE_RADIUS, Requests
+from artefact.reach import ProbeReach, Requests
 from probe_paths.plan.order import Visit
 from probe_paths.plan.probe import Probe
 from twin.frames import Array
@@ -26,11 +27,15 @@ GRID = 1e-4 * DEG
 class PlanOptions:
     """How carefully and how thoroughly, base units.
 
+    Angle and gap are wider than those that touches are chosen with (`ProbeReach`: 75 degrees and
+    2 mm), so that what was chosen is not refused by the digits of a program; everything else that
+    both must agree on is taken from there.
+
     Attributes:
         standoff: Gap between ball and surface at the start of a touch.
         search: How far beyond the expected contact the probe looks for the surface.
         clearance: Height of the tool above everything while it moves sideways.
-        room: Smallest gap between stylus, body, spindle and anything solid at a touch.
+        smallest_gap: Smallest gap between stylus, body, spindle and anything solid at a touch.
         overshoot: How far before a rotary position the last motion towards it begins, rad.
         steepest: Largest angle between the surface's normal and the tool axis, rad.
         retract: Below the upper end of Z's travel, where rotary axes may turn.
@@ -41,17 +46,17 @@ class PlanOptions:
         tolerated: How many requests may be refused before the whole plan is.
     """
 
-    standoff: float = 5.0
-    search: float = 3.0
+    standoff: float = ProbeReach.standoff
+    search: float = ProbeReach.search
     clearance: float = 20.0
-    room: float = 1.0
+    smallest_gap: float = 1.0
     overshoot: float = 5.0 * DEG
     steepest: float = 90.5 * DEG
     retract: float = 1.0
     anchor: str = ""
     anchor_tilt: float = 40.0 * DEG
     shortest_visit: int = 4
-    table_radius: float = TABLE_RADIUS
+    table_radius: float = ProbeReach.table_radius
     tolerated: int = 0
 
 
@@ -68,11 +73,19 @@ class Refusal:
 
     Attributes:
         request: Row of the requests; -1 for an anchor touch.
-        reason: One clear line.
+        feature: That it should touch.
+        rotary: Readings of the rotary axes by letter, rad.
+        reason: What is against it, as `ProbeReach.reasons` has it.
     """
 
     request: int
+    feature: str
+    rotary: Mapping[str, float]
     reason: str
+
+    def __str__(self) -> str:
+        place = " ".join(f"{a}{v / DEG:+.1f}" for a, v in self.rotary.items())
+        return f"{self.feature}, {place}: {self.reason}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from information.identifiability import Ties, short
-from report.maps.canvas import INK, figure, nothing
+from report.style import INK, figure, nothing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,7 +36,7 @@ def draw_ties(ties: Ties, most: int = _SHOWN) -> Figure:
         return nothing("No two parameters are tied by their correlation.")
     names = [short(ties.names[i]) for i in order]
     side = 0.215 * len(order)
-    drawn = figure(side + 2.6, side + 1.5)
+    drawn = figure(side + 1.5, side + 2.6)
     axes = drawn.subplots()
     r = ties.r[np.ix_(order, order)]
     mesh = axes.imshow(r, cmap="RdBu_r", vmin=-1.0, vmax=1.0)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from report.maps.canvas import GRID, INK, SHADES, axis_title, figure, nothing, reading_label, save
 from report.maps.regions_picture import draw_regions
 from report.maps.rotary_picture import draw_rotary
 from report.maps.sensitivity_pictures import maps_of_S, overview
+from report.style import INK, axis_title, figure, nothing, plain, reading_label, save, series
 from sensitivity.shares import region_totals, regions
 from sensitivity.study import Study
 from twin.frames import Array
@@ -133,7 +133,7 @@ def _volumetric_sections(study: Study) -> Figure:
     sections = study.sections
     if not sections:
         return nothing("Fewer than two readings have room to move.")
-    drawn = figure(3.0 * len(sections) + 0.8, 5.4)
+    drawn = figure(4.6)
     grid = drawn.subplots(2, len(sections), squeeze=False)
     kinds: list[tuple[list[Array], float, str, str]] = [
         ([s.volumetric.p95 for s in sections], UM, "viridis", "95 % quantile / µm"),
@@ -158,10 +158,10 @@ def _volumetric_axes(study: Study) -> Figure:
     free = study.workspace.open_axes
     if not free:
         return nothing("No reading has room to move.")
-    drawn = figure(2.9 * len(free) + 0.6, 3.2)
+    drawn = figure(3.0)
     grid = drawn.subplots(1, len(free), sharey=True, squeeze=False)[0]
     v = study.volumetric
-    curves = [(v.p95 / UM, SHADES[1], "95 % quantile"), (v.mean / UM, SHADES[0], "mean")]
+    curves = [(v.p95 / UM, series(1), "95 % quantile"), (v.mean / UM, series(0), "mean")]
     for axes, name in zip(grid, free, strict=True):
         label, unit = reading_label(study.chain, name)
         reading = study.q[:, study.chain.axis_index(name)] / unit
@@ -174,8 +174,7 @@ def _volumetric_axes(study: Study) -> Figure:
             axes.fill_between(middle, low, high, color=colour, alpha=0.18, lw=0)
             axes.plot(middle, median, color=colour, lw=1.8, label=what)
         axes.set_xlabel(label)
-        axes.grid(color=GRID, lw=0.6)
-        axes.spines[["top", "right"]].set_visible(False)
+        plain(axes)
     grid[0].set_ylabel("volumetric error / µm")
     grid[0].set_ylim(bottom=0.0)
     grid[-1].legend(frameon=False, fontsize=8, loc="lower right")
@@ -191,8 +190,8 @@ def _shares(study: Study) -> Figure:
     order = np.argsort(-mean, kind="stable")[:_BARS]
     order = order[mean[order] > 0.0]
     low, high = np.quantile(study.shares[:, order], (0.05, 0.95), axis=0)
-    colour = {link.name: SHADES[i % len(SHADES)] for i, link in enumerate(chain.links)}
-    drawn = figure(7.0, 0.2 * len(order) + 1.0)
+    colour = {link.name: series(i) for i, link in enumerate(chain.links)}
+    drawn = figure(0.2 * len(order) + 1.0)
     axes = drawn.subplots()
     y = np.arange(len(order))
     links = [chain.symbols[i].link for i in order]
@@ -206,9 +205,8 @@ def _shares(study: Study) -> Figure:
         "share of the variance of the deviation / %   "
         f"(the {len(order)} shown make {100.0 * mean[order].sum():.0f} % together)"
     )
-    axes.grid(axis="x", color=GRID, lw=0.6)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right", "left"]].set_visible(False)
+    plain(axes, "x")
+    axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0)
     present = [link for link in chain.links if link.name in links]
     axes.legend(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from report.maps.canvas import GRID, INK, SHADES, axis_title, figure, nothing
+from report.style import INK, axis_title, figure, nothing, plain, series
 from sensitivity.shares import Region, RegionTotals
 from twin.frames import Array
 from twin.machine import Chain
@@ -39,9 +39,9 @@ def draw_regions(
         return nothing("No error moves the tool point.")
     columns = min(_COLUMNS, len(shown))
     rows = -(-len(shown) // columns)
-    drawn = figure(3.5 * columns, 2.35 * rows + 0.5)
+    drawn = figure(2.35 * rows + 0.5)
     grid = drawn.subplots(rows, columns, squeeze=False, sharex=True)
-    colour = {link.name: SHADES[i % len(SHADES)] for i, link in enumerate(chain.links)}
+    colour = {link.name: series(i) for i, link in enumerate(chain.links)}
     for axes, k in zip(grid.ravel(), shown, strict=False):
         of_length = None if totals is None else (totals.total[k], totals.u[k])
         _tornado(axes, chain, regions[k], colour, of_length)
@@ -94,8 +94,6 @@ def _tornado(
     axes.set_xlim(min(0.0, axes.get_xlim()[0], low.min()), max(axes.get_xlim()[1], 1.04 * top))
     title = f"{region.words}\n{region.rms / UM:.0f} µm rms"
     axes.set_title(title, fontsize=9.5, loc="left", color=INK)
-    axes.grid(axis="x", color=GRID, lw=0.6)
-    axes.set_axisbelow(True)
+    plain(axes, "x")
     axes.tick_params(axis="y", length=0)
-    axes.tick_params(axis="x", labelsize=8.5)
-    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.spines["left"].set_visible(False)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from report.maps.canvas import figure, nothing, reading_label
+from report.style import LINE, figure, nothing, reading_label
 from sensitivity.first_order import Workspace, covariance, normal_length, sensitivity
 from sensitivity.study import Study, has_volume
 from twin.frames import Array
@@ -26,7 +26,7 @@ _SHOWN = 4  # maps in a row
 _STILL = 0.02  # relative range of S below which its map would be one colour
 _ALIKE = 0.98  # correlation of two maps of S that show the same
 _SLACK = 1e-9  # mm
-_BEYOND = "#e3e3e3"
+_BEYOND = LINE
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +110,7 @@ def draw_rotary(study: Study) -> Figure:
         for p in points
     ]
     symbols = _moving(study, points[-1])
-    drawn = figure(2.75 * _SHOWN + 0.5, 2.6 * (1 + bool(symbols)))
+    drawn = figure(2.4 * (1 + bool(symbols)))
     grid = drawn.subplots(1 + bool(symbols), _SHOWN, squeeze=False)
     span = (min(np.nanmin(v) for v in p95), max(np.nanmax(v) for v in p95))
     for axes, point, values in zip(grid[0], points, p95, strict=True):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from report.maps.canvas import GRID, INK, SHADES, axis_title, figure, nothing, reading_label
+from report.style import INK, NEUTRAL, axis_title, figure, nothing, plain, reading_label, series
 from sensitivity.first_order import Workspace, section, sensitivity
 from sensitivity.study import Study
 from twin.frames import Array
@@ -31,7 +31,7 @@ def _unit(symbol: Symbol) -> float:
 def overview(study: Study) -> Figure:
     """Table of S: rows are links, columns the six components, for functions and for constants."""
     chain = study.chain
-    drawn = figure(12.5, 0.42 * len(chain.links) + 1.6)
+    drawn = figure(0.42 * len(chain.links) + 1.6)
     component, constant = drawn.subplots(1, 2, sharey=True)
     rows = {link.name: i for i, link in enumerate(chain.links)}
     each = [(component, True, "component errors"), (constant, False, "location and set-up errors")]
@@ -65,7 +65,7 @@ def _cell(axes: Any, row: int, symbol: Symbol, S: Array, largest: float) -> None
     shade = float(S.mean()) / (largest if symbol.is_angular else 2.0)
     colour = colormaps["YlGnBu" if symbol.is_angular else "Greys"](0.75 * min(shade, 1.0))
     corner = (symbol.component - 0.48, row - 0.46)
-    axes.add_patch(Rectangle(corner, 0.96, 0.92, facecolor=colour, edgecolor="#c9d1d8", lw=0.6))
+    axes.add_patch(Rectangle(corner, 0.96, 0.92, facecolor=colour, edgecolor=NEUTRAL, lw=0.6))
     same = high - low < 0.005
     text = f"{round(high, 3) + 0.0:.3g}" if same else f"{low:.2f} – {high:.2f}"
     dark = 0.299 * colour[0] + 0.587 * colour[1] + 0.114 * colour[2] < 0.55
@@ -101,7 +101,7 @@ def maps_of_S(study: Study) -> Figure:
         return nothing("No sensitivity depends on the pose.")
     columns = min(_COLUMNS, len(moving))
     rows = -(-len(moving) // columns)
-    drawn = figure(2.3 * columns, 2.0 * rows, layout=None)  # constrained: seconds for 36 maps
+    drawn = figure(1.85 * rows, layout=None)  # constrained: seconds for 36 maps
     gap = {"left": 0.5, "right": 0.35, "bottom": 0.4, "top": 0.3}  # inch
     width, height = drawn.get_size_inches()
     drawn.subplots_adjust(
@@ -136,10 +136,9 @@ def _map_of_S(axes: Any, workspace: Workspace, symbol: Symbol, readings: list[st
         a = np.linspace(*workspace.limit(readings[0]), _CURVE)
         q[:, chain.axis_index(readings[0])] = a
         S = sensitivity(chain, q, length, [symbol])[:, 0]
-        axes.plot(a / unit_a, S / _unit(symbol), color=SHADES[0], lw=1.6)
+        axes.plot(a / unit_a, S / _unit(symbol), color=series(0), lw=1.6)
         axes.set_ylim(bottom=0.0)
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.grid(color=GRID, lw=0.5)
+        plain(axes)
         return
     a, b, q = section(workspace, readings[0], readings[1], _PLANE)
     S = sensitivity(chain, q, length, [symbol])[:, 0].reshape(_PLANE, _PLANE)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from report.maps.canvas import GRID, INK, SHADES, figure, reading_label, save
+from report.style import INK, figure, plain, reading_label, save, series
 from sensitivity.montecarlo import Volumetric
 from sensitivity.study import AlongPath, Study, Trajectory
 from twin.effects import ComponentError
@@ -31,11 +31,11 @@ def axis_effect_picture(effect: AlongPath) -> tuple[Figure, str]:
     path = effect.trajectory
     drawn, axes, beside = _sheet(path)
     axes.plot(path.along, effect.size / UM, color=INK, lw=2.4, label="together")
-    for colour, name in zip(SHADES, effect.dominant[:_SHOWN], strict=False):
-        axes.plot(path.along, effect.each[name] / UM, color=colour, lw=1.4, label=name)
+    for k, name in enumerate(effect.dominant[:_SHOWN]):
+        axes.plot(path.along, effect.each[name] / UM, color=series(k), lw=1.4, label=name)
     _finish(axes)
-    for colour, letter, d in zip(SHADES, "xyz", effect.deviation.T, strict=False):
-        beside.plot(path.along, d / UM, color=colour, lw=1.4, label=letter)
+    for k, (letter, d) in enumerate(zip("xyz", effect.deviation.T, strict=True)):
+        beside.plot(path.along, d / UM, color=series(k), lw=1.4, label=letter)
     _finish(beside)
     beside.set_ylabel("deviation in x, y, z of the table / µm")
     first = effect.dominant[0] if effect.dominant else "nothing"
@@ -62,17 +62,17 @@ def statistics_picture(
     """
     drawn, axes, beside = _sheet(path)
     axes.fill_between(
-        path.along, found.quantile[0] / UM, found.quantile[-1] / UM, color=SHADES[0], alpha=0.18,
+        path.along, found.quantile[0] / UM, found.quantile[-1] / UM, color=series(0), alpha=0.18,
         lw=0, label="P50 to P99",
     )  # fmt: skip
-    axes.plot(path.along, found.mean / UM, color=SHADES[0], lw=1.8, label="mean")
-    axes.plot(path.along, found.p95 / UM, color=SHADES[1], lw=1.8, label="P95")
+    axes.plot(path.along, found.mean / UM, color=series(0), lw=1.8, label="mean")
+    axes.plot(path.along, found.p95 / UM, color=series(1), lw=1.8, label="P95")
     axes.plot(path.along, closed_p95 / UM, ":", color=INK, lw=1.2, label="P95 if all were normal")
     _finish(axes)
-    beside.plot(path.along, 100.0 * found.recurrence, color=SHADES[2], lw=1.6,
+    beside.plot(path.along, 100.0 * found.recurrence, color=series(2), lw=1.6,
                 label="among the worst 5 %")  # fmt: skip
     if np.isfinite(found.tolerance):
-        beside.plot(path.along, 100.0 * found.exceedance, color=SHADES[3], lw=1.6,
+        beside.plot(path.along, 100.0 * found.exceedance, color=series(3), lw=1.6,
                     label=f"beyond {found.tolerance / UM:.6g} µm")  # fmt: skip
     _finish(beside)
     beside.set_ylabel("share of the machines / %")
@@ -82,13 +82,13 @@ def statistics_picture(
 
 def _sheet(path: Trajectory) -> tuple[Figure, Axes, Axes]:
     """Two diagrams over the way, and below them the readings."""
-    drawn = figure(9.6, 4.8)
+    drawn = figure(4.8)
     grid = drawn.subplots(2, 2, sharex=True, height_ratios=(3.0, 1.0))
     for below in grid[1]:
-        for colour, name in zip(SHADES, path.moving, strict=False):
+        for k, name in enumerate(path.moving):
             label, unit = reading_label(path.chain, name)
             reading = path.q[:, path.chain.axis_index(name)] / unit
-            below.plot(path.along, reading, color=colour, lw=1.2, label=label)
+            below.plot(path.along, reading, color=series(k), lw=1.2, label=label)
         below.set_xlabel("share of the way")
         below.set_ylabel("reading")
         below.legend(frameon=False, fontsize=7, ncols=3, loc="lower center",
@@ -107,8 +107,7 @@ def _finish(axes: Axes) -> None:
 
 
 def _plain(axes: Axes) -> None:
-    axes.grid(color=GRID, lw=0.6)
-    axes.spines[["top", "right"]].set_visible(False)
+    plain(axes)
     axes.margins(x=0.0)
 
 

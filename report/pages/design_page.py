@@ -7,7 +7,6 @@ import numpy as np
 
 from artefact.body import FreeformPatch, max_slope, min_concave_radius
 from artefact.worth import CRITERIA, touch_curve
-from report.maps import save
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
 from report.pages.page import digits, percent, write_page
@@ -20,6 +19,7 @@ from report.plots import (
     write_touches_picture,
 )
 from report.scenes import draw_standard
+from report.style import save
 from twin.errors import DesignError
 from twin.units import DEG, UM
 

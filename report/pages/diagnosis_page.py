@@ -19,7 +19,6 @@ from report.pages.residual_section import (
     setting,
 )
 from report.plots import (
-    CLASSES,
     draw_candidates,
     draw_effect,
     draw_fall,
@@ -29,6 +28,7 @@ from report.plots import (
     is_form,
     is_spread,
 )
+from report.style import series
 from report.words import (
     named_value,
     remark_sentence,
@@ -130,7 +130,7 @@ def _effect(result: Diagnosis, i: int, place: Path) -> dict[str, Any]:
     """What is told of one added effect, with its pictures."""
     step = result.steps[i]
     assert step.effect is not None
-    colour = CLASSES[(i - 1) % len(CLASSES)]
+    colour = series(i - 1)
     name = f"effect_{i}.png"
     form = is_form(result.fit, step.effect)
     if form:

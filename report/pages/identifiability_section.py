@@ -7,9 +7,10 @@ from typing import Any
 
 from artefact.compare import Alone, IdentifiabilityReport
 from information.identifiability import NEVER, STRONG, Degree, FreedomWords, short, ties
-from report.maps import draw_ties, save
+from report.maps import draw_ties
 from report.pages.design_result import Design
 from report.pages.page import digits
+from report.style import save
 from twin.machine import Link
 from twin.units import DEG, shown
 

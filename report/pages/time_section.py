@@ -8,6 +8,7 @@ from probe_paths.campaign import Order, orders, probing_time
 from probe_paths.plan import Probe
 from report.pages.design_result import Design
 from report.pages.page import percent
+from report.words import ordering_words
 from twin.units import HOUR, MINUTE, UM, URAD
 
 
@@ -43,7 +44,7 @@ def order_content(design: Design) -> dict[str, Any]:
 
 def _row(order: Order) -> dict[str, Any]:
     return {
-        "name": order.name,
+        "name": ordering_words(order.ordering),
         "touches": order.touches,
         "minutes": order.duration / MINUTE,
         "drift_um_h": order.drift / UM,

@@ -2,7 +2,6 @@
 
 from report.plots.effect_pictures import draw_candidates, draw_effect, draw_fall, draw_rivals
 from report.plots.form_pictures import draw_form, is_form
-from report.plots.ink import CLASSES
 from report.plots.pattern_pictures import draw_pattern
 from report.plots.plan_pictures import write_order_picture, write_touches_picture
 from report.plots.proof_picture import write_proof_picture
@@ -11,7 +10,6 @@ from report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, ha
 from report.plots.touch_curve_picture import draw_touch_curves
 
 __all__ = [
-    "CLASSES",
     "draw_candidates",
     "draw_effect",
     "draw_fall",

@@ -8,20 +8,22 @@ import numpy as np
 from diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
 from diagnosis.fit import BoolArray, Fit
 from diagnosis.residual import Partial, partial
-from report.plots.ink import (
+from report.plots.residual_pictures import binned, kept
+from report.style import (
     BLUE,
-    CLASSES,
+    FAINT,
     INK,
     LINE,
+    NEUTRAL,
     ORANGE,
     RED,
     SOFT,
-    new_figure,
+    figure,
     plain,
     save,
+    series,
     tidy,
 )
-from report.plots.residual_pictures import binned, kept
 from report.words import microns
 from twin.frames import Array
 from twin.model import Effect
@@ -48,8 +50,8 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
         diagnosis: With one step or more.
     """
     steps = diagnosis.steps
-    figure = new_figure(3.9)
-    ax = figure.subplots()
+    drawn = figure(3.9)
+    ax = drawn.subplots()
     x = np.arange(len(steps))
     fitted = np.array([s.fit.rms for s in steps]) / UM
     held = np.array([s.fit.test_rms for s in steps]) / UM
@@ -76,10 +78,9 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
     ax.set_xlim(-0.5, max(len(steps) - 0.5, 1.5))
     ax.set_xticks(x, [_step_words(s) for s in steps], fontsize=8.5)
     ax.set_ylabel("root mean square error in µm")
-    plain(ax)
-    ax.grid(axis="x", visible=False)
-    figure.legend(fontsize=8.5, frameon=False, loc="outside upper center", ncols=4)
-    save(figure, path)
+    plain(ax, "y")
+    drawn.legend(fontsize=8.5, frameon=False, loc="outside upper center", ncols=4)
+    save(drawn, path)
 
 
 def _held_words(diagnosis: Diagnosis) -> str:
@@ -122,8 +123,8 @@ def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
         diagnosis: With at least one candidate.
     """
     shown = [c for c in diagnosis.candidates if np.isfinite(c.log_odds)][:MOST_BARS]
-    figure = new_figure(1.3 + 0.25 * max(len(shown), 3))
-    ax = figure.subplots()
+    drawn = figure(1.3 + 0.25 * max(len(shown), 3))
+    ax = drawn.subplots()
     odds = np.array([c.log_odds for c in shown]) / TEN
     y = np.arange(len(shown))[::-1]
     ax.barh(y, odds, 0.72, color=[_class_colour(diagnosis, c) for c in shown])
@@ -142,10 +143,9 @@ def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
     ax.set_xlabel("evidence for the effect by itself against none: powers of ten of the odds")
     ax.margins(x=0.14)
     ax.set_ylim(-0.7, len(shown) - 0.3)
-    plain(ax)
-    ax.grid(axis="y", visible=False)
-    _class_legend(figure, diagnosis)
-    save(figure, path)
+    plain(ax, "x")
+    _class_legend(drawn, diagnosis)
+    save(drawn, path)
 
 
 def _classes(diagnosis: Diagnosis) -> list[tuple[Effect, tuple[str, ...], str]]:
@@ -155,16 +155,16 @@ def _classes(diagnosis: Diagnosis) -> list[tuple[Effect, tuple[str, ...], str]]:
         if step.effect is not None:
             rivals = step.confusion.rivals if step.confusion else ()
             names = (step.effect.name, *(r.effect.name for r in rivals))
-            out.append((step.effect, names, CLASSES[k % len(CLASSES)]))
+            out.append((step.effect, names, series(k)))
     return out
 
 
 def _class_colour(diagnosis: Diagnosis, candidate: Candidate) -> str:
     """Colour of the found effect that a candidate is, or cannot be told from."""
-    return next((c for _, names, c in _classes(diagnosis) if candidate.effect in names), "#c3cad3")
+    return next((c for _, names, c in _classes(diagnosis) if candidate.effect in names), NEUTRAL)
 
 
-def _class_legend(figure: Any, diagnosis: Diagnosis) -> None:
+def _class_legend(drawn: Any, diagnosis: Diagnosis) -> None:
     from matplotlib.patches import Patch
 
     classes = _classes(diagnosis)
@@ -173,8 +173,8 @@ def _class_legend(figure: Any, diagnosis: Diagnosis) -> None:
         for effect, names, colour in classes
     ]
     if handles:
-        handles.append(Patch(color="#c3cad3", label="other effects"))
-        figure.legend(
+        handles.append(Patch(color=NEUTRAL, label="other effects"))
+        drawn.legend(
             handles=handles, fontsize=8, frameon=False, loc="outside lower center", ncols=2
         )
 
@@ -192,8 +192,8 @@ def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE)
     names = [confusion.effect.name, *(r.effect.name for r in rows)]
     behind = np.array([0.0, *(max(r.log_odds, -CONFUSED) for r in rows)]) / TEN
     alike = 1 + min(len(confusion.rivals), MOST_BARS)
-    figure = new_figure(1.1 + 0.25 * len(names))
-    ax = figure.subplots()
+    drawn = figure(1.1 + 0.25 * len(names))
+    ax = drawn.subplots()
     y = np.arange(len(names))[::-1]
     ax.axvspan(-CONFUSED / TEN, CONFUSED / TEN, color=LINE, alpha=0.45, lw=0)
     ax.axvline(0.0, color=INK, lw=0.9)
@@ -216,9 +216,8 @@ def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE)
     )
     ax.margins(x=0.12)
     ax.set_ylim(-0.7, len(names) - 0.3)
-    plain(ax)
-    ax.grid(axis="y", visible=False)
-    save(figure, path)
+    plain(ax, "x")
+    save(drawn, path)
 
 
 def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) -> None:
@@ -231,8 +230,8 @@ def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) 
         colour: Of its course.
     """
     found = partial(fit, effect)
-    figure = new_figure(3.9)
-    left, right = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
+    drawn = figure(3.9)
+    left, right = drawn.subplots(1, 2, width_ratios=(1.35, 1.0))
     tested = np.ones(len(found.rows), dtype=bool)
     tested[: int(fit.used.sum())] = False
     for ax, y, title in (
@@ -250,7 +249,7 @@ def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) 
     right.set_ylim(0.5 * (low - high), 0.5 * (high - low))  # about zero, as large a scale
     left.set_ylabel(found.quantity)
     left.legend(fontsize=8, frameon=False)
-    save(figure, path)
+    save(drawn, path)
 
 
 def _limits(found: Partial) -> tuple[float, float]:
@@ -284,7 +283,7 @@ def _roughness(found: Partial) -> float:
 def _touches(ax: Any, found: Partial, y: Array, tested: BoolArray) -> None:
     """Touches as points, held-out ones apart, and means with standard errors."""
     for rows, colour, word in (
-        (found.shown[~tested[found.shown]], "#9aa4b1", "touches"),
+        (found.shown[~tested[found.shown]], FAINT, "touches"),
         (found.shown[tested[found.shown]], "#d9b26a", "touches held out"),
     ):
         if len(rows):

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.fit import BoolArray, Fit
-from report.plots.ink import DIVERGING, INK, new_figure, plain, robust_limit, save
+from report.style import DIVERGING, INK, figure, plain, robust_limit, save
 from twin.frames import Array
 from twin.model import Effect, columns
 from twin.units import UM
@@ -32,8 +32,8 @@ def draw_form(path: str | Path, fit: Fit, effect: Effect) -> None:
     explained = (columns([effect], touches) @ fit.theta[fit.of_effect(effect.name)])[rows] / UM
     left_over = fit.residual[rows] / UM
     place = _flat(touches.point[rows])
-    figure = new_figure(3.9)
-    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    drawn = figure(3.9)
+    axes = drawn.subplots(1, 2, sharex=True, sharey=True)
     limit = robust_limit(explained + left_over, 0.98)
     style: dict[str, Any] = {"cmap": DIVERGING, "vmin": -limit, "vmax": limit}
     if np.linalg.matrix_rank(place - place.mean(axis=0)) == 2:
@@ -49,9 +49,9 @@ def draw_form(path: str | Path, fit: Fit, effect: Effect) -> None:
         ax.margins(0.06)
         plain(ax)
     axes[0].set_ylabel("across the patch in mm")
-    bar = figure.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.9, extend="both")
+    bar = drawn.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.9, extend="both")
     bar.set_label("deviation along the normal, µm", fontsize=8.5)
-    save(figure, path)
+    save(drawn, path)
 
 
 def _on_patch(fit: Fit, effect: Effect) -> BoolArray:

@@ -8,18 +8,19 @@ import numpy as np
 
 from diagnosis.fit import Fit
 from diagnosis.residual import SEES, Structure, directions, groups, variables
-from report.plots.ink import (
+from report.plots.residual_pictures import binned, kept
+from report.style import (
     BLUE,
     DIVERGING,
+    FAINT,
     INK,
     SOFT,
     axis_of,
-    new_figure,
+    figure,
     plain,
     robust_limit,
     save,
 )
-from report.plots.residual_pictures import binned, kept
 from twin.frames import Array
 from twin.record import IntArray
 from twin.units import UM
@@ -52,8 +53,8 @@ def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Ge
     rows, r, weight = _seen(fit, found.direction)
     names, x = _axes(found, {name: known[name][rows] for name in found.variables})
     word = "the normal" if found.direction == "normal" else found.direction
-    figure = new_figure(3.7 if len(x) == 1 else 4.3)
-    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    drawn = figure(3.7 if len(x) == 1 else 4.3)
+    axes = drawn.subplots(1, 2, sharex=True, sharey=True)
     both = (r, rng.permutation(r))
     if len(x) == 1:
         limit = robust_limit(r, 0.99)
@@ -62,13 +63,13 @@ def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Ge
         axes[0].set_ylabel(f"residual along {word} in µm")
     else:
         label = f"mean residual of {NEIGHBOURS} neighbours along {word}, µm"
-        _maps(figure, axes, x, [_map(x, values, weight) for values in both], label)
+        _maps(drawn, axes, x, [_map(x, values, weight) for values in both], label)
         axes[0].set_ylabel(names[1])
     for ax, title in zip(axes, ("as measured", "shuffled: what chance makes"), strict=True):
         ax.set_xlabel(names[0])
         ax.set_title(title, fontsize=9.5, loc="left", color=INK)
         plain(ax)
-    save(figure, path)
+    save(drawn, path)
     return True
 
 
@@ -92,13 +93,13 @@ def _seen(fit: Fit, direction: str) -> tuple[IntArray, Array, Array]:
     return rows, fit.residual[rows] / (seen * UM), (seen / fit.run.u[rows]) ** 2
 
 
-def _maps(figure: Any, axes: Array, x: Array, values: Sequence[Array], label: str) -> None:
+def _maps(drawn: Any, axes: Array, x: Array, values: Sequence[Array], label: str) -> None:
     """Touches over two variables, coloured by values, on one scale."""
     limit = robust_limit(values[0], 1.0)
     style: dict[str, Any] = {"s": 17, "lw": 0.3, "ec": "#00000030", "cmap": DIVERGING}
     for ax, colour in zip(axes, values, strict=True):
         marks = ax.scatter(*x, c=colour, vmin=-limit, vmax=limit, **style)
-    figure.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.85).set_label(label, fontsize=8.5)
+    drawn.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.85).set_label(label, fontsize=8.5)
 
 
 def _map(x: Array, r: Array, weight: Array) -> Array:
@@ -120,7 +121,7 @@ def _course(ax: Any, x: Array, r: Array, weight: Array, limit: float) -> None:
     """Touches and means over one variable."""
     shown = kept(len(r))
     ax.axhline(0.0, color=SOFT, lw=0.8)
-    ax.plot(x[shown], np.clip(r[shown], -limit, limit), ".", ms=2.0, color="#9aa4b1", alpha=0.6)
+    ax.plot(x[shown], np.clip(r[shown], -limit, limit), ".", ms=2.0, color=FAINT, alpha=0.6)
     at, mean, error = binned(x, r, weight, BINS)
     ax.errorbar(at, mean, error, fmt="o-", ms=4, lw=1.2, color=BLUE, zorder=3)
     ax.set_ylim(-1.05 * limit, 1.05 * limit)

@@ -7,10 +7,8 @@ import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch
 from probe_paths.plan import TouchPlan
-from twin.files import written_whole
+from report.style import BLUE, INK, RED, SOFT, figure, plain, save
 from twin.units import DEG
-
-_DPI = 140
 
 
 def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:
@@ -20,13 +18,11 @@ def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:
         path: PNG.
         plan: What is touched.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(10.5, 4.6), layout="constrained")
-    top, side = figure.subplots(1, 2, width_ratios=(1.0, 1.25))
+    drawn = figure(4.4)
+    top, side = drawn.subplots(1, 2, width_ratios=(1.0, 1.25))
     for ax, (i, j) in ((top, (0, 1)), (side, (0, 2))):
         _outlines(ax, plan, i, j)
-        for is_sphere, colour, label in ((False, "#14558f", "patch"), (True, "#c2571a", "sphere")):
+        for is_sphere, colour, label in ((False, BLUE, "patch"), (True, RED, "sphere")):
             rows = np.array(
                 [isinstance(plan.standard.features[f], DatumSphere) for f in plan.feature]
             )
@@ -48,10 +44,11 @@ def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:
         ax.set_aspect("equal")
         ax.set_xlabel("x in mm")
         ax.set_ylabel(f"{'xyz'[j]} in mm")
+        plain(ax)
     top.set_title("from above", loc="left")
     side.set_title("from the side", loc="left")
     side.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False)
-    _save(figure, path)
+    save(drawn, path)
 
 
 def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
@@ -74,13 +71,13 @@ def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
             edge = centre + surface.radius * circle
         else:
             continue
-        ax.plot(edge[:, i], edge[:, j], color="#7d8794", lw=0.8)
+        ax.plot(edge[:, i], edge[:, j], color=SOFT, lw=0.8)
         ax.text(
             centre[i],
             centre[j],
             name,
             fontsize=7,
-            color="#3d4652",
+            color=INK,
             ha="center",
             va="center",
             bbox={"facecolor": "white", "alpha": 0.65, "lw": 0, "pad": 0.6},
@@ -94,18 +91,16 @@ def write_order_picture(path: str | Path, plan: TouchPlan) -> None:
         path: PNG.
         plan: In the order of execution.
     """
-    from matplotlib.figure import Figure
-
     axes = plan.chain.rotary_axes
-    figure = Figure(figsize=(10.5, 1.0 + 1.5 * max(len(axes), 1)), layout="constrained")
-    panels = np.atleast_1d(figure.subplots(max(len(axes), 1), 1, sharex=True))
+    drawn = figure(1.0 + 1.5 * max(len(axes), 1))
+    panels = np.atleast_1d(drawn.subplots(max(len(axes), 1), 1, sharex=True))
     begin = np.searchsorted(plan.visit, np.arange(len(plan.visits)))
     end = np.append(begin[1:], len(plan))
     for k, axis in enumerate(axes):
         ax = panels[k]
         reading = np.array([v.rotary[k] for v in plan.visits]) / DEG
         side = np.array([v.side[k] for v in plan.visits])
-        ax.hlines(reading, begin, end, color="#14558f", lw=3)
+        ax.hlines(reading, begin, end, color=BLUE, lw=3)
         middle = 0.5 * (begin + end)
         for sign, marker in ((1, "^"), (-1, "v")):
             rows = side == sign
@@ -113,20 +108,15 @@ def write_order_picture(path: str | Path, plan: TouchPlan) -> None:
                 middle[rows],
                 reading[rows],
                 marker,
-                color="#c2571a",
+                color=RED,
                 ms=5,
                 label=f"reached {'upwards' if sign > 0 else 'downwards'}",
             )
-        ax.set_ylabel(f"{axis} in degrees")
+        ax.set_ylabel(f"{axis} in °")
         ax.margins(y=0.15)
-        ax.grid(alpha=0.25)
+        plain(ax)
     panels[-1].set_xlabel("touch, in the order of execution")
     panels[0].legend(
         loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False
     )
-    _save(figure, path)
-
-
-def _save(figure: Any, path: str | Path) -> None:
-    with written_whole(path) as part:
-        figure.savefig(part, dpi=_DPI, format="png")
+    save(drawn, path)

@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer import Proof
-from twin.files import written_whole
+from report.style import BLUE, RED, SOFT, figure, plain, save, series
 from twin.units import UM
-
-_BEFORE, _AFTER = "#b3261e", "#14558f"
 
 
 def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
@@ -20,15 +18,13 @@ def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
         path: PNG.
         proofs: One a simulated machine.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(10.5, 4.2), layout="constrained")
-    left, right = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
+    drawn = figure(4.0)
+    left, right = drawn.subplots(1, 2, width_ratios=(1.5, 1.0))
     edges = np.geomspace(0.05, 1000.0, 81)
     for k, proof in enumerate(proofs):
         for vectors, colour, word in (
-            (proof.before, _BEFORE, "without a model"),
-            (proof.after, _AFTER, "not predicted by the identified model"),
+            (proof.before, RED, "without a model"),
+            (proof.after, BLUE, "not predicted by the identified model"),
         ):
             size = np.linalg.norm(vectors, axis=1) / UM
             left.hist(
@@ -47,8 +43,8 @@ def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
     left.legend(fontsize=8, loc="upper left", frameon=False)
     left.set_title(f"{len(proofs)} random machine{'s' * (len(proofs) > 1)}", loc="left")
     _uncertainty(right, proofs)
-    with written_whole(path) as part:
-        figure.savefig(part, dpi=140, format="png")
+    plain(left)
+    save(drawn, path)
 
 
 def _uncertainty(ax: Any, proofs: Sequence[Proof]) -> None:
@@ -56,12 +52,12 @@ def _uncertainty(ax: Any, proofs: Sequence[Proof]) -> None:
     for k, proof in enumerate(proofs):
         ratio = np.sort(np.linalg.norm(proof.after, axis=1) / proof.u)
         share = np.arange(1, len(ratio) + 1) / len(ratio)
-        ax.plot(ratio, 100.0 * share, lw=1.4, label=f"machine {k + 1}")
-    ax.axvline(2.0, color="#7d8794", lw=0.8, ls="--")
+        ax.plot(ratio, 100.0 * share, lw=1.4, color=series(k), label=f"machine {k + 1}")
+    ax.axvline(2.0, color=SOFT, lw=0.8, ls="--")
     ax.set_xlim(0.0, 4.0)
     ax.set_ylim(0.0, 101.0)
     ax.set_xlabel("unpredicted error over its stated standard uncertainty")
     ax.set_ylabel("poses in %")
     ax.set_title("is the stated uncertainty honest?", loc="left")
     ax.legend(fontsize=8, loc="lower right", frameon=False)
-    ax.grid(alpha=0.25)
+    plain(ax)

@@ -9,14 +9,15 @@ import numpy as np
 
 from diagnosis.fit import Fit
 from diagnosis.residual import variables
-from report.plots.ink import (
+from report.style import (
     BLUE,
+    FAINT,
     INK,
     LINE,
     RED,
     SOFT,
     axis_of,
-    new_figure,
+    figure,
     plain,
     robust_limit,
     save,
@@ -141,8 +142,8 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[Panel]) -> 
     rows = fit.used
     r, weight = fit.residual[rows] / UM, 1.0 / fit.run.u[rows] ** 2
     count = max(1, -(-len(panels) // COLUMNS))
-    figure = new_figure(0.3 + 1.95 * count)
-    axes = figure.subplots(count, COLUMNS, sharey=True, squeeze=False)
+    drawn = figure(0.3 + 1.95 * count)
+    axes = drawn.subplots(count, COLUMNS, sharey=True, squeeze=False)
     limit = robust_limit(r, 0.995)
     for ax, panel in zip(axes.flat, panels, strict=False):
         label, values = axis_of(panel.name, panel.values)
@@ -159,7 +160,7 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[Panel]) -> 
         row[0].set_ylabel("residual in µm", fontsize=8.5)
     last = [row[min(COLUMNS, len(panels) - k * COLUMNS) - 1] for k, row in enumerate(axes)]
     _normalised_scale(last, fit)
-    save(figure, path)
+    save(drawn, path)
 
 
 def labelled(touches: Touches) -> list[tuple[str, Array, tuple[str, ...] | None]]:
@@ -186,9 +187,7 @@ def _panel(ax: Any, values: Array, r: Array, weight: Array, limit: float) -> Non
     """One variable: touches, means, the zero line."""
     shown = kept(len(r))
     ax.axhline(0.0, color=SOFT, lw=0.8)
-    ax.plot(
-        values[shown], np.clip(r[shown], -limit, limit), ".", ms=1.6, color="#9aa4b1", alpha=0.6
-    )
+    ax.plot(values[shown], np.clip(r[shown], -limit, limit), ".", ms=1.6, color=FAINT, alpha=0.6)
     x, mean, error = binned(values, r, weight)
     far = np.abs(mean) > 3.0 * np.maximum(error, 1e-12)
     for which, colour in ((~far, BLUE), (far, RED)):
@@ -226,13 +225,13 @@ def draw_normal_plot(path: str | Path, fit: Fit, z: Array | None = None) -> None
         z: Residuals over their standard uncertainty, (N,); None for `standardised(fit)`.
     """
     z = standardised(fit) if z is None else z
-    figure = new_figure(4.0)
-    left, right = figure.subplots(1, 2)
+    drawn = figure(4.0)
+    left, right = drawn.subplots(1, 2)
     _histogram(left, z[fit.used], fit.noise.factor)
     _normal_plot(right, fit, z)
     for ax in (left, right):
         plain(ax)
-    save(figure, path)
+    save(drawn, path)
 
 
 def _histogram(ax: Any, z: Array, factor: float) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.fit import BoolArray, Fit
-from report.plots.ink import (
+from report.style import (
     BLUE,
     DIVERGING,
     GREEN,
@@ -14,7 +14,8 @@ from report.plots.ink import (
     LINE,
     ORANGE,
     SOFT,
-    new_figure,
+    WASH,
+    figure,
     plain,
     robust_limit,
     save,
@@ -51,27 +52,27 @@ def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> Non
         fits: One model, seen in space and from above; or two models of the same run with a title
             each, such as before and after.
     """
-    figure = new_figure(4.2, layout=None)  # what lays out by itself cuts axes in space
+    drawn = figure(4.2, layout=None)  # what lays out by itself cuts axes in space
     limit = robust_limit(np.concatenate([f.residual[f.used] / UM for _, f in fits]))
     for (title, fit), left in zip(fits, (0.0, 0.435), strict=False):
-        ax = figure.add_axes((left, 0.03, 0.43, 0.9), projection="3d")
+        ax = drawn.add_axes((left, 0.03, 0.43, 0.9), projection="3d")
         marks = _points(ax, fit, limit, fit.run.touches.point)
         _standing(ax, fit.run.touches)
         ax.set_title(title, fontsize=10, color=INK, y=0.86)
     if len(fits) == 1:
-        flat = figure.add_axes((0.54, 0.13, 0.33, 0.78))
+        flat = drawn.add_axes((0.54, 0.13, 0.33, 0.78))
         _points(flat, fits[0][1], limit, fits[0][1].run.touches.point[:, :2])
         flat.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
         flat.set_title("from above", fontsize=10, color=INK)
         plain(flat)
         _name_features(flat, fits[0][1].run.touches)
-    bar = figure.colorbar(marks, cax=figure.add_axes((0.905, 0.14, 0.014, 0.72)), extend="both")
+    bar = drawn.colorbar(marks, cax=drawn.add_axes((0.905, 0.14, 0.014, 0.72)), extend="both")
     bar.set_label("residual in µm (positive: outside)", fontsize=9)
     bar.ax.tick_params(labelsize=8.5)
     if any(f.gross.rows.any() for _, f in fits):
-        handles = figure.axes[0].get_legend_handles_labels()
-        figure.legend(*handles, loc="lower left", fontsize=8.5, frameon=False)
-    save(figure, path)
+        handles = drawn.axes[0].get_legend_handles_labels()
+        drawn.legend(*handles, loc="lower left", fontsize=8.5, frameon=False)
+    save(drawn, path)
 
 
 def _name_features(ax: Any, touches: Touches) -> None:
@@ -130,7 +131,7 @@ def _standing(ax: Any, touches: Touches) -> None:
         axis.set_label_text(f"{letter} in mm", fontsize=8)
         axis.labelpad = 0.0 if letter != "z" else -3.0  # else it runs into the axes to the right
         axis.set_major_locator(_few_ticks())
-        axis.pane.set_facecolor("#f4f6f9")
+        axis.pane.set_facecolor(WASH)
         axis.pane.set_edgecolor(LINE)
         axis._axinfo["grid"].update(color=LINE, linewidth=0.6)
     ax.tick_params(labelsize=7.5, pad=0)
@@ -188,9 +189,9 @@ def draw_pose_arrows(path: str | Path, fit: Fit) -> None:
         fit: A fit of which `has_poses` is true.
     """
     rows, vectors, spread = pose_vectors(fit)
-    figure = new_figure(4.4)
-    left, right = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
-    _arrows(figure, left, fit, rows, vectors / UM, _is_sure(spread))
+    drawn = figure(4.4)
+    left, right = drawn.subplots(1, 2, width_ratios=(1.0, 1.15))
+    _arrows(drawn, left, fit, rows, vectors / UM, _is_sure(spread))
     number = np.arange(1, len(rows) + 1)
     for k, (letter, colour) in enumerate(zip("XYZ", (BLUE, ORANGE, GREEN), strict=True)):
         right.errorbar(
@@ -208,7 +209,7 @@ def draw_pose_arrows(path: str | Path, fit: Fit) -> None:
     right.set_ylabel("mean residual in machine directions, µm")
     right.legend(fontsize=8, frameon=False, ncols=3)
     plain(right)
-    save(figure, path)
+    save(drawn, path)
 
 
 def _where(touches: Touches, rows: IntArray) -> tuple[Array, Array, str, str]:
@@ -235,9 +236,7 @@ def _is_sure(spread: Array) -> BoolArray:
     return np.asarray(largest <= UNSURE * np.median(largest))
 
 
-def _arrows(
-    figure: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure: BoolArray
-) -> None:
+def _arrows(drawn: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure: BoolArray) -> None:
     """Arrows in X and Y at the rotary readings, coloured by Z; their longest marks the scale."""
     x, y, x_name, y_name = _where(fit.run.touches, rows)
     limit = robust_limit(vectors[sure, 2], 1.0)
@@ -265,5 +264,5 @@ def _arrows(
     ax.set_ylabel(y_name)
     ax.margins(0.22)
     plain(ax)
-    bar = figure.colorbar(marks, ax=ax, shrink=0.85)
+    bar = drawn.colorbar(marks, ax=ax, shrink=0.85)
     bar.set_label("along Z, µm (arrow: along X and Y)", fontsize=8.5)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from artefact.worth import TouchCurve
-from report.maps import GRID, INK, SHADES, figure
+from report.style import INK, LINE, figure, series
 from twin.units import UM
 
 if TYPE_CHECKING:
@@ -23,14 +23,14 @@ def draw_touch_curves(curves: Sequence[TouchCurve], noise: float) -> Figure:
         curves: One an artefact, the standard first: it is drawn heavier.
         noise: Standard deviation of one touch, mm.
     """
-    drawn = figure(10.5, 4.4)
+    drawn = figure(4.4)
     left, right = drawn.subplots(1, 2, sharey=True)
     for axes, title, user in ((left, "probed volume", False), (right, "your workspace", True)):
         for k, curve in enumerate(curves):
             _curve(axes, k, curve, (curve.rms_user if user else curve.rms) / UM)
         axes.set(xscale="log", yscale="log", xlabel=f"touches of {noise / UM:.3g} µm noise")
         axes.set_title(title, loc="left", fontsize=10.5, color=INK)
-        axes.grid(which="both", color=GRID, lw=0.6)
+        axes.grid(which="both", color=LINE, lw=0.6)
         axes.spines[["top", "right"]].set_visible(False)
         _plain_numbers(axes)
     left.set_ylabel("tool point not predicted / µm rms")
@@ -49,7 +49,7 @@ def _curve(axes: Any, k: int, curve: TouchCurve, values: Any) -> None:
         markevery=[curve.counts.index(curve.designed)],
         ms=9 if own else 6.5,
         markeredgecolor="white",
-        color=SHADES[k % len(SHADES)],
+        color=series(k),
         lw=2.6 if own else 1.5,
         ls="--" if curve.name.startswith(_NOT_A_BODY) else "-",
         zorder=5 if own else 3,

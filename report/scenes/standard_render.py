@@ -8,19 +8,15 @@ import numpy as np
 from artefact.body import DatumSphere, FreeformPatch, Standard, read_standard
 from cad_out.build import note_refusal, owners, read_stl
 from report.scenes.standard_scene import PICTURE, STANDARD, STL, VALUES
+from report.style import DIVERGING, LINE, RED, series
 from twin.errors import DesignError
 from twin.frames import Array, apply
 
 SIZE = (2000, 860)
 SIZE_WITH_BAR = (2200, 860)
 _BODY = "#b9bec4"
-_SPHERE = "#c0392b"
+_SPHERE = RED
 _PLANE = "#8fae8b"
-_BARE = "#dfe3e6"
-_FACES = (
-    "#2f6fb0", "#e08e2b", "#4f9d57", "#8a62a8", "#3aa6a6",
-    "#b5627b", "#7a8f2a", "#5b79c9", "#a6763f", "#4b8fa8",
-)  # fmt: skip
 _NAME_ROOM = 14.0  # mm in the picture between two names, one over the other
 _PITCH = 0.8  # mm, of the drawn grid of a face
 _VIEWS = ((38.0, 33.0), (218.0, 33.0))  # azimuth and elevation of the eye, deg
@@ -114,7 +110,7 @@ def _add_faces(plotter: Any, faces: list[Any]) -> None:
     for k, mesh in enumerate(faces):
         plotter.add_mesh(
             mesh,
-            color=_FACES[k % len(_FACES)],
+            color=series(k),
             smooth_shading=True,
             specular=0.3,
             specular_power=12,
@@ -128,9 +124,9 @@ def _add_values(plotter: Any, faces: list[Any], facts: dict[str, Any]) -> None:
 
     limit = float(facts["limit"])
     points, values = facts["points"], facts["values"]
-    shown = {"cmap": "RdBu_r", "clim": (-limit, limit), "show_scalar_bar": False, "ambient": 0.2}
+    shown = {"cmap": DIVERGING, "clim": (-limit, limit), "show_scalar_bar": False, "ambient": 0.2}
     for mesh in faces:
-        plotter.add_mesh(mesh, scalars="value", nan_color=_BARE, smooth_shading=True, **shown)
+        plotter.add_mesh(mesh, scalars="value", nan_color=LINE, smooth_shading=True, **shown)
     dots = pv.PolyData(np.asarray(points, dtype=float))
     dots["value"] = values
     balls = dots.glyph(geom=pv.Sphere(radius=1.1), scale=False, orient=False)
@@ -148,7 +144,7 @@ def _add_bar(plotter: Any, facts: dict[str, Any]) -> None:
     plotter.add_mesh(
         dot,
         scalars="value",
-        cmap="RdBu_r",
+        cmap=DIVERGING,
         clim=(-limit, limit),
         point_size=1,
         opacity=0.0,

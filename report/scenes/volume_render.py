@@ -7,11 +7,11 @@ import numpy as np
 
 from cad_out.build import note_refusal, read_stl
 from report.scenes.volume_scene import COLOURS, FACTS, IMAGE, PIXELS, STL, eye
+from report.style import INK, LINE
 from twin.errors import DesignError
 from twin.frames import Array
 
 _LEVELS = 5  # iso-surfaces between smallest and largest value
-_STANDARD = "#d4d6d9"
 
 
 def render(folder: str) -> None:
@@ -39,7 +39,7 @@ def _render(place: Path) -> None:
         _add_values(plotter, scene)
         if body is not None and np.isfinite(scene["T"]).all():
             placed = body.transform(scene["T"], inplace=False)
-            plotter.add_mesh(placed, color=_STANDARD, smooth_shading=True, ambient=0.25)
+            plotter.add_mesh(placed, color=LINE, smooth_shading=True, ambient=0.25)
         _aim(plotter, scene["camera"])
     plotter.set_background("white", all_renderers=True)
     plotter.enable_anti_aliasing("ssaa", all_renderers=True)
@@ -87,7 +87,7 @@ def _add_values(plotter: Any, scene: dict[str, Array]) -> None:
         surfaces = grid.contour(levels, scalars="value")
         if surfaces.n_points:
             plotter.add_mesh(surfaces, opacity=0.3, **shown)
-    plotter.add_mesh(grid.outline(), color="#22303c", line_width=2)
+    plotter.add_mesh(grid.outline(), color=INK, line_width=2)
 
 
 def _aim(plotter: Any, camera: Array) -> None:

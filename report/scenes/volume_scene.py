@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cad_out.build import run_apart
+from report.style import INK, RED, figure, save
 from twin.errors import DesignError, MissingLibrary, ShapeMismatch
-from twin.files import written_whole
 from twin.frames import Array
 
 if TYPE_CHECKING:
@@ -33,7 +33,6 @@ COLOURS = "viridis"
 """Even in lightness, and told apart without red and green."""
 
 _VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
-_INK, _AXIS = "#22303c", "#a3243b"
 _INCH = 4.4  # of one scene
 
 
@@ -99,8 +98,7 @@ def draw_volumes(pictures: Mapping[Path, Sequence[Scene]], stl: str | Path | Non
     for path, own in pictures.items():
         drawn = composed(own, images[start : start + len(own)])
         start += len(own)
-        with written_whole(path) as part:
-            drawn.savefig(part, dpi=150, format="png", facecolor="white")
+        save(drawn, path)
 
 
 def _camera(scene: Scene) -> Array:
@@ -148,18 +146,14 @@ def _rendered(scenes: Sequence[Scene], stl: Path | None) -> list[Array]:
 
 def composed(scenes: Sequence[Scene], images: Sequence[Array]) -> Figure:
     """Rendered scenes side by side with everything that is written on them."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     n = len(scenes)
-    drawn = Figure(figsize=(_INCH * n, _INCH * 1.2))
-    FigureCanvasAgg(drawn)
+    drawn = figure(_INCH * 1.2, _INCH * n, layout=None)
     for k, (scene, image) in enumerate(zip(scenes, images, strict=True)):
         axes = drawn.add_axes((k / n, 0.2 / 1.2, 1.0 / n, 1.0 / 1.2))
         axes.imshow(image, extent=(-1.0, 1.0, -1.0, 1.0), interpolation="antialiased")
         axes.set(xlim=(-1.12, 0.98), ylim=(-1.08, 1.02))  # room for ticks on the left, below
         axes.set_axis_off()
-        axes.text(0.0, 0.96, scene.title, ha="center", va="top", fontsize=10.5, color=_INK)
+        axes.text(0.0, 0.96, scene.title, ha="center", va="top", fontsize=10.5, color=INK)
         _ticks(axes, scene)
         _axis_lines(axes, scene)
         _bar(drawn.add_axes(((k + 0.14) / n, 0.125, 0.72 / n, 0.022)), scene)
@@ -193,9 +187,9 @@ def _ticks(axes: Any, scene: Scene) -> None:
         across = np.array([along[1], -along[0]]) / np.linalg.norm(along)
         across *= np.sign(across @ (places[-1] - centre)) or 1.0
         for tick, place in zip(ticks, places[:-1], strict=True):
-            axes.plot(*np.stack([place, place + 0.02 * across], axis=1), color=_INK, lw=0.9)
+            axes.plot(*np.stack([place, place + 0.02 * across], axis=1), color=INK, lw=0.9)
             x, y = place + (0.09 if i == 2 else 0.065) * across
-            axes.text(x, y, f"{tick:g}", ha="center", va="center", fontsize=8.5, color=_INK)
+            axes.text(x, y, f"{tick:g}", ha="center", va="center", fontsize=8.5, color=INK)
         x, y = places[-1] + (0.19 if i == 2 else 0.15) * across
         turn = np.degrees(np.arctan2(along[1], along[0]))
         axes.text(
@@ -205,7 +199,7 @@ def _ticks(axes: Any, scene: Scene) -> None:
             ha="center",
             va="center",
             fontsize=9.5,
-            color=_INK,
+            color=INK,
             rotation=turn,
             rotation_mode="anchor",
         )
@@ -223,9 +217,9 @@ def _axis_lines(axes: Any, scene: Scene) -> None:
         if np.linalg.norm(ends[1] - ends[0]) < 0.05:
             continue  # seen along itself
         halo = [withStroke(linewidth=2.5, foreground="white")]
-        axes.plot(ends[:, 0], ends[:, 1], color=_AXIS, lw=1.3, ls=(0, (8, 2, 1.5, 2)))
+        axes.plot(ends[:, 0], ends[:, 1], color=RED, lw=1.3, ls=(0, (8, 2, 1.5, 2)))
         x, y = ends[1] + 0.05 * (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-        look = {"color": _AXIS, "fontsize": 10.5, "weight": "bold", "path_effects": halo}
+        look = {"color": RED, "fontsize": 10.5, "weight": "bold", "path_effects": halo}
         axes.text(x, y, name, ha="center", va="center", **look)
 
 

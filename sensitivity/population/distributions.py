@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from twin.errors import DesignError
+from twin.errors import BadValue, DesignError
 from twin.machine import SHAPES, Chain, Family, ShapeName, Symbol, error_class
 
 CLASSES = ("linear_translation", "linear_rotation", "rotary_translation", "rotary_rotation")
@@ -27,24 +27,20 @@ class Mix:
 
     def __post_init__(self) -> None:
         if not self.shapes or any(s not in SHAPES for s in self.shapes):
-            raise DesignError(
-                f"shapes {list(self.shapes)}: expected at least one of {', '.join(SHAPES)}"
-            )
+            known = ", ".join(SHAPES)
+            raise BadValue("shapes", list(self.shapes), f"at least one of {known}")
         if len(set(self.shapes)) < len(self.shapes):
-            raise DesignError(f"shapes {list(self.shapes)}: expected each once, with a weight")
+            raise BadValue("shapes", list(self.shapes), "each once, with a weight")
         if not self.periods or min(self.periods) < 1 or len(set(self.periods)) < len(self.periods):
-            raise DesignError(
-                f"periods {list(self.periods)}: expected whole numbers from 1 up, each once"
-            )
+            expected = "whole numbers from 1 up, each once"
+            raise BadValue("periods", list(self.periods), expected)
         if self.weights and (
             len(self.weights) != len(self.shapes)
             or not all(0.0 <= w < float("inf") for w in self.weights)
             or not sum(self.weights) > 0.0
         ):
-            raise DesignError(
-                f"weights {list(self.weights)} of shapes {list(self.shapes)}: expected a number "
-                "from zero up for each, not all zero"
-            )
+            found = f"{list(self.weights)} for shapes {list(self.shapes)}"
+            raise BadValue("weights", found, "a number from zero up for each, not all zero")
 
     @property
     def chances(self) -> tuple[float, ...]:

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import LinearConstraint, minimize
 
-from information.selection.certificate import bound_at, certificate, relaxed, rounded
-from information.selection.touch_selection import DesignCriterion, Selection, exchange, fill
+from information.criteria.design_criterion import DesignCriterion
+from information.criteria.measures import Determinant, MeanVariance
+from information.selection.bound import bound_at
+from information.selection.certificate import certificate, relaxed, rounded
+from information.selection.touch_selection import Selection, exchange, fill
 from twin.errors import DesignError
 
 ROUNDING = 1e-9
@@ -19,42 +22,45 @@ def case(seed, rows, columns, is_determinant):
     rng = np.random.default_rng(seed)
     W = rng.normal(size=(rows, columns)) * np.linspace(3.0, 0.5, columns)
     half = rng.normal(size=(columns, columns))
-    return DesignCriterion(np.eye(columns), half @ half.T, is_determinant), W
+    measure = Determinant(columns) if is_determinant else MeanVariance(half @ half.T)
+    return DesignCriterion(np.eye(columns), measure), W
 
 
-def value_of(aim, W, weight):
+def value_of(criterion, W, weight):
     """By the definition, with nothing of the code that is tested."""
     M = np.eye(W.shape[1]) + W.T @ np.diag(weight) @ W
-    if aim.is_determinant:
+    if isinstance(criterion.measure, Determinant):
         return float(np.prod(np.linalg.eigvalsh(M)) ** (-1.0 / len(M)))
-    return float(np.trace(np.linalg.inv(M) @ aim.K))
+    return float(np.trace(np.linalg.inv(M) @ criterion.measure.K))
 
 
 @pytest.mark.parametrize("is_determinant", [False, True])
 def test_no_choice_beats_the_bound(is_determinant):
     rng = np.random.default_rng(5)
     for seed in range(10):
-        aim, W = case(seed, 11, 4, is_determinant)
-        best = min(value_of(aim, W, np.isin(np.arange(11), c)) for c in combinations(range(11), 5))
+        criterion, W = case(seed, 11, 4, is_determinant)
+        best = min(
+            value_of(criterion, W, np.isin(np.arange(11), c)) for c in combinations(range(11), 5)
+        )
         chosen = np.arange(11) < 5
-        found = relaxed(aim, W, 5, chosen, GAP)
+        found = relaxed(criterion, W, 5, chosen, GAP)
         assert found.bound <= best * (1.0 + ROUNDING)
         # the tangent at any information is a bound, tight or not
         x = rng.random(11)
-        assert bound_at(aim, W, W.T @ np.diag(x) @ W, 5)[0] <= best * (1.0 + ROUNDING)
+        assert bound_at(criterion, W, W.T @ np.diag(x) @ W, 5) <= best * (1.0 + ROUNDING)
 
 
 @pytest.mark.parametrize("is_determinant", [False, True])
 def test_fractions_are_those_of_a_foreign_optimiser(is_determinant):
-    aim, W = case(3, 30, 5, is_determinant)
-    found = relaxed(aim, W, 12, np.arange(30) < 12, GAP)
+    criterion, W = case(3, 30, 5, is_determinant)
+    found = relaxed(criterion, W, 12, np.arange(30) < 12, GAP)
     assert found.gap <= GAP
     assert found.weight.sum() == pytest.approx(12.0, abs=ROUNDING)
     assert found.weight.min() >= 0.0
     assert found.weight.max() <= 1.0
-    assert found.value == pytest.approx(value_of(aim, W, found.weight), rel=ROUNDING)
+    assert found.value == pytest.approx(value_of(criterion, W, found.weight), rel=ROUNDING)
     other = minimize(
-        lambda x: np.log(value_of(aim, W, x)),
+        lambda x: np.log(value_of(criterion, W, x)),
         np.full(30, 0.4),
         method="SLSQP",
         bounds=[(0.0, 1.0)] * 30,
@@ -68,36 +74,36 @@ def test_fractions_are_those_of_a_foreign_optimiser(is_determinant):
 
 @pytest.mark.parametrize("is_determinant", [False, True])
 def test_certified_efficiency_of_a_good_and_of_a_bad_choice(is_determinant):
-    aim, W = case(7, 2000, 10, is_determinant)
-    selection = Selection(aim, W)
+    criterion, W = case(7, 2000, 10, is_determinant)
+    selection = Selection(criterion, W)
     fill(selection, 40)
     exchange(selection)
-    good = certificate(aim, W, selection.chosen)
+    good = certificate(criterion, W, selection.chosen)
     assert 0.97 < good.efficiency <= 1.0
-    assert good.value == pytest.approx(value_of(aim, W, selection.chosen), rel=1e-6)
-    bad = certificate(aim, W, np.arange(2000) < 40)
+    assert good.value == pytest.approx(value_of(criterion, W, selection.chosen), rel=1e-6)
+    bad = certificate(criterion, W, np.arange(2000) < 40)
     assert bad.efficiency < 0.6
     assert bad.bound == pytest.approx(good.bound, rel=5e-3)  # the same bound from another start
-    best = relaxed(aim, W, 40, selection.chosen)
-    whole = rounded(aim, W, best.weight, 40)
+    best = relaxed(criterion, W, 40, selection.chosen)
+    whole = rounded(criterion, W, best.weight, 40)
     assert int(whole.chosen.sum()) == 40
     assert best.bound / whole.value > 0.97
     assert "40 of 2000 candidate touches: at least 9" in str(good)
 
 
 def test_determinant_by_updates_is_the_determinant():
-    aim, W = case(2, 60, 6, True)
-    selection = Selection(aim, W)
+    criterion, W = case(2, 60, 6, True)
+    selection = Selection(criterion, W)
     fill(selection, 20)
-    assert selection.value == pytest.approx(value_of(aim, W, selection.chosen), rel=ROUNDING)
+    assert selection.value == pytest.approx(value_of(criterion, W, selection.chosen), rel=ROUNDING)
     selection.drop(int(np.flatnonzero(selection.chosen)[3]))
-    assert selection.value == pytest.approx(value_of(aim, W, selection.chosen), rel=ROUNDING)
+    assert selection.value == pytest.approx(value_of(criterion, W, selection.chosen), rel=ROUNDING)
     gain = np.argmax(np.where(selection.chosen, -np.inf, selection.gains))
-    by_hand = [value_of(aim, W, selection.chosen | (np.arange(60) == i)) for i in range(60)]
+    by_hand = [value_of(criterion, W, selection.chosen | (np.arange(60) == i)) for i in range(60)]
     assert gain == np.argmin(np.where(selection.chosen, np.inf, by_hand))
 
 
 def test_a_start_of_another_size_is_refused():
-    aim, W = case(1, 10, 3, False)
+    criterion, W = case(1, 10, 3, False)
     with pytest.raises(DesignError, match="4 of 10 touches to start from, 5 wanted"):
-        relaxed(aim, W, 5, np.arange(10) < 4)
+        relaxed(criterion, W, 5, np.arange(10) < 4)

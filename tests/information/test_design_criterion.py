@@ -1,6 +1,5 @@
 """Criteria: published designs, brute force over all choices, bounds under shares."""
 
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -8,14 +7,16 @@ import pytest
 
 from information.criteria.design_criterion import (
     DesignCriterion,
-    determinant,
-    parameters,
-    purpose,
+    five_criteria,
+    mean_prediction,
     robust,
     with_potential,
-    without_potential,
-    worst_pattern,
-    worst_pose,
+)
+from information.criteria.measures import (
+    Determinant,
+    LargestEigenvalue,
+    LargestVariance,
+    MeanVariance,
 )
 from information.selection.certificate import relaxed, rounded
 from information.selection.shares import keeps, largest_sum
@@ -40,16 +41,20 @@ PUBLISHED = {  # weights at -1, 0, 1 for a parabola (Pukelsheim 1993; Kiefer and
 }
 
 
+def mean_variance(K):
+    return DesignCriterion(np.eye(len(K)), MeanVariance(K))
+
+
 def parabola():
-    mean = DesignCriterion(np.eye(3), MOMENTS)
-    unit = parameters(mean)
-    return {
-        "I": mean,
-        "A": unit,
-        "D": determinant(mean),
-        "E": worst_pattern(unit),
-        "G": worst_pose(mean, np.repeat(QUADRATIC[:, None], 3, axis=1), np.ones(3)),
+    roots = np.repeat(QUADRATIC[:, :, None], 3, axis=2)
+    measures = {
+        "I": MeanVariance(MOMENTS),
+        "A": MeanVariance(np.eye(3)),
+        "D": Determinant(3),
+        "E": LargestEigenvalue.of(np.eye(3)),
+        "G": LargestVariance(roots, np.zeros((3, 3))),
     }
+    return {name: DesignCriterion(np.eye(3), measure) for name, measure in measures.items()}
 
 
 @pytest.mark.parametrize("name", list(PUBLISHED))
@@ -57,11 +62,11 @@ def test_published_designs_of_the_parabola(name):
     W, place = np.repeat(SLACK * QUADRATIC, 60, axis=0), np.repeat(np.arange(21), 60)
     start = np.zeros(len(W), dtype=bool)
     start[np.random.default_rng(0).choice(len(W), 60, replace=False)] = True
-    aim = parabola()[name]
-    found = relaxed(aim, W, 60, start, 1e-4)
+    criterion = parabola()[name]
+    found = relaxed(criterion, W, 60, start, 1e-4)
     weight = np.bincount(place, weights=found.weight) / 60
     np.testing.assert_allclose(weight[[0, 10, 20]], PUBLISHED[name], atol=WEIGHT)
-    exact = Selection(aim, W)
+    exact = Selection(criterion, W)
     fill(exact, 60)
     exchange(exact)
     count = np.bincount(place[exact.chosen], minlength=21)[[0, 10, 20]]
@@ -71,30 +76,36 @@ def test_published_designs_of_the_parabola(name):
 
 def criteria(rng):
     half = rng.normal(size=(4, 4))
-    mean = DesignCriterion(np.eye(4), half @ half.T)
-    worst = replace(mean, K=np.zeros((4, 4)), roots=rng.normal(size=(6, 4, 2)))
+    K = half @ half.T
+    roots = rng.normal(size=(6, 4, 2))
     scale = rng.uniform(0.3, 2.0, (5, 4))
-    plain = [mean, determinant(mean), worst_pattern(mean), worst]
-    return plain + [robust(aim, scale, tail) for aim in plain for tail in (1.0, 0.4)]
+    measures = [
+        MeanVariance(K),
+        Determinant(4),
+        LargestEigenvalue.of(K),
+        LargestVariance(roots, np.zeros((4, 4))),
+    ]
+    plain = [DesignCriterion(np.eye(4), measure) for measure in measures]
+    return plain + [robust(criterion, scale, tail) for criterion in plain for tail in (1.0, 0.4)]
 
 
-def by_definition(aim, W, weight):
+def by_definition(criterion, W, weight):
     """With nothing of the code that is tested; a tail of 0.4 is the worst two of five machines."""
-    F, each = W.T @ (W * weight[:, None]), []
-    for prior in np.eye(len(W[0]))[None] if aim.priors is None else aim.priors:
+    F, each, measure = W.T @ (W * weight[:, None]), [], criterion.measure
+    for prior in np.eye(len(W[0]))[None] if criterion.priors is None else criterion.priors:
         inverse = np.linalg.inv(prior + F)
-        if aim.is_determinant:
+        if isinstance(measure, Determinant):
             each.append(np.log(np.linalg.det(inverse)))
-            continue
-        value = np.trace(aim.K @ inverse)
-        if aim.is_spectral:
-            value += np.linalg.eigvalsh(aim.roots[0].T @ inverse @ aim.roots[0])[-1]
-        elif aim.roots is not None:
-            value += max(np.trace(root.T @ inverse @ root) for root in aim.roots)
-        each.append(value)
-    count = max(1, round(aim.tail * len(each)))
+        elif isinstance(measure, MeanVariance):
+            each.append(np.trace(measure.K @ inverse))
+        elif isinstance(measure, LargestEigenvalue):
+            root = measure.roots[0]
+            each.append(np.linalg.eigvalsh(root.T @ inverse @ root)[-1])
+        else:
+            each.append(max(np.trace(root.T @ inverse @ root) for root in measure.roots))
+    count = max(1, round(criterion.tail * len(each)))
     mean = float(np.mean(np.sort(each)[::-1][:count]))
-    return float(np.exp(mean / len(F))) if aim.is_determinant else mean
+    return float(np.exp(mean / len(F))) if isinstance(measure, Determinant) else mean
 
 
 @pytest.mark.parametrize("shares", [False, True])
@@ -113,16 +124,16 @@ def test_no_choice_beats_any_bound_and_values_are_those_of_the_definition(shares
     near, gaps = [], []
     for _ in range(3):
         W = 2.0 * rng.normal(size=(11, 4))
-        for aim in criteria(rng):
-            best = min(by_definition(aim, W, r.astype(float)) for r in allowed)
+        for criterion in criteria(rng):
+            best = min(by_definition(criterion, W, r.astype(float)) for r in allowed)
             start = allowed[int(rng.integers(len(allowed)))]
-            found = relaxed(aim, W, 5, start, 1e-3, quotas)
+            found = relaxed(criterion, W, 5, start, 1e-3, quotas)
             assert found.bound <= best * (1.0 + ROUNDING)
-            assert found.value == pytest.approx(by_definition(aim, W, found.weight), rel=1e-8)
+            assert found.value == pytest.approx(by_definition(criterion, W, found.weight), rel=1e-8)
             assert all(keeps(q, found.weight) for q in quotas)
-            whole = rounded(aim, W, found.weight, 5, quotas=quotas)
+            whole = rounded(criterion, W, found.weight, 5, quotas=quotas)
             assert all(keeps(q, whole.chosen) for q in quotas)
-            value = by_definition(aim, W, whole.chosen.astype(float))
+            value = by_definition(criterion, W, whole.chosen.astype(float))
             assert whole.value == pytest.approx(value, rel=1e-8)
             near.append(value / best)
             gaps.append(found.gap)
@@ -134,14 +145,14 @@ def test_no_choice_beats_any_bound_and_values_are_those_of_the_definition(shares
 def test_gains_are_the_slope_of_the_criterion():
     rng = np.random.default_rng(4)
     W = rng.normal(size=(20, 4))
-    for aim in criteria(rng)[:2] + criteria(rng)[4:6]:
-        selection = Selection(aim, W, np.arange(20) < 8)
+    for criterion in criteria(rng)[:2] + criteria(rng)[4:6]:
+        selection = Selection(criterion, W, np.arange(20) < 8)
         with_row = [
-            by_definition(aim, W, (selection.chosen | (np.arange(20) == i)).astype(float))
+            by_definition(criterion, W, (selection.chosen | (np.arange(20) == i)).astype(float))
             for i in range(8, 20)
         ]
         fall = selection.value - np.array(with_row)
-        if aim.is_determinant:
+        if isinstance(criterion.measure, Determinant):
             fall = 4.0 * np.log(selection.value / np.array(with_row))
         np.testing.assert_allclose(selection.gains[8:], fall, rtol=1e-6)
 
@@ -152,14 +163,14 @@ def test_drawn_machines_keep_to_the_directions_that_matter():
     felt, sd = rng.normal(size=(4, 9)), np.ones(9)
     W, G = rng.normal(size=(30, 4)) @ felt, rng.normal(size=(5, 3, 4)) @ felt
     scale = rng.uniform(0.5, 2.0, (3, 9))
-    aim = robust(purpose(G, W, sd), scale)
-    assert len(aim.K) == 4
+    criterion = robust(mean_prediction(G, W, sd), scale)
+    assert criterion.size == 4
     whole = [
         np.mean([np.trace(g @ np.linalg.inv(np.diag(s**-2.0) + W.T @ W) @ g.T) for g in G])
         for s in scale
     ]
-    rows = aim.rows(W)
-    assert aim.value(rows.T @ rows) == pytest.approx(np.mean(whole), rel=1e-8)
+    rows = criterion.rows(W)
+    assert criterion.value(rows.T @ rows) == pytest.approx(np.mean(whole), rel=1e-8)
 
 
 def test_potential_terms_go_from_a_line_to_a_parabola():
@@ -173,10 +184,10 @@ def test_potential_terms_go_from_a_line_to_a_parabola():
         square = s * PLACES**2
         rows = np.stack([SLACK * np.ones(21), SLACK * PLACES, square], axis=1)
         W, place = np.repeat(rows, runs, axis=0), np.repeat(np.arange(21), runs)
-        aim = with_potential(determinant(DesignCriterion(np.eye(2), np.eye(2))), 1, 0.0)
+        criterion = with_potential(DesignCriterion(np.eye(2), Determinant(2)), 1, 0.0)
         start = np.zeros(len(W), dtype=bool)
         start[np.random.default_rng(1).choice(len(W), runs, replace=False)] = True
-        found = relaxed(aim, W, runs, start, 1e-5)
+        found = relaxed(criterion, W, runs, start, 1e-5)
         w = np.linspace(0.0, 1.0, 100001)[:-1]
         best = w[np.argmax((1.0 - w) * (1.0 + s * s * runs * (1.0 - w) * w))]
         weight = np.bincount(place, weights=found.weight) / runs
@@ -187,11 +198,12 @@ def test_potential_terms_go_from_a_line_to_a_parabola():
 def test_potential_terms_join_the_mean_and_can_be_left_out_again():
     rng = np.random.default_rng(2)
     half, W = rng.normal(size=(3, 3)), rng.normal(size=(9, 5))
-    aim = with_potential(DesignCriterion(np.eye(3), half @ half.T), 2, 0.7)
+    plain = mean_variance(half @ half.T)
+    criterion = with_potential(plain, 2, 0.7)
     inverse = np.linalg.inv(np.eye(5) + W.T @ W)
     by_hand = np.trace(inverse[:3, :3] @ half @ half.T) + 0.7 * np.trace(inverse[3:, 3:]) / 2.0
-    assert aim.value(W.T @ W) == pytest.approx(by_hand, rel=1e-10)
-    np.testing.assert_array_equal(without_potential(aim).K, half @ half.T)
+    assert criterion.value(W.T @ W) == pytest.approx(by_hand, rel=1e-10)
+    assert criterion.primary is plain
 
 
 def test_shares_that_nothing_keeps_are_refused():
@@ -202,6 +214,27 @@ def test_shares_that_nothing_keeps_are_refused():
 
 def test_tail_and_scales_that_mean_nothing_are_refused():
     with pytest.raises(DesignError, match="tail"):
-        DesignCriterion(np.eye(2), np.eye(2), tail=0.0)
+        DesignCriterion(np.eye(2), Determinant(2), tail=0.0)
     with pytest.raises(DesignError, match="expected above zero"):
-        robust(DesignCriterion(np.eye(2), np.eye(2)), np.array([[1.0, 0.0]]))
+        robust(mean_variance(np.eye(2)), np.array([[1.0, 0.0]]))
+
+
+def test_the_five_are_their_definitions_over_the_same_directions():
+    rng = np.random.default_rng(8)
+    G, W, sd = rng.normal(size=(5, 3, 4)), rng.normal(size=(9, 4)), rng.uniform(0.5, 2.0, 4)
+    five = five_criteria(G, W, sd)
+    M = np.linalg.inv(np.eye(4) + W.T @ W)
+    scaled = G * sd
+    variances = [np.trace(g @ M @ g.T) for g in scaled]
+    half = np.linalg.cholesky(sum(g.T @ g for g in scaled) / 5.0)
+    expected = {
+        "I": np.mean(variances),
+        "G": max(variances),
+        "D": np.linalg.det(M) ** 0.25,
+        "A": np.trace(M),
+        "E": np.linalg.eigvalsh(half.T @ M @ half)[-1],
+    }
+    assert set(five) == set(expected)
+    for name, criterion in five.items():
+        rows = criterion.rows(W)
+        assert criterion.value(rows.T @ rows) == pytest.approx(expected[name], rel=1e-9)

@@ -5,15 +5,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from information.criteria.design_criterion import DesignCriterion, mean_prediction
+from information.criteria.measures import MeanVariance
 from information.selection.groups import best_groups
-from information.selection.touch_selection import (
-    DesignCriterion,
-    Quota,
-    Selection,
-    exchange,
-    fill,
-    purpose,
-)
+from information.selection.touch_selection import Quota, Selection, exchange, fill
 from twin.errors import DesignError
 
 ROUNDING = 1e-9
@@ -21,35 +16,35 @@ ROUNDING = 1e-9
 
 @pytest.fixture
 def case():
-    """Rows of unequal directions, and a purpose that weighs them unequally."""
+    """Rows of unequal directions, and a criterion that weighs them unequally."""
     rng = np.random.default_rng(8)
     W = rng.normal(size=(60, 6)) * np.array([5.0, 3.0, 2.0, 1.0, 0.5, 0.2])
     half = rng.normal(size=(6, 6))
-    return DesignCriterion(np.eye(6), half @ half.T), W
+    return DesignCriterion(np.eye(6), MeanVariance(half @ half.T)), W
 
 
-def value_of(aim, W, rows):
+def value_of(criterion, W, rows):
     M = np.eye(W.shape[1]) + W[rows].T @ W[rows]
-    return float(np.trace(np.linalg.inv(M) @ aim.K))
+    return float(np.trace(np.linalg.inv(M) @ criterion.measure.K))
 
 
 def test_updates_are_exact(case, monkeypatch):
     monkeypatch.setattr("information.selection.touch_selection._REFRESH", 10**9)
-    aim, W = case
-    selection = Selection(aim, W)
+    criterion, W = case
+    selection = Selection(criterion, W)
     rng = np.random.default_rng(1)
     for _ in range(200):
         row = int(rng.integers(60))
         selection.drop(row) if selection.chosen[row] else selection.add(row)
     rows = np.flatnonzero(selection.chosen)
-    assert selection.value == pytest.approx(value_of(aim, W, rows), rel=ROUNDING)
-    fresh = Selection(aim, W, selection.chosen)
+    assert selection.value == pytest.approx(value_of(criterion, W, rows), rel=ROUNDING)
+    fresh = Selection(criterion, W, selection.chosen)
     np.testing.assert_allclose(selection.gains, fresh.gains, rtol=1e-6)
     out = next(r for r in range(60) if r not in rows)
-    gain = value_of(aim, W, rows) - value_of(aim, W, [*rows, out])
+    gain = value_of(criterion, W, rows) - value_of(criterion, W, [*rows, out])
     assert selection.gains[out] == pytest.approx(gain, rel=1e-6)
     kept = [r for r in rows if r != rows[3]]
-    loss = value_of(aim, W, kept) - value_of(aim, W, rows)
+    loss = value_of(criterion, W, kept) - value_of(criterion, W, rows)
     assert selection.losses[rows[3]] == pytest.approx(loss, rel=1e-6)
     assert np.isinf(selection.losses[out])
 
@@ -59,9 +54,9 @@ def test_choice_is_near_the_best_of_all_possibilities():
     ratios = []
     for _ in range(20):
         W, half = 2.0 * rng.normal(size=(11, 4)), rng.normal(size=(4, 4))
-        aim = DesignCriterion(np.eye(4), half @ half.T)
-        best = min(value_of(aim, W, list(c)) for c in combinations(range(11), 5))
-        selection = Selection(aim, W)
+        criterion = DesignCriterion(np.eye(4), MeanVariance(half @ half.T))
+        best = min(value_of(criterion, W, list(c)) for c in combinations(range(11), 5))
+        selection = Selection(criterion, W)
         fill(selection, 5)
         exchange(selection)
         ratios.append(selection.value / best)
@@ -72,22 +67,22 @@ def test_choice_is_near_the_best_of_all_possibilities():
 
 
 def test_choice_beats_chance_and_exchange_never_harms(case):
-    aim, W = case
-    selection = Selection(aim, W)
+    criterion, W = case
+    selection = Selection(criterion, W)
     fill(selection, 12)
     greedy = selection.value
     exchange(selection)
     assert selection.value <= greedy * (1.0 + ROUNDING)
     rng = np.random.default_rng(3)
-    chance = [value_of(aim, W, rng.choice(60, 12, replace=False)) for _ in range(50)]
+    chance = [value_of(criterion, W, rng.choice(60, 12, replace=False)) for _ in range(50)]
     assert selection.value < min(chance)
 
 
 def test_exchange_mends_a_bad_start(case):
-    aim, W = case
+    criterion, W = case
     start = np.zeros(60, dtype=bool)
     start[:12] = True
-    selection = Selection(aim, W, start)
+    selection = Selection(criterion, W, start)
     before = selection.value
     kept = np.zeros(60, dtype=bool)
     kept[:2] = True
@@ -99,16 +94,16 @@ def test_exchange_mends_a_bad_start(case):
 
 
 def test_quotas_hold(case):
-    aim, W = case
+    criterion, W = case
     kind = np.arange(60) % 3
     quota = Quota(kind, np.array([2, 5, 100]))
-    selection = Selection(aim, W)
+    selection = Selection(criterion, W)
     fill(selection, 15, (quota,))
     exchange(selection, (quota,))
     count = np.bincount(kind[selection.chosen], minlength=3)
     assert count.tolist() == [2, 5, 8] or (count[0] <= 2 and count[1] <= 5 and count.sum() == 15)
     with pytest.raises(DesignError, match="under the shares of each kind"):
-        fill(Selection(aim, W), 10, (Quota(kind, np.array([2, 2, 2])),))
+        fill(Selection(criterion, W), 10, (Quota(kind, np.array([2, 2, 2])),))
 
 
 def test_leaving_out_what_nothing_shows_is_exact():
@@ -117,45 +112,46 @@ def test_leaving_out_what_nothing_shows_is_exact():
     sd = rng.uniform(0.5, 2.0, 12)
     W = (rng.normal(size=(30, 4)) @ seen) * sd
     G = np.einsum("mik,kp->mip", rng.normal(size=(9, 3, 4)), seen)
-    aim = purpose(G, W, sd)
-    assert aim.directions.shape == (12, 4)
+    criterion = mean_prediction(G, W, sd)
+    assert criterion.directions.shape == (12, 4)
     M = np.eye(12) + W.T @ W
     scaled = G * sd
     whole = np.mean([np.trace(g @ np.linalg.inv(M) @ g.T) for g in scaled])
-    R = aim.rows(W)
-    assert aim.value(R.T @ R) == pytest.approx(whole, rel=1e-8)
+    R = criterion.rows(W)
+    assert criterion.value(R.T @ R) == pytest.approx(whole, rel=1e-8)
 
 
 def test_groups_are_chosen_by_what_they_bring_together(case):
-    aim, W = case
+    criterion, W = case
     group = np.arange(60) // 6
-    chosen = best_groups(aim, W, group, 3, take=6)
+    chosen = best_groups(criterion, W, group, 3, take=6)
     assert len(set(chosen)) == 3
-    picked = value_of(aim, W, np.flatnonzero(np.isin(group, chosen)))
+    picked = value_of(criterion, W, np.flatnonzero(np.isin(group, chosen)))
     every = [
-        value_of(aim, W, np.flatnonzero(np.isin(group, c))) for c in combinations(range(10), 3)
+        value_of(criterion, W, np.flatnonzero(np.isin(group, c)))
+        for c in combinations(range(10), 3)
     ]
     assert picked < np.quantile(every, 0.05)
-    first = best_groups(aim, W, group, 1, take=6)[0]
-    single = [value_of(aim, W, np.flatnonzero(group == k)) for k in range(10)]
+    first = best_groups(criterion, W, group, 1, take=6)[0]
+    single = [value_of(criterion, W, np.flatnonzero(group == k)) for k in range(10)]
     assert single[first] == pytest.approx(min(single), rel=ROUNDING)
 
 
 def test_groups_that_do_not_fit_are_not_put_together(case):
-    aim, W = case
+    criterion, W = case
     group = np.arange(60) // 6
-    free = best_groups(aim, W, group, 2, take=6)
+    free = best_groups(criterion, W, group, 2, take=6)
     fits = np.ones((10, 10), dtype=bool)
     fits[free[0], free[1]] = fits[free[1], free[0]] = False
-    assert set(best_groups(aim, W, group, 2, take=6, apart=fits)) != set(free)
+    assert set(best_groups(criterion, W, group, 2, take=6, apart=fits)) != set(free)
     alone = np.zeros((10, 10), dtype=bool)
-    assert len(best_groups(aim, W, group, 4, take=6, apart=alone)) == 1
+    assert len(best_groups(criterion, W, group, 4, take=6, apart=alone)) == 1
 
 
 def test_what_is_measured_anyway_is_not_chosen_again(case):
-    aim, W = case
+    criterion, W = case
     group = np.arange(60) // 6
-    first = best_groups(aim, W, group, 1, take=6)[0]
+    first = best_groups(criterion, W, group, 1, take=6)[0]
     have = W[group == first]
-    second = best_groups(aim, W, group, 1, take=6, start=1e4 * have.T @ have)[0]
+    second = best_groups(criterion, W, group, 1, take=6, start=1e4 * have.T @ have)[0]
     assert second != first

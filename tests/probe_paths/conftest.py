@@ -6,7 +6,7 @@ from types import ModuleType
 
 import pytest
 
-from probe_paths.campaign.contacts import VirtualMachine
+from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.control.interpreter import interpret
 from probe_paths.control.steps import ReadProgram
 from probe_paths.emit.program import ProgramSet

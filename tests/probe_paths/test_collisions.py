@@ -9,11 +9,11 @@ import pytest
 
 from probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
 from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual import run_program
+from probe_paths.campaign.virtual_run import run_program
 from probe_paths.control.interpreter import interpret
 from probe_paths.control.log import read_log
 from probe_paths.control.steps import Move
-from probe_paths.plan.clearance import Room
+from probe_paths.plan.clearance import ToolClearance
 from probe_paths.plan.probe import Probe
 from twin.errors import BadFile
 from twin.frames import apply, inverse
@@ -111,15 +111,17 @@ def test_a_feature_number_mixed_up_is_found_when_the_log_is_evaluated(
 
 def test_gaps_to_the_table_by_hand(chain, small):
     """At B = C = 0 the body hangs over the table: its lower face is its distance above it."""
-    room = Room(chain, small, Setup("a"), Probe(stylus_length=60.0, body_radius=20.0), 160.0)
+    clearance = ToolClearance(
+        chain, small, Setup("a"), Probe(stylus_length=60.0, body_radius=20.0), 160.0
+    )
     # ball centre at x 120, y 120 and 5 mm above the table, beside the base of 80 x 80
     q = np.zeros((1, len(chain.axes)))
     q[0, [chain.axis_index(a) for a in "XYZ"]] = [110.0, 110.0, 160.0 - 500.0 + 5.0]
-    gap, nearest = room.gap(q)
+    gap, nearest = clearance.gap(q)
     assert nearest[0] == "the table"
     assert abs(gap[0] - 2.0) < TENTH
     # 50 mm beside a column wall of FF1, on the height of its middle; the body is 20 mm thick
     q[0, [chain.axis_index(a) for a in "XYZ"]] = [-65.0, 0.0, 160.0 - 500.0 + 35.0]
-    gap, nearest = room.gap(q)
+    gap, nearest = clearance.gap(q)
     assert nearest[0] in ("BASE", "FF1")
     assert gap[0] > 10.0

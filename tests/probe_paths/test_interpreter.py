@@ -274,7 +274,7 @@ def test_touches_start_off_the_surface_and_run_against_its_normal(plan, read, ch
 
 def test_what_happens_without_contact_is_read_too(read):
     for touch in read[0].touches:
-        up, line, halt = touch.miss
+        up, line, halt = touch.on_miss
         assert isinstance(up, Move)
         assert up.feed is None
         assert isinstance(line, Print)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from artefact.reach.touchable import Requests
-from probe_paths.plan.clearance import obstacles, swing_height, top_height
+from probe_paths.plan.clearance import solid_hull, swing_height, top_height
 from probe_paths.plan.order import LONGEST_TURN, nearest_neighbours, visits, waypoints
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
@@ -122,7 +122,7 @@ def test_safe_height_is_above_every_point_of_the_standard(plan, chain, small):
 
 
 def test_swing_height_covers_every_position_in_between(chain, small):
-    solid = obstacles(small, Setup("a"), 160.0)
+    solid = solid_hull(small, Setup("a"), 160.0)
     path = np.array([[0.0, 0.0], [90.0 * DEG, -90.0 * DEG]])
     highest = swing_height(chain, path, solid, Probe())[0]
     share = np.linspace(0.0, 1.0, 50)[:, None]
@@ -166,7 +166,7 @@ def test_refused_requests_are_kept_with_their_reason(golden):
         small, golden.machine(), Probe(), Setup("a"), both, PlanOptions(tolerated=1)
     )
     assert [r.request for r in plan.refused] == [1]
-    assert plan.refused[0].reason.startswith("SPH1, C+0.0 B+0.0: the surface leans 124.4")
+    assert str(plan.refused[0]).startswith("SPH1, C+0.0 B+0.0: the surface leans 124.4")
 
 
 def test_requests_that_make_no_sense_are_refused(golden):

@@ -10,7 +10,7 @@ import pytest
 
 from artefact.body.standard_file import write_standard
 from matstd.cli import main
-from probe_paths.campaign.virtual import FIRST_MORNING
+from probe_paths.campaign.virtual_run import FIRST_MORNING
 from twin.files.run_file import read_run
 from twin.units import NM, UM
 

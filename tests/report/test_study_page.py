@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from report.maps.canvas import figure, save
 from report.pages.study_page import (
     ERROR_3D,
     S_3D,
@@ -15,6 +14,7 @@ from report.pages.study_page import (
     sensitivity_scenes,
     write_study_page,
 )
+from report.style import figure, save
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study

@@ -66,7 +66,7 @@ def test_machine_in_base_units(machine: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("[axis.B]", "[axis.Q]", r"axis\.Q: found an unknown axis.*has C, B, X, Y, Z"),
+        ("[axis.B]", "[axis.Q]", r"axis\.Q: found an unknown axis, expected one of C, B, X, Y, Z"),
         ("f Y Z", "f Y Q", "chain: found unknown axis 'Q'"),
         ("C' B' X' f Y Z (C1) t", "C' B' X' f Y Z (C1 t", r"chain: found unknown axis '\(C1'"),
         ("[-300.0, 300.0]", "[300.0, -300.0]", r"axis\.Y\.range.*smaller reading first"),

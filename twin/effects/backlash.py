@@ -15,7 +15,6 @@ from twin.model import (
     checked_axis,
     counted,
     moving_axes,
-    own_component,
 )
 from twin.record import Touches
 from twin.units import UM, URAD
@@ -68,14 +67,14 @@ def make(chain: Chain, arguments: Sequence[str]) -> Backlash:
     """From the axis."""
     counted(USAGE, arguments, 1, 1)
     axis = checked_axis(USAGE, arguments, arguments[0], chain)
-    return Backlash(axis, own_component(chain, axis))
+    return Backlash(axis, chain.link(axis).own_component)
 
 
 def propose(touches: Touches) -> Iterable[Backlash]:
     """Every axis that was reached from both sides."""
     for axis in moving_axes(touches):
         if _both_sides(touches.last_move(axis)):
-            yield Backlash(axis, own_component(touches.chain, axis))
+            yield Backlash(axis, touches.chain.link(axis).own_component)
 
 
 def _both_sides(last_move: Array) -> bool:

@@ -15,7 +15,6 @@ from twin.model import (
     checked_linear,
     counted,
     moving_axes,
-    own_component,
     refusal,
     sensor_record,
     sensors,
@@ -90,7 +89,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> ColumnBending:
     axis = checked_linear(USAGE, arguments, arguments[0], chain)
     if arguments[1] == arguments[2]:
         raise refusal(USAGE, arguments, "two different sensors")
-    return ColumnBending(axis, arguments[1], arguments[2], own_component(chain, axis))
+    return ColumnBending(axis, arguments[1], arguments[2], chain.link(axis).own_component)
 
 
 def propose(touches: Touches) -> Iterable[ColumnBending]:
@@ -102,7 +101,7 @@ def propose(touches: Touches) -> Iterable[ColumnBending]:
     for axis in moving_axes(touches):
         if axis in touches.chain.linear_axes:
             for warm, cold in combinations(on_column, 2):
-                yield ColumnBending(axis, warm, cold, own_component(touches.chain, axis))
+                yield ColumnBending(axis, warm, cold, touches.chain.link(axis).own_component)
 
 
 KIND = Kind(

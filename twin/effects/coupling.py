@@ -12,7 +12,6 @@ from twin.model import (
     Parameter,
     Term,
     Where,
-    base_unit,
     checked_axis,
     component_symbol,
     counted,
@@ -64,7 +63,7 @@ class Coupling:
     def parameters(self) -> Sequence[Parameter]:
         """Peak amplitudes."""
         sd = 100 * URAD if self.symbol.is_angular else 10 * UM
-        return tuple(Parameter(word, base_unit(self.symbol), sd) for word in self._words)
+        return tuple(Parameter(word, self.symbol.unit, sd) for word in self._words)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis."""

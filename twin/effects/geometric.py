@@ -13,7 +13,6 @@ from twin.model import (
     Parameter,
     Term,
     Where,
-    base_unit,
     component_symbol,
     counted,
     moving_axes,
@@ -64,7 +63,7 @@ class ComponentError:
     @property
     def parameters(self) -> Sequence[Parameter]:
         """The peak amplitude."""
-        return (Parameter("amplitude", "rad" if self.symbol.is_angular else "mm", self.sd),)
+        return (Parameter("amplitude", self.symbol.unit, self.sd),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
@@ -118,7 +117,7 @@ class HigherOrder:
     @property
     def parameters(self) -> Sequence[Parameter]:
         """Coefficients, by rising degree; sine before cosine."""
-        unit = base_unit(self.symbol)
+        unit = self.symbol.unit
         out = []
         for k in range(1, self.degree + 1):
             for name in (f"sin{k}", f"cos{k}") if self.rotary else (f"T{k}",):

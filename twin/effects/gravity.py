@@ -12,12 +12,10 @@ from twin.model import (
     Parameter,
     Term,
     Where,
-    base_unit,
     checked_axis,
     component_symbol,
     counted,
     moving_axes,
-    own_component,
     refusal,
 )
 from twin.record import Touches
@@ -54,7 +52,7 @@ class RamSag:
     def parameters(self) -> Sequence[Parameter]:
         """Sag at full overhang."""
         sd = 100 * URAD if self.symbol.is_angular else 20 * UM
-        return (Parameter("amplitude", base_unit(self.symbol), sd),)
+        return (Parameter("amplitude", self.symbol.unit, sd),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
@@ -93,7 +91,7 @@ class TiltSag:
     def parameters(self) -> Sequence[Parameter]:
         """Peak of the second harmonic."""
         sd = 100 * URAD if self.symbol.is_angular else 20 * UM
-        return (Parameter("amplitude", base_unit(self.symbol), sd),)
+        return (Parameter("amplitude", self.symbol.unit, sd),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
@@ -129,7 +127,7 @@ class OffCentreLoad:
     @property
     def parameters(self) -> Sequence[Parameter]:
         """Components of the off-centre load in phase with the table and a quarter turn on."""
-        unit, sd = base_unit(self.symbol), 30 * URAD if self.symbol.is_angular else 10 * UM
+        unit, sd = self.symbol.unit, 30 * URAD if self.symbol.is_angular else 10 * UM
         return (Parameter("cos", unit, sd), Parameter("sin", unit, sd))
 
     def terms(self, touches: Touches) -> Sequence[Term]:
@@ -159,7 +157,7 @@ def propose(touches: Touches) -> Iterable[Effect]:
     """
     chain, axes = touches.chain, moving_axes(touches)
     for axis in axes:
-        own = own_component(chain, axis)
+        own = chain.link(axis).own_component
         if axis in chain.linear_axes:
             for component in (i for i in range(3) if i != own):
                 yield RamSag(Symbol(component, axis, Family.COMPONENT))

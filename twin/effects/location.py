@@ -41,7 +41,7 @@ class LocationError:
     @property
     def parameters(self) -> Sequence[Parameter]:
         """The constant."""
-        return (Parameter("amplitude", "rad" if self.symbol.is_angular else "mm", self.sd),)
+        return (Parameter("amplitude", self.symbol.unit, self.sd),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A displacement of the link."""

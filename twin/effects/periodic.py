@@ -12,11 +12,9 @@ from twin.model import (
     Parameter,
     Term,
     Where,
-    base_unit,
     component_symbol,
     counted,
     moving_axes,
-    own_component,
 )
 from twin.record import Touches
 from twin.units import UM, URAD
@@ -136,7 +134,7 @@ class Harmonic:
 
 def _sine_and_cosine(symbol: Symbol) -> Sequence[Parameter]:
     sd = 20 * URAD if symbol.is_angular else 3 * UM
-    return tuple(Parameter(word, base_unit(symbol), sd) for word in ("sin", "cos"))
+    return tuple(Parameter(word, symbol.unit, sd) for word in ("sin", "cos"))
 
 
 def _wave(touches: Touches, symbol: Symbol, factor: float) -> Sequence[Term]:
@@ -161,7 +159,7 @@ def propose(touches: Touches) -> Iterable[Periodic | Harmonic]:
             continue
         if chain.link(symbol.link).kind == "rotary":
             yield Harmonic(symbol)
-        elif symbol.component == own_component(chain, symbol.link):
+        elif symbol.component == chain.link(symbol.link).own_component:
             yield Periodic(symbol)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from twin.errors import UnknownEffect
 from twin.frames import Array
 from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Where, counted, own_component, refusal
+from twin.model import Kind, Parameter, Term, Where, counted, refusal
 from twin.record import Touches
 from twin.units import UM
 
@@ -72,7 +72,7 @@ def stiffness(chain: Chain, link: str) -> Stiffness:
     """Compliance of an axis or of the tool."""
     if link == "t":
         return Stiffness(link, ((0, 0), (1, 0), (2, 1)))
-    return Stiffness(link, ((own_component(chain, link), 0),))
+    return Stiffness(link, ((chain.link(link).own_component, 0),))
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Stiffness:

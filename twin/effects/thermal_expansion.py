@@ -12,7 +12,6 @@ from twin.model import (
     checked_linear,
     counted,
     moving_axes,
-    own_component,
     sensor_record,
     sensors,
 )
@@ -66,7 +65,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> ThermalExpansion:
     """From the linear axis and the sensor."""
     counted(USAGE, arguments, 2, 2)
     axis = checked_linear(USAGE, arguments, arguments[0], chain)
-    return ThermalExpansion(axis, arguments[1], own_component(chain, axis))
+    return ThermalExpansion(axis, arguments[1], chain.link(axis).own_component)
 
 
 def propose(touches: Touches) -> Iterable[ThermalExpansion]:
@@ -74,7 +73,7 @@ def propose(touches: Touches) -> Iterable[ThermalExpansion]:
     for axis in moving_axes(touches):
         if axis in touches.chain.linear_axes:
             for sensor in sensors(touches):
-                yield ThermalExpansion(axis, sensor, own_component(touches.chain, axis))
+                yield ThermalExpansion(axis, sensor, touches.chain.link(axis).own_component)
 
 
 KIND = Kind(

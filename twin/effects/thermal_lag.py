@@ -19,7 +19,6 @@ from twin.model import (
     Parameter,
     Term,
     Where,
-    base_unit,
     component_symbol,
     counted,
     moving_axes,
@@ -78,7 +77,7 @@ class ThermalLag:
     @property
     def parameters(self) -> Sequence[Parameter]:
         """The settled amplitude."""
-        unit, sd = base_unit(self.symbol), 100 * URAD if self.symbol.is_angular else 30 * UM
+        unit, sd = self.symbol.unit, 100 * URAD if self.symbol.is_angular else 30 * UM
         if self.drive not in ("", SPINDLE):
             return (Parameter("amplitude", f"{unit}/K", 0.2 * sd),)
         return (Parameter("amplitude", unit, sd),)

@@ -44,7 +44,7 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
         try:
             symbol = chain.symbol(name)
         except UnknownSymbol as error:
-            raise BadFile(path, name, "an unknown error name", _known(error)) from None
+            raise BadFile.of(path, error) from None
         several = isinstance(tables, list)
         for i, table in enumerate(tables if several else [tables]):
             key = f"{name}[{i}]" if several else name
@@ -52,11 +52,6 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
             unit = URAD if symbol.is_angular else UM
             out.append((_effect(symbol, entry, path, key), np.array([entry.amplitude * unit])))
     return out
-
-
-def _known(error: UnknownSymbol) -> str:
-    """What is available instead of an unknown name."""
-    return "one of " + str(error).split("available: ")[-1]
 
 
 def _effect(symbol: Symbol, entry: ErrorTable, path: str | Path, key: str) -> Effect:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Strict
 
-from twin.errors import BadFile, DesignError, UnknownAxis
+from twin.errors import BadFile, BadValue, UnknownAxis
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.machine import Axis, Chain, make_chain
 from twin.units import DEG
@@ -57,8 +57,6 @@ def read_machine(path: str | Path) -> Chain:
     try:
         return make_chain(table.name, table.chain, axes, table.workpiece.origin)
     except UnknownAxis as error:
-        known = str(error).split("; ")[-1]
-        raise BadFile(path, f"axis.{error.facts['axis']}", "an unknown axis", known) from error
-    except DesignError as error:
-        key, found, expected = (str(error.facts[k]) for k in ("key", "found", "expected"))
-        raise BadFile(path, key, found, expected) from error
+        raise BadFile.of(path, error, within="axis") from error
+    except BadValue as error:
+        raise BadFile.of(path, error) from error

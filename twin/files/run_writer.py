@@ -10,7 +10,7 @@ from twin.files.pose_file import reading_columns
 from twin.files.run_columns import FORCE, NORMAL, POINT
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
-from twin.record import Run
+from twin.record import Run, linear_approach
 from twin.units import DEG, UM
 
 
@@ -69,12 +69,20 @@ def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
         columns[column] = _cells(t.reading(axis) / factor, 7 if factor == 1.0 else 9)
     columns |= {p: _cells(t.point[:, i], 7) for i, p in enumerate(POINT)}
     columns |= {n: _cells(t.normal[:, i], 12) for i, n in enumerate(NORMAL)}
-    columns |= {f"dir{axis}": _cells(t.last_move(axis), 0) for axis in t.chain.rotary_axes}
+    columns |= {f"dir{axis}": _cells(t.last_move(axis), 0) for axis in _stated_directions(run)}
     columns |= {f"T_{sensor}_degC": _cells(v, 3) for sensor, v in t.temperature.items()}
     columns |= _optional_columns(run, common_u)
     # the deviation is in the readings, but only to their digits; instruments state it themselves
     columns["dev_um"] = _cells(run.deviation / UM, 6)
     return columns
+
+
+def _stated_directions(run: Run) -> list[str]:
+    """Axes whose last motion the reader would not know: rotary ones, and of instruments others."""
+    t = run.touches
+    implied = linear_approach(t.chain, t.q, t.normal_table)
+    differs = np.any(implied != t.approach, axis=0)
+    return [a for i, a in enumerate(t.chain.axes) if a in t.chain.rotary_axes or differs[i]]
 
 
 def _optional_columns(run: Run, common_u: bool) -> dict[str, list[str]]:

@@ -1,7 +1,7 @@
 """Machines in ISO chain notation, error parameters by their ISO 230-1 names, and kinematics."""
 
-from twin.machine.chain import DIRECTIONS, Axis, Chain, Link, difference, make_chain
-from twin.machine.contribution import Contribution, Part, Where
+from twin.machine.chain import DIRECTIONS, Axis, Chain, Link, make_chain
+from twin.machine.contribution import Contribution, Where
 from twin.machine.kinematics import (
     Reach,
     checked_readings,
@@ -26,14 +26,12 @@ __all__ = [
     "Contribution",
     "Family",
     "Link",
-    "Part",
     "Ranges",
     "Reach",
     "ShapeName",
     "Symbol",
     "Where",
     "checked_readings",
-    "difference",
     "error_class",
     "exact_tip",
     "inverse_linear",

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from twin.errors import DesignError, UnknownAxis, UnknownSymbol
+from twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from twin.frames import Array
 from twin.machine.symbols import Family, Symbol, parse_symbol
 from twin.units import DEG
@@ -24,6 +24,9 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
 
 _SAME_DIRECTION = {**{k: k for k in "XYZ"}, **dict(zip("ABCUVW", "XYZXYZ", strict=True)), "S": "Z"}
 _TOKEN = re.compile(r"([XYZUVWABCS]\d?)('?)\Z")
+
+_SAME = 1e-6
+"""Two machines whose numbers differ by less (mm, rad) are the same."""
 
 SPINDLE_RANGE = (-360.0 * DEG, 360.0 * DEG)
 """Range of a bracketed spindle whose machine file says nothing about it, rad."""
@@ -56,6 +59,11 @@ class Link:
     def own(self) -> int:
         """Index in X Y Z of the letter's own direction, whatever the direction of the axis."""
         return "XYZ".index(_SAME_DIRECTION[self.name[0]])
+
+    @property
+    def own_component(self) -> int:
+        """Index in X Y Z A B C of the error along a linear axis, about a rotary one."""
+        return self.own if self.kind == "linear" else 3 + self.own
 
 
 @dataclass(frozen=True)
@@ -155,6 +163,28 @@ class Chain:
             raise UnknownSymbol(name, (s.name for s in self.symbols))
         return symbol
 
+    def difference(self, other: "Chain") -> tuple[str, str, str] | None:
+        """The first thing in which two machines differ, None if nothing.
+
+        Travels count too: the shapes of component errors are scaled to them.
+
+        Returns:
+            Key of a machine file, this machine's value, the other's.
+        """
+        if self.name != other.name:
+            return "name", repr(self.name), repr(other.name)
+        if self.notation.split() != other.notation.split():
+            return "chain", self.notation, other.notation
+        if not np.allclose(self.table_origin, other.table_origin, rtol=0.0, atol=_SAME):
+            return "workpiece.origin", _listed(self.table_origin), _listed(other.table_origin)
+        for a, b in zip(self.links, other.links, strict=True):
+            for key in ("range", "point", "direction"):
+                left, right = np.array(getattr(a, key)), np.array(getattr(b, key))
+                if not np.allclose(left, right, rtol=0.0, atol=_SAME):
+                    factor = DEG if key == "range" and a.kind == "rotary" else 1.0
+                    return f"axis.{a.name}.{key}", _listed(left / factor), _listed(right / factor)
+        return None
+
 
 def _location(link: Link) -> list[int]:
     """Components of the location errors of an axis.
@@ -173,7 +203,7 @@ def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:
     """Axes of a chain notation as (name, carries the workpiece, programmed), workpiece to tool.
 
     Raises:
-        DesignError: A token that is no axis, or a prime on the wrong side of the foundation.
+        BadValue: A token that is no axis, or a prime on the wrong side of the foundation.
 
     Reference:
         ISO 841; chain notation as in ISO 10791-6, with primes as in `[w C' B' X' f Y Z (C1) t]`.
@@ -181,7 +211,7 @@ def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:
     tokens = notation.strip().removeprefix("[").removesuffix("]").split()
     if len(tokens) < 3 or tokens[0] != "w" or tokens[-1] != "t" or tokens.count("f") != 1:
         expected = "one 'w' first, one 't' last and one 'f' between, such as [w X' f Y Z t]"
-        raise _no_machine("chain", f"'{notation}'", expected)
+        raise BadValue("chain", f"'{notation}'", expected)
     foundation = tokens.index("f")
     axes: list[tuple[str, bool, bool]] = []
     for position, token in enumerate(tokens[1:-1], start=1):
@@ -191,48 +221,18 @@ def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:
         match = _TOKEN.match(token[1:-1] if bracketed else token)
         if match is None:
             expected = "a letter of X Y Z U V W A B C, a prime on the workpiece side"
-            raise _no_machine("chain", f"unknown axis '{token}' in '{notation}'", expected)
+            raise BadValue("chain", f"unknown axis '{token}' in '{notation}'", expected)
         name, prime = match.groups()
         if bool(prime) != (position < foundation):
             side, wanted = ("workpiece", "a") if position < foundation else ("tool", "no")
             found = f"axis '{token}' on the {side} side of f in '{notation}'"
-            raise _no_machine("chain", found, f"{wanted} prime")
+            raise BadValue("chain", found, f"{wanted} prime")
         if any(name == known for known, _, _ in axes):
-            raise _no_machine("chain", f"axis '{name}' twice in '{notation}'", "it once")
+            raise BadValue("chain", f"axis '{name}' twice in '{notation}'", "it once")
         axes.append((name, bool(prime), not bracketed))
     if not axes:
-        raise _no_machine("chain", f"no axis in '{notation}'", "one at least")
+        raise BadValue("chain", f"no axis in '{notation}'", "one at least")
     return axes
-
-
-def _no_machine(key: str, found: str, expected: str) -> DesignError:
-    """What does not fit together, with the key of the machine file that says so."""
-    message = f"{key}: found {found}, expected {expected}"
-    return DesignError(message, key=key, found=found, expected=expected)
-
-
-def difference(one: Chain, other: Chain) -> tuple[str, str, str] | None:
-    """The first thing in which two machines differ: key of a machine file, one's value, other's.
-
-    Travels count too: the shapes of component errors are scaled to them.
-    """
-    if one.name != other.name:
-        return "name", repr(one.name), repr(other.name)
-    if one.notation.split() != other.notation.split():
-        return "chain", one.notation, other.notation
-    if not np.allclose(one.table_origin, other.table_origin, rtol=0.0, atol=_SAME):
-        return "workpiece.origin", _listed(one.table_origin), _listed(other.table_origin)
-    for a, b in zip(one.links, other.links, strict=True):
-        for key in ("range", "point", "direction"):
-            left, right = np.array(getattr(a, key)), np.array(getattr(b, key))
-            if not np.allclose(left, right, rtol=0.0, atol=_SAME):
-                factor = DEG if key == "range" and a.kind == "rotary" else 1.0
-                return f"axis.{a.name}.{key}", _listed(left / factor), _listed(right / factor)
-    return None
-
-
-_SAME = 1e-6
-"""Two machines whose numbers differ by less (mm, rad) are the same."""
 
 
 def _listed(values: Array) -> str:
@@ -255,7 +255,7 @@ def make_chain(
         table_origin: Origin of the table frame, machine frame with every axis at zero, mm.
 
     Raises:
-        DesignError: A notation that cannot be read, an axis without range, a direction of length
+        BadValue: A notation that cannot be read, an axis without range, a direction of length
             zero, a range with its ends swapped.
         UnknownAxis: An entry for an axis that is not in the chain.
     """
@@ -276,12 +276,12 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
     kind: Kind = "linear" if name[0] in "XYZUVW" else "rotary"
     reach = axis.range if axis.range is not None or programmed else SPINDLE_RANGE
     if reach is None:
-        raise _no_machine(f"axis.{name}.range", "nothing", "its smallest and largest reading")
+        raise BadValue(f"axis.{name}.range", "nothing", "its smallest and largest reading")
     if not reach[0] < reach[1]:
-        raise _no_machine(f"axis.{name}.range", str(list(reach)), "the smaller reading first")
+        raise BadValue(f"axis.{name}.range", str(list(reach)), "the smaller reading first")
     direction = np.array(axis.direction or DIRECTIONS[_SAME_DIRECTION[name[0]]], dtype=float)
     length = float(np.linalg.norm(direction))
     if not length > 0.0:
-        raise _no_machine(f"axis.{name}.direction", "a vector of length zero", "a unit vector")
+        raise BadValue(f"axis.{name}.direction", "a vector of length zero", "a unit vector")
     point = np.array(axis.point or (0.0, 0.0, 0.0), dtype=float)
     return Link(name, kind, primed, direction / length, point, reach, programmed)

@@ -49,6 +49,11 @@ class Symbol:
         """Whether the parameter is an angle (rad) rather than a length (mm)."""
         return self.component >= 3
 
+    @property
+    def unit(self) -> str:
+        """Base unit: "rad" or "mm"."""
+        return "rad" if self.is_angular else "mm"
+
 
 def parse_symbol(name: str) -> Symbol | None:
     """Symbol of a name, or None if the name is none of ISO 230-1.

@@ -140,15 +140,6 @@ def sensor_record(touches: Touches, sensor: str) -> Array:
     return touches.temperature[sensor]
 
 
-def own_component(chain: Chain, axis: str) -> int:
-    """Index of the component along a linear axis, about a rotary one.
-
-    For a free direction the axis's letter decides.
-    """
-    link = chain.link(axis)
-    return link.own if link.kind == "linear" else 3 + link.own
-
-
 def checked_axis(usage: str, arguments: Sequence[str], axis: str, chain: Chain) -> str:
     """A programmed axis of the machine; raises UnknownEffect."""
     if axis not in chain.programmed_axes:
@@ -161,8 +152,3 @@ def checked_linear(usage: str, arguments: Sequence[str], axis: str, chain: Chain
     if axis not in chain.linear_axes:
         raise refusal(usage, arguments, f"a linear axis of {', '.join(chain.linear_axes)}")
     return axis
-
-
-def base_unit(symbol: Symbol) -> str:
-    """Base unit of an error parameter: "rad" or "mm"."""
-    return "rad" if symbol.is_angular else "mm"

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from artefact.body import Meeting, Standard
-from artefact.reach import contact
+from artefact.body import Meeting, Standard, contact
+from artefact.reach import Mask
 from probe_paths.control import Clock, ReadProgram
 from probe_paths.language import Dialect
 from twin.frames import Array, apply, inverse, turn
@@ -18,6 +18,7 @@ CONTACT_TOLERANCE = 1e-3 * NM
 """The ball touches when its gap is this small, mm."""
 
 _STEPS = 12
+"""Of Newton's method; with errors of ordinary size four were enough."""
 
 Disturbance = Callable[[Touches], Contribution]
 
@@ -44,7 +45,7 @@ class VirtualMachine:
     dialect: Dialect = field(default_factory=Dialect)
 
 
-class Contacts:
+class ContactSolver:
     """Solves all touches of a program at once."""
 
     def __init__(
@@ -58,9 +59,9 @@ class Contacts:
         self.distance = np.array([t.distance for t in touches])
         believed = program.heading.setup.T_table_artefact
         self.T_artefact_table = inverse(believed @ machine.setup_error)
-        self._meet_nominally()
+        self._nominal_contact()
 
-    def _meet_nominally(self) -> None:
+    def _nominal_contact(self) -> None:
         """First contact of every ball with the standard where it stands, on a perfect machine."""
         chain = self.machine.chain
         columns = [chain.axis_index(a) for a in chain.linear_axes]
@@ -69,15 +70,9 @@ class Contacts:
         self.motion = turn(self.T_artefact_table, motion)  # (N, 3) of the ball per mm of travel
         centre = apply(self.T_artefact_table, tip(chain, self.start, self.length))
         hit = contact(self.standard, centre, self.motion, self.radius)
-        self.miss = np.array(
-            [
-                "" if m == Meeting.SURFACE else f"the ball {m}" + (f" ({f})" if f else "")
-                for m, f in zip(hit.meeting, hit.feature, strict=True)
-            ],
-            dtype="U200",
-        )
+        self.meeting = hit.meeting
         self.feature = hit.feature.astype(str)
-        met = self.miss == ""
+        met = self.is_contact
         self.travel = np.where(met, hit.travel, self.distance)
         self.gap = np.zeros(len(hit.travel))  # left between ball and surface, mm
         self.uv = np.where(met[:, None], hit.uv, 0.0)
@@ -85,18 +80,24 @@ class Contacts:
         self.normal = np.where(met[:, None], hit.normal, -self.motion)
 
     @property
+    def is_contact(self) -> Mask:
+        """Touches of a surface, which the control reports as a contact, (N,)."""
+        mask: Mask = self.meeting == Meeting.SURFACE
+        return mask
+
+    @property
     def q(self) -> Array:
         """Readings where the balls stand now, (N, A)."""
         return self.start + self.travel[:, None] * self.direction
 
-    def settle(self, time: Array) -> None:
+    def solve(self, time: Array) -> None:
         """Move the axes until the true balls touch.
 
         Newton on ``f(t) = n . (c(t) - S) - (radius + bias + noise)``, with c the true ball centre
         at the actual readings, S its foot point on the surface and n the normal there. Errors
         hardly vary along the way, so the slope is that of the perfect machine.
         """
-        met = np.flatnonzero(self.miss == "")
+        met = np.flatnonzero(self.is_contact)
         for _ in range(_STEPS if len(met) else 0):
             centre, radius = self._true_balls(met, time)
             for name in dict.fromkeys(self.feature[met].tolist()):
@@ -147,18 +148,17 @@ class Contacts:
             pose=np.array([probings[i].pose for i in rows]),
         )
 
-    def judge(self) -> None:
-        """Contacts that the control would not report, in words."""
-        reasons = [
-            (~(np.abs(self.gap) < 1e3 * CONTACT_TOLERANCE), str(Meeting.UNRESOLVED)),
-            (self.travel < 0.0, "the ball touches before it starts"),
-            (self.travel > self.distance, "the ball meets nothing within the travel"),
+    def classify(self) -> None:
+        """Tell contacts that the control would not report from the others."""
+        failures = [
+            (~(np.abs(self.gap) < 1e3 * CONTACT_TOLERANCE), Meeting.UNRESOLVED),
+            (self.travel < 0.0, Meeting.INSIDE),
+            (self.travel > self.distance, Meeting.NOTHING),
         ]
         for name in dict.fromkeys(self.feature.tolist()):
             if name in self.standard.features:
                 inside = self.standard.features[name].contains(self.uv)
-                words = f"the ball {Meeting.EDGE} ({name})"
-                reasons.append(((self.feature == name) & ~inside, words))
-        for wrong, words in reasons:
-            self.miss = np.where((self.miss == "") & wrong, words, self.miss)
-        self.travel = np.where(self.miss == "", self.travel, self.distance)
+                failures.append(((self.feature == name) & ~inside, Meeting.EDGE))
+        for failed, meeting in failures:
+            self.meeting[self.is_contact & failed] = meeting
+        self.travel = np.where(self.is_contact, self.travel, self.distance)

@@ -7,8 +7,9 @@ import pytest
 from scipy.interpolate import BSpline
 from scipy.optimize import brentq, minimize
 
-from probe_paths.campaign.contacts import VirtualMachine
-from probe_paths.campaign.virtual import Outcome, run_program, run_programs
+from artefact.body.patch import Meeting
+from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.virtual_run import Outcome, run_program, run_programs
 from probe_paths.control.interpreter import interpret
 from probe_paths.emit.program import make_programs
 from probe_paths.plan.planner import plan_touches
@@ -16,7 +17,7 @@ from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import PlanOptions, requests_at
 from twin.effects.geometric import ComponentError
 from twin.effects.location import LocationError
-from twin.errors import DesignError
+from twin.errors import DesignError, NotReachable
 from twin.frames import apply, inverse, pose, rotation, turn
 from twin.machine.contribution import Contribution
 from twin.machine.kinematics import exact_tip, tip
@@ -168,7 +169,9 @@ def test_one_error_gives_the_deviation_worked_out_by_hand(
     rotary = np.array(b_c[::-1], dtype=float) * DEG
     wanted = requests_at(of, "SPH1", np.array([uv]), rotary)
     slim = Probe(body_radius=5.0, nose_radius=6.0, stylus_length=100.0, stylus_radius=1.0)
-    options = PlanOptions(standoff=4.0, room=0.1, table_radius=20.0, anchor="SPH2", tolerated=1)
+    options = PlanOptions(
+        standoff=4.0, smallest_gap=0.1, table_radius=20.0, anchor="SPH2", tolerated=1
+    )
     setup = Setup("a")
     plan = plan_touches(of, chain, slim, setup, wanted, options)
     program = make_programs(plan).programs[0]
@@ -224,10 +227,10 @@ def test_a_vector_the_wrong_way_meets_nothing_and_the_program_stops(
     turned = third.translate(str.maketrans("+-", "-+"))
     broken = changed(first, chain, programs.masks, third, turned)
     run = run_program(broken, small, perfect, np.random.default_rng(0))
-    assert run.outcome is Outcome.STOPPED
+    assert run.outcome is Outcome.NO_CONTACT
     assert run.reached == 3
-    assert "touch 3 on" in run.why
-    assert "meets nothing" in run.why
+    with pytest.raises(NotReachable, match=r"touch 3 on .*meets nothing"):
+        run.check_done()
     log = run.log["MS_A_1.TXT"].splitlines()
     assert [line.split()[0] for line in log if line.startswith(("P ", "NOC", "END"))] == [
         "P", "P", "NOCONTACT",
@@ -237,18 +240,18 @@ def test_a_vector_the_wrong_way_meets_nothing_and_the_program_stops(
 
 
 @pytest.mark.parametrize(
-    ("stands", "reason"),
+    ("stands", "met"),
     [
-        ((0.0, 0.0, 6.0), "starts in the material|before it starts"),
-        ((0.0, 0.0, -9.0), "meets nothing within the travel"),
-        ((25.0, 0.0, 0.0), "edge|side|nothing"),
+        ((0.0, 0.0, 6.0), {Meeting.INSIDE}),
+        ((0.0, 0.0, -9.0), {Meeting.NOTHING}),
+        ((25.0, 0.0, 0.0), {Meeting.EDGE, Meeting.SIDE, Meeting.NOTHING}),
     ],
 )
-def test_a_standard_that_stands_elsewhere_stops_the_program(read, small, chain, stands, reason):
+def test_a_standard_that_stands_elsewhere_stops_the_program(read, small, chain, stands, met):
     machine = VirtualMachine(chain, setup_error=pose(t=np.array(stands)))
     run = run_program(read[0], small, machine, np.random.default_rng(0))
-    assert run.outcome is Outcome.STOPPED
-    assert any(word in run.why for word in reason.split("|"))
+    assert run.outcome is Outcome.NO_CONTACT
+    assert run.meeting[run.reached - 1] in met
     assert np.isnan(run.q[run.reached - 1]).all()
 
 
@@ -262,12 +265,12 @@ def test_a_touch_beside_the_trimmed_face_is_no_contact(golden, chain, perfect):
     x, y = (f"{axis}{plan.start[row, chain.axis_index(axis)]:+.4f}" for axis in "XY")
     text = made.programs[0].text
     assert text.count(f"{x} {y}") == 2
-    for beside, reason in ((15.5, "edge"), (17.0, "edge"), (30.0, "")):
+    for beside, met in ((15.5, {Meeting.EDGE}), (17.0, {Meeting.EDGE}), (30.0, set(Meeting))):
         moved = text.replace(f"{x} {y}", f"X+{beside:.4f} {y}")
         read = interpret(moved.encode("ascii"), Path("MS_A_1.H"), made.masks.get, chain)
         run = run_program(read, of, perfect, np.random.default_rng(0))
-        assert run.outcome is Outcome.STOPPED
-        assert reason in run.why
+        assert run.outcome is Outcome.NO_CONTACT
+        assert run.meeting[run.reached - 1] in met
 
 
 def test_a_program_for_another_standard_is_refused(read, golden, perfect):

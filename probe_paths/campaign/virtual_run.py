@@ -13,7 +13,7 @@ from enum import StrEnum
 import numpy as np
 
 from artefact.body import Standard
-from probe_paths.campaign.contacts import Contacts, VirtualMachine
+from probe_paths.campaign.contact_solver import ContactSolver, VirtualMachine
 from probe_paths.control import (
     STATUS,
     Halt,
@@ -26,7 +26,7 @@ from probe_paths.control import (
     step_times,
 )
 from probe_paths.plan import LINEAR, Probe, ProgramFrame
-from twin.errors import DesignError
+from twin.errors import DesignError, NotReachable
 from twin.frames import Array
 from twin.record import Labels
 
@@ -38,10 +38,10 @@ CHANGEOVER = 60.0
 
 
 class Outcome(StrEnum):
-    """How a simulated program ended; the values are sentences for a report."""
+    """How a simulated program ended."""
 
-    DONE = "ran to its end"
-    STOPPED = "stopped at a touch without contact"
+    DONE = "done"
+    NO_CONTACT = "no contact"
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +53,7 @@ class VirtualRun:
         q: Readings at the trigger, (N, A); nan for touches without contact.
         time: Of the trigger, s since the start of the campaign, (N,).
         feature: What was touched, (N,).
-        miss: Why there was no contact, (N,); empty where there was one.
+        meeting: What the ball ran into, (N,), values of `Meeting`; a contact is one with a surface.
         reached: How many touches were tried before the program ended.
         log: Text of every log file by name.
         outcome: How it ended.
@@ -64,21 +64,23 @@ class VirtualRun:
     q: Array
     time: Array
     feature: Labels
-    miss: Labels
+    meeting: np.ndarray
     reached: int
     log: Mapping[str, str]
     outcome: Outcome
     end: float
 
-    @property
-    def why(self) -> str:
-        """One line on a program that stopped; empty for one that did not."""
+    def check_done(self) -> None:
+        """Raise NotReachable for a program that stopped; its attribute `run` is this run."""
         if self.outcome is Outcome.DONE:
-            return ""
+            return
         touch = self.program.touches[self.reached - 1]
-        return (
+        name = self.feature[touch.index]
+        raise NotReachable(
             f"{self.program.path}: line {touch.line}: touch {touch.number} "
-            f"on {self.program.features[touch.feature]} has no contact: {self.miss[touch.index]}"
+            f"on {self.program.features[touch.feature]} has no contact: the ball "
+            f"{self.meeting[touch.index]}" + (f" ({name})" if name else ""),
+            run=self,
         )
 
 
@@ -131,20 +133,20 @@ def run_program(
     _check_standard(program, standard)
     steps, clock = program.steps, machine.clock
     noise = rng.normal(0.0, 1.0, len(program.touches)) * machine.noise
-    contacts = Contacts(program, standard, machine, noise)
+    contacts = ContactSolver(program, standard, machine, noise)
     rows = [i for i, step in enumerate(steps) if isinstance(step, ProbeStep)]
     times = begin + step_times(machine.chain, steps, clock, contacts.travel)
-    contacts.settle(times[rows])
-    contacts.judge()
+    contacts.solve(times[rows])
+    contacts.classify()
     times = begin + step_times(machine.chain, steps, clock, contacts.travel)
     control = _Control(program, contacts, machine)
     outcome, reached, end = control.run(steps, times)
     return VirtualRun(
         program=program,
-        q=np.where((contacts.miss == "")[:, None], contacts.q, np.nan),
+        q=np.where(contacts.is_contact[:, None], contacts.q, np.nan),
         time=times[rows],
         feature=contacts.feature,
-        miss=contacts.miss,
+        meeting=contacts.meeting,
         reached=reached,
         log=control.log,
         outcome=outcome,
@@ -170,7 +172,9 @@ def _check_standard(program: ReadProgram, standard: Standard) -> None:
 class _Control:
     """What the control knows and prints."""
 
-    def __init__(self, program: ReadProgram, contacts: Contacts, machine: VirtualMachine) -> None:
+    def __init__(
+        self, program: ReadProgram, contacts: ContactSolver, machine: VirtualMachine
+    ) -> None:
         self.program, self.contacts = program, contacts
         heading = program.heading
         self.frame = ProgramFrame(machine.chain, Probe(heading.radius, heading.length))
@@ -187,7 +191,7 @@ class _Control:
             out[:, i] = [self.frame.coordinate(letter, v) for v in q[:, column]]
         if self.dialect.result_height == "gauge":
             out[:, 2] += self.frame.probe.tool_length
-        out[:, STATUS] = np.where(self.contacts.miss == "", 0.0, -1.0)
+        out[:, STATUS] = np.where(self.contacts.is_contact, 0.0, -1.0)
         return out
 
     @property
@@ -203,14 +207,14 @@ class _Control:
             if isinstance(step, Print):
                 self._print(step, now)
             elif isinstance(step, Halt):
-                return Outcome.STOPPED, tried, now
+                return Outcome.NO_CONTACT, tried, now
             elif isinstance(step, ProbeStep):
                 tried += 1
-                if self.contacts.miss[step.index]:
-                    for branch in step.miss:
+                if not self.contacts.is_contact[step.index]:
+                    for branch in step.on_miss:
                         if isinstance(branch, Print):
                             self._print(branch, now)
-                    return Outcome.STOPPED, tried, now
+                    return Outcome.NO_CONTACT, tried, now
         return Outcome.DONE, tried, now
 
     def _print(self, step: Print, now: float) -> None:

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from probe_paths.campaign.anchors import anchored
-from probe_paths.campaign.contacts import VirtualMachine
-from probe_paths.campaign.foot_point_search import foot_points
+from probe_paths.campaign.contact_points import at_true_contacts, foot_points
+from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.simulation import simulate
 from sensitivity.population.sampling import Population, drawn_errors
 from twin.frames import Array, apply, inverse
@@ -70,7 +69,7 @@ def test_a_handful_of_touches_moves_by_no_more_than_it_measured(probed, small) -
     """Seven touches place not even the standard: they find their balls near where they believed."""
     run = believed(probed(0.0)[0], small)
     few = run[np.arange(len(run)) < 7]
-    moved = np.linalg.norm(anchored(few, small).touches.point - few.touches.point, axis=1)
+    moved = np.linalg.norm(at_true_contacts(few, small).touches.point - few.touches.point, axis=1)
     assert moved.max() < 4.0 * np.abs(few.deviation).max()
 
 
@@ -80,7 +79,9 @@ def test_a_chip_pulls_no_other_touch_along(probed, small, chain) -> None:
     q = run.touches.q.copy()
     q[11, chain.axis_index("Z")] += 0.3
     chipped = believed(replace(run, touches=replace(run.touches, q=q)), small)
-    moved = anchored(chipped, small).touches.point - anchored(run, small).touches.point
+    moved = (
+        at_true_contacts(chipped, small).touches.point - at_true_contacts(run, small).touches.point
+    )
     others = np.arange(len(run)) != 11
     assert abs(chipped.deviation[11] - run.deviation[11]) > 100.0 * UM
     assert np.linalg.norm(moved[others], axis=1).max() < 100.0 * UM

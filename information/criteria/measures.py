@@ -1,0 +1,243 @@
+"""What stays unknown of one machine after touches, as one number: the letters of optimal design.
+
+With ``M = prior + F`` for the information ``F = W^T W`` of the touches,
+
+    I, A   `MeanVariance`        trace(K M^-1), K the moments of a prediction, or the unit matrix
+    G      `LargestVariance`     largest of trace(r_j^T M^-1 r_j), a root r_j for every pose
+    E      `LargestEigenvalue`   largest eigenvalue of r^T M^-1 r
+    D      `Determinant`         -log det M, shown as det(M)^(-1/R)
+
+All are convex in F. Each has the same three methods: its `value`, its `tangent`, a weighted mean of
+forms that is nowhere above it, which searches follow and bounds rest on, and itself `extended` by
+potential terms. The largest of several is smoothed in a search: a power mean stands for it, whose
+power is the `sharpness`; what has no largest is as sharp as can be.
+
+Reference:
+    Pukelsheim, Optimal Design of Experiments (1993), chapters 5 to 7; Kiefer, Annals of Statistics
+    2 (1974) 849 (the family of power means); DuMouchel and Jones, Technometrics 36 (1994) 37
+    (potential terms).
+"""
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from information.criteria.tangents import LogDeterminant, Tangent, Trace
+from twin.frames import Array
+
+VISIBLE = 1e-13
+"""Share of the largest eigenvalue below which a direction is neither felt nor shown: rounding."""
+
+_SHARPNESS = 16.0  # power that stands for the largest at first; searches raise it
+_LOUD = 1e-6  # share of the largest weight below which a form is left out of a tangent
+
+
+class Measure(Protocol):
+    """What is left unknown of one machine; smaller is better."""
+
+    @property
+    def size(self) -> int:
+        """R, directions and potential terms."""
+
+    @property
+    def sharpness(self) -> float:
+        """Power of the mean that stands for the largest of several; infinite where none does."""
+
+    def value(self, M: Array, smooth: bool = False) -> float:
+        """For ``M = prior + F``, (R, R); smooth with the power mean."""
+
+    def tangent(self, M: Array, weight: float) -> Tangent:
+        """Seen from M, (R, R), times the weight of the machine."""
+
+    def extended(self, count: int, worth: float) -> "Measure":
+        """With so many potential terms, together `worth` when nothing is known of them."""
+
+    def shown(self, value: float) -> float:
+        """A mean of values as it is stated."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeanVariance:
+    """``trace(K M^-1)``: the mean variance of a prediction (I), or of the parameters (A), mm^2.
+
+    Attributes:
+        K: Moments of the prediction, (R, R), mm^2; the unit matrix for A.
+    """
+
+    K: Array
+
+    @property
+    def size(self) -> int:
+        """R."""
+        return len(self.K)
+
+    @property
+    def sharpness(self) -> float:
+        """Nothing is smoothed."""
+        return np.inf
+
+    def value(self, M: Array, smooth: bool = False) -> float:
+        """``trace(K M^-1)``."""
+        return float(np.trace(np.linalg.solve(M, self.K)))
+
+    def tangent(self, M: Array, weight: float) -> Tangent:
+        """The criterion itself."""
+        return Trace(weight * self.K)
+
+    def extended(self, count: int, worth: float) -> "MeanVariance":
+        """The mean of the potential terms' variances counts beside the prediction."""
+        return MeanVariance(_joined(self.K, count, worth))
+
+    def shown(self, value: float) -> float:
+        """As it is."""
+        return value
+
+
+@dataclass(frozen=True, eq=False)
+class _Largest:
+    """The largest of several variances, and the mean variance of what counts in any case.
+
+    Attributes:
+        roots: Roots of the forms, (J, R, k).
+        K: Form that counts in any case, (R, R): that of potential terms.
+        sharpness: Power of the mean that stands for the largest in a search.
+    """
+
+    roots: Array
+    K: Array
+    sharpness: float = _SHARPNESS
+
+    @property
+    def size(self) -> int:
+        """R."""
+        return len(self.K)
+
+    def each(self, M: Array) -> tuple[Array, Array]:
+        """What the largest is taken of, (J,), and the roots that belong to it."""
+        raise NotImplementedError
+
+    def value(self, M: Array, smooth: bool = False) -> float:
+        """The largest, or its power mean, and what counts in any case."""
+        value = float(np.trace(np.linalg.solve(M, self.K))) if np.any(self.K) else 0.0
+        each = self.each(M)[0]
+        largest = max(float(each.max()), 1e-300)
+        if not smooth:
+            return value + largest
+        mean = float(np.mean((np.maximum(each, 0.0) / largest) ** self.sharpness))
+        return value + largest * mean ** (1.0 / self.sharpness)
+
+    def tangent(self, M: Array, weight: float) -> Tangent:
+        """Weighted mean of the forms, each the heavier the larger it is."""
+        each, roots = self.each(M)
+        share = (np.maximum(each, 0.0) / max(float(each.max()), 1e-300)) ** (self.sharpness - 1.0)
+        return Trace(weight * (self.K + self.mixed(roots, share / share.sum())))
+
+    def mixed(self, roots: Array, share: Array) -> Array:
+        """Weighted mean of the forms, (R, R)."""
+        raise NotImplementedError
+
+    def shown(self, value: float) -> float:
+        """As it is."""
+        return value
+
+
+@dataclass(frozen=True, eq=False)
+class LargestVariance(_Largest):
+    """Largest variance of the tool point at any pose (worst-case I; G in the books), mm^2."""
+
+    def each(self, M: Array) -> tuple[Array, Array]:
+        """Variance at every pose."""
+        J, R, k = self.roots.shape
+        flat = np.moveaxis(self.roots, 1, 0).reshape(R, J * k)
+        half = np.linalg.solve(np.linalg.cholesky(M), flat)
+        return np.einsum("rn,rn->n", half, half).reshape(J, k).sum(axis=1), self.roots
+
+    def mixed(self, roots: Array, share: Array) -> Array:
+        """Mean over the poses that are among the worst."""
+        loud = share > _LOUD * share.max()  # what is left out makes the sum less than one: no harm
+        flat = np.moveaxis(roots[loud] * np.sqrt(share[loud])[:, None, None], 1, 0)
+        flat = flat.reshape(self.size, -1)
+        return np.asarray(flat @ flat.T, dtype=np.float64)
+
+    def extended(self, count: int, worth: float) -> "LargestVariance":
+        """The mean of the potential terms' variances counts beside the largest."""
+        return replace(self, roots=_padded(self.roots, count), K=_joined(self.K, count, worth))
+
+
+@dataclass(frozen=True, eq=False)
+class LargestEigenvalue(_Largest):
+    """Largest eigenvalue of ``r^T M^-1 r`` (E), of the one root r, (1, R, k).
+
+    With ``r r^T`` the moments of a prediction it is the variance, mean over the poses, of the least
+    well determined error pattern; with r the unit matrix the E-criterion of the books.
+    """
+
+    @classmethod
+    def of(cls, K: Array) -> "LargestEigenvalue":
+        """For a root of a form K, (R, R)."""
+        values, vectors = np.linalg.eigh(K)
+        kept = values > VISIBLE * values[-1]
+        root = vectors[:, kept] * np.sqrt(values[kept])
+        return cls(root[None], np.zeros_like(K))
+
+    def each(self, M: Array) -> tuple[Array, Array]:
+        """All eigenvalues, (k,), with the root along each eigenvector, (R, k)."""
+        root = self.roots[0]
+        values, vectors = np.linalg.eigh(root.T @ np.linalg.solve(M, root))
+        return values, root @ vectors
+
+    def mixed(self, roots: Array, share: Array) -> Array:
+        """Mean over the eigenvectors."""
+        return np.asarray((roots * share) @ roots.T, dtype=np.float64)
+
+    def extended(self, count: int, worth: float) -> "LargestEigenvalue":
+        """The mean of the potential terms' variances counts beside the largest."""
+        return replace(self, roots=_padded(self.roots, count), K=_joined(self.K, count, worth))
+
+
+@dataclass(frozen=True)
+class Determinant:
+    """``-log det M``: the volume of what stays unknown (Bayesian D), shown as ``det(M)^(-1/R)``.
+
+    Attributes:
+        size: R.
+    """
+
+    size: int
+
+    @property
+    def sharpness(self) -> float:
+        """Nothing is smoothed."""
+        return np.inf
+
+    def value(self, M: Array, smooth: bool = False) -> float:
+        """``-log det M``."""
+        return float(-np.linalg.slogdet(M)[1])
+
+    def tangent(self, M: Array, weight: float) -> Tangent:
+        """The criterion itself."""
+        return LogDeterminant(weight)
+
+    def extended(self, count: int, worth: float) -> "Determinant":
+        """Potential terms join the determinant, whatever they are worth."""
+        return Determinant(self.size + count)
+
+    def shown(self, value: float) -> float:
+        """``det(M)^(-1/R)``, the geometric mean over the machines."""
+        return float(np.exp(value / self.size))
+
+
+def _joined(K: Array, count: int, worth: float) -> Array:
+    """A form with the mean variance of potential terms beside it."""
+    R = len(K)
+    out = np.zeros((R + count, R + count))
+    out[:R, :R] = K
+    if count:
+        out[R:, R:] = worth / count * np.eye(count)
+    return out
+
+
+def _padded(roots: Array, count: int) -> Array:
+    """Roots that do not feel potential terms."""
+    return np.concatenate([roots, np.zeros((len(roots), count, roots.shape[2]))], axis=1)

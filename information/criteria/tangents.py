@@ -1,0 +1,198 @@
+"""The two tangents that every criterion has, and how they change as touches come and go.
+
+A tangent is the criterion of one machine seen from one information: ``trace(K M^-1)``, or the
+negative logarithm of ``det M``, both times the weight of the machine. Searches know nothing else of
+a criterion. For a row w with its ``reach = w M^-1``, its `leverage` is ``w M^-1 w`` and its
+`numerator` is ``w M^-1 K M^-1 w``, for the determinant the leverage again.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from twin.frames import Array
+
+
+class RowStep(NamedTuple):
+    """One row that comes in or goes out (Sherman and Morrison): ``M^-1`` falls by ``c a a^T``.
+
+    Attributes:
+        W: All rows, (N, R).
+        inverse: ``M^-1`` before, (R, R).
+        a: ``M^-1 w``, (R,).
+        along: ``W a``, (N,).
+        signed: Leverage of the row, negative where it goes out.
+        c: ``sign / (1 + sign leverage)``.
+    """
+
+    W: Array
+    inverse: Array
+    a: Array
+    along: Array
+    signed: float
+    c: float
+
+
+class Tangent(Protocol):
+    """A criterion of one machine along which a search goes."""
+
+    def value(self, M: Array, inverse: Array) -> float:
+        """Of the tangent at M, (R, R)."""
+
+    def degree(self, inverse: Array) -> float:
+        """``trace(S M)`` for the slope S."""
+
+    def slope(self, inverse: Array) -> Array:
+        """S, (R, R): a little of the row w lets the value fall by ``w^T S w`` of it."""
+
+    def numerators(self, reach: Array, leverage: Array) -> Array:
+        """Of rows with their reaches (N, R), (N,)."""
+
+    def fall(self, numerator: Array, leverage: Array, sign: float = 1.0) -> Array:
+        """By how much the value falls with each row in (sign 1) or out (sign -1), (N,)."""
+
+    def step(self, row: RowStep) -> tuple[Array, float]:
+        """Change of all numerators by one row, (N,), and by how much the value falls."""
+
+    def group_fall(self, reach: Array, inner: Array) -> Array:
+        """By how much groups of rows let the value fall, (groups,) (Woodbury).
+
+        Args:
+            reach: Of the rows of each group, (groups, n, R).
+            inner: ``1 + w M^-1 w^T``, (groups, n, n).
+        """
+
+    def pair(self, reach: Array) -> Array:
+        """Numerators of two rows with one another, (2, 2), for their reaches (R, 2)."""
+
+    def flow_slope(self, t: float, a: float, b: float, c: float, d: float) -> float:
+        """How fast the value falls at the flow t between two rows (`relaxation.best_flow`)."""
+
+    def after_flow(self, W: Array, inverse: Array, reach: Array, inner: Array) -> Array:
+        """Change of ``w^T S w`` of all rows, (N,), when ``M^-1`` falls by ``reach inner reach^T``.
+
+        Args:
+            W: All rows, (N, R).
+            inverse: ``M^-1`` before, (R, R).
+            reach: Of the two rows, (R, 2).
+            inner: Shape (2, 2).
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """``trace(K M^-1)``.
+
+    Attributes:
+        K: The form, with the weight of the machine in it, (R, R).
+    """
+
+    K: Array
+
+    def value(self, M: Array, inverse: Array) -> float:
+        """``trace(K M^-1)``."""
+        return float(np.sum(inverse * self.K))
+
+    def degree(self, inverse: Array) -> float:
+        """The value again."""
+        return float(np.sum(inverse * self.K))
+
+    def slope(self, inverse: Array) -> Array:
+        """``M^-1 K M^-1``."""
+        S = inverse @ self.K @ inverse
+        return np.asarray(0.5 * (S + S.T), dtype=np.float64)
+
+    def numerators(self, reach: Array, leverage: Array) -> Array:
+        """``w M^-1 K M^-1 w``."""
+        return np.asarray(np.einsum("nr,nr->n", reach @ self.K, reach), dtype=np.float64)
+
+    def fall(self, numerator: Array, leverage: Array, sign: float = 1.0) -> Array:
+        """``k / (1 + h)``."""
+        out: Array = sign * numerator / (1.0 + sign * leverage)
+        return out
+
+    def step(self, row: RowStep) -> tuple[Array, float]:
+        """Rank-one update."""
+        Ka = self.K @ row.a
+        kappa, across = float(row.a @ Ka), row.W @ (row.inverse @ Ka)
+        change = row.c * row.c * kappa * row.along**2 - 2.0 * row.c * row.along * across
+        return change, row.c * kappa
+
+    def group_fall(self, reach: Array, inner: Array) -> Array:
+        """``trace(inner^-1  w M^-1 K M^-1 w^T)``."""
+        spread = reach @ self.K @ np.swapaxes(reach, 1, 2)
+        drops: Array = np.trace(np.linalg.solve(inner, spread), axis1=1, axis2=2)
+        return drops
+
+    def pair(self, reach: Array) -> Array:
+        """``w M^-1 K M^-1 w``."""
+        return np.asarray(reach.T @ self.K @ reach, dtype=np.float64)
+
+    def flow_slope(self, t: float, a: float, b: float, c: float, d: float) -> float:
+        """Slope of ``(a t - c t^2) / (1 + b t - d t^2)``."""
+        det, turn = 1.0 + b * t - d * t * t, b - 2.0 * d * t
+        return ((a - 2.0 * t * c) * det - (t * a - t * t * c) * turn) / (det * det)
+
+    def after_flow(self, W: Array, inverse: Array, reach: Array, inner: Array) -> Array:
+        """Change of ``w M^-1 K M^-1 w``."""
+        along = W @ reach
+        other = W @ (inverse @ (self.K @ reach))
+        kappa = inner @ (reach.T @ self.K @ reach) @ inner
+        out = -2.0 * np.einsum("ni,ij,nj->n", other, inner, along)
+        out += np.einsum("ni,ij,nj->n", along, kappa, along)
+        return np.asarray(out, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class LogDeterminant:
+    """``-weight log det M``.
+
+    Attributes:
+        weight: Of the machine.
+    """
+
+    weight: float
+
+    def value(self, M: Array, inverse: Array) -> float:
+        """``-log det M``."""
+        return float(-self.weight * np.linalg.slogdet(M)[1])
+
+    def degree(self, inverse: Array) -> float:
+        """R, of a machine of weight one."""
+        return self.weight * len(inverse)
+
+    def slope(self, inverse: Array) -> Array:
+        """``M^-1``."""
+        out: Array = self.weight * inverse
+        return out
+
+    def numerators(self, reach: Array, leverage: Array) -> Array:
+        """The leverages."""
+        return leverage
+
+    def fall(self, numerator: Array, leverage: Array, sign: float = 1.0) -> Array:
+        """``log(1 + h)``."""
+        out: Array = self.weight * np.log1p(sign * leverage)
+        return out
+
+    def step(self, row: RowStep) -> tuple[Array, float]:
+        """Rank-one update."""
+        return -row.c * row.along**2, self.weight * float(np.log1p(row.signed))
+
+    def group_fall(self, reach: Array, inner: Array) -> Array:
+        """``log det inner``."""
+        return self.weight * np.asarray(np.linalg.slogdet(inner)[1], dtype=np.float64)
+
+    def pair(self, reach: Array) -> Array:
+        """Not needed."""
+        return np.zeros((2, 2))
+
+    def flow_slope(self, t: float, a: float, b: float, c: float, d: float) -> float:
+        """Slope of ``log(1 + b t - d t^2)``."""
+        return self.weight * (b - 2.0 * d * t) / (1.0 + b * t - d * t * t)
+
+    def after_flow(self, W: Array, inverse: Array, reach: Array, inner: Array) -> Array:
+        """Change of ``w M^-1 w``."""
+        along = W @ reach
+        return -self.weight * np.asarray(np.einsum("ni,ij,nj->n", along, inner, along))

@@ -1,0 +1,188 @@
+"""`matstd import`: tables of instruments, CMMs and spreadsheets made a run file."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from twin.foreign import Sheet
+    from twin.machine import Chain
+    from twin.record import Run
+
+_SIGN = {
+    "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
+    "dev_um = -(actual - target) along the direction of motion",
+    "part": "measured - nominal is where the tool really went; in the run it stands as "
+    "dev_um = -(measured - nominal) along each coordinate",
+    "standard": "measured - calibrated is what the controller believes; in the run it stands as "
+    "dev_um = measured - calibrated along each coordinate",
+}
+"""How signs are taken, for the user to check."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "files",
+        metavar="FILE",
+        nargs="+",
+        help="csv, txt, xlsx, xls or ods; of several lists of points each is a set-up of its own",
+    )
+    kind = parser.add_mutually_exclusive_group(required=True)
+    kind.add_argument(
+        "--positioning", metavar="AXIS", help="ISO 230-2 table of this axis: targets, cycles"
+    )
+    kind.add_argument(
+        "--part", action="store_true", help="nominal/measured list of a part this machine made"
+    )
+    kind.add_argument(
+        "--standard",
+        action="store_true",
+        help="nominal/measured list of a calibrated plate or standard this machine measured",
+    )
+    kind.add_argument("--map", metavar="MAP.toml", help="any other table, by a mapping file")
+    parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
+    parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
+    parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
+    parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
+    parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
+    parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
+    parser.add_argument("--force", action="store_true", help="overwrite the outputs")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the run file, and a machine file where none was given."""
+    from pathlib import Path
+
+    from matstd.console import say
+    from twin.errors import DesignError
+    from twin.files import refuse_to_overwrite
+    from twin.foreign import read_sheet
+
+    output = Path(args.output)
+    refuse_to_overwrite(output, args.force)
+    sheets = [read_sheet(path, args.sheet) for path in args.files]
+    if len(sheets) > 1 and (args.map or args.positioning):
+        raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
+    for sheet in sheets:
+        if sheet.left_out:
+            lines = ", ".join(map(str, sheet.left_out[:10]))
+            say(f"- not read as data: line {lines} of {sheet.path}")
+    if args.map:
+        _mapped(args, sheets[0], output)
+    else:
+        _measured(args, sheets, output)
+    return 0
+
+
+def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
+    """Any table, by a mapping file; the result is read once before it gets its name."""
+    import tempfile
+    from pathlib import Path
+
+    from matstd.console import say
+    from twin.errors import BadFile
+    from twin.files import read_machine, read_run, write_whole
+    from twin.foreign import mapped_run
+
+    text = mapped_run(sheet, args.map)
+    with tempfile.TemporaryDirectory() as folder:
+        trial = Path(folder) / output.name
+        write_whole(trial, text)
+        chain = read_machine(args.machine) if args.machine else _named_machine(args, text, output)
+        try:
+            found = read_run(trial, chain)
+        except BadFile as error:
+            facts = error.facts
+            where = f"what it makes of {sheet.path}: {facts['where']}"
+            raise BadFile(args.map, where, facts["found"], str(facts["expected"])) from error
+    write_whole(output, text)
+    say(f"{output}: {len(found)} readings by {args.map}")
+    for remark in found.remarks:
+        say(f"- {remark}")
+
+
+def _named_machine(args: argparse.Namespace, text: str, output: Path) -> Chain:
+    """The machine that the head of a mapping file names, seen from the run file."""
+    from twin.errors import BadFile
+    from twin.files import parse_toml, read_machine
+
+    head = "\n".join(ln.removeprefix("# ") for ln in text.splitlines() if ln.startswith("#"))
+    named = parse_toml(head, args.map).get("machine")
+    if not isinstance(named, str):
+        raise BadFile(args.map, "head.machine", "nothing", "the machine file, or --machine")
+    return read_machine(output.parent / named)
+
+
+def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> None:
+    """A positioning test or a list of points."""
+    import os
+    from pathlib import Path
+
+    import numpy as np
+
+    from matstd.console import say
+    from twin.files import refuse_to_overwrite, write_run, write_whole
+    from twin.foreign import machine_text
+    from twin.units import UM
+
+    meaning = "positioning" if args.positioning else "part" if args.part else "standard"
+    measured, chain = (
+        _positioning(args, sheets[0]) if args.positioning else _points(args, sheets, meaning)
+    )
+    machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
+    if not args.machine:
+        refuse_to_overwrite(machine, args.force)
+        write_whole(machine, machine_text(chain, ", ".join(s.path.name for s in sheets)))
+    relative = Path(os.path.relpath(machine, output.resolve().parent)).as_posix()
+    write_run(output, measured, relative)
+    rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
+    say(f"{output}: {len(measured)} readings, deviations {rms:.3f} µm rms")
+    say(f"- sign: {_SIGN[meaning]}")
+    if not args.machine:
+        say(f"- {machine}: made from the data; check what is marked PLACEHOLDER")
+
+
+def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
+    """A positioning test as a run."""
+    from twin.errors import DesignError
+    from twin.files import read_machine
+    from twin.foreign import one_axis_machine, positioning_run, read_positioning
+    from twin.units import UM, URAD
+
+    axis = args.positioning
+    if axis not in tuple("XYZABC"):
+        raise DesignError(f"--positioning {axis}: expected one of X Y Z A B C")
+    test = read_positioning(sheet, axis, args.unit)
+    turns = axis in "ABC"
+    u = _uncertainty(args, "u_urad", URAD) if turns else _uncertainty(args, "u_um", UM)
+    chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
+    return positioning_run(test, chain, u), chain
+
+
+def _points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple[Run, Chain]:
+    """A list of points as a run."""
+    from twin.files import read_machine
+    from twin.foreign import joined_points, linear_machine, points_run, read_points
+    from twin.units import UM
+
+    points = joined_points([read_points(sheet, args.unit) for sheet in sheets])
+    chain = read_machine(args.machine) if args.machine else linear_machine(points)
+    u = _uncertainty(args, "u_um", UM)
+    return points_run(points, "part" if meaning == "part" else "standard", chain, u), chain
+
+
+def _uncertainty(args: argparse.Namespace, name: str, unit: float) -> float:
+    """The stated uncertainty of one reading; raises DesignError where none is stated."""
+    from twin.errors import DesignError
+
+    stated = getattr(args, name)
+    option = f"--{name.replace('_', '-')}"
+    if stated is None:
+        raise DesignError(f"{option}: not given; expected the standard uncertainty of one reading")
+    if not 1e-6 <= stated <= 1e5:
+        raise DesignError(f"{option} {stated:g}: expected a number from 0.000001 to 100000")
+    return float(stated * unit)

@@ -1,0 +1,46 @@
+"""The one drawing style: paper, colours and labels of every picture, and of the pages' print.
+
+A picture module takes an empty `figure`, the colours and the labels from here, and hands the
+figure to `save`. To change how all pictures look, change this part and nothing else.
+"""
+
+from report.style.colours import (
+    BLUE,
+    DIVERGING,
+    FAINT,
+    GREEN,
+    INK,
+    LINE,
+    NEUTRAL,
+    ORANGE,
+    RED,
+    SOFT,
+    WASH,
+    series,
+)
+from report.style.labels import axis_of, axis_title, reading_label, robust_limit, tidy
+from report.style.sheet import figure, nothing, plain, save
+
+__all__ = [
+    "BLUE",
+    "DIVERGING",
+    "FAINT",
+    "GREEN",
+    "INK",
+    "LINE",
+    "NEUTRAL",
+    "ORANGE",
+    "RED",
+    "SOFT",
+    "WASH",
+    "axis_of",
+    "axis_title",
+    "figure",
+    "nothing",
+    "plain",
+    "reading_label",
+    "robust_limit",
+    "save",
+    "series",
+    "tidy",
+]

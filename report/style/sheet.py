@@ -1,0 +1,49 @@
+"""Empty figures that need no screen, axes without ornament, PNG files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from report.style.colours import INK, LINE, SOFT
+from twin.files import written_whole
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDTH = 10.0
+"""Of a picture, inch: on a page, which shrinks all alike, letters come out equally large."""
+
+DPI = 140
+"""1400 dots across: sharp on the 190 mm of a printed page (190 dpi)."""
+
+
+def figure(
+    height: float, width: float = WIDTH, layout: Literal["constrained"] | None = "constrained"
+) -> Figure:
+    """Empty figure that belongs to no window system, inch."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout=layout, facecolor="white")
+
+
+def save(drawn: Figure, path: str | Path) -> None:
+    """PNG, written whole or not at all."""
+    with written_whole(path) as part:
+        drawn.savefig(part, dpi=DPI, format="png")
+
+
+def nothing(text: str) -> Figure:
+    """A small figure that says why there is nothing to draw."""
+    empty = figure(1.0)
+    empty.text(0.5, 0.5, text, ha="center", va="center", color=INK)
+    return empty
+
+
+def plain(ax: Any, grid: Literal["both", "x", "y"] = "both") -> None:
+    """Axes without a box, with a faint grid behind the data."""
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.spines[["left", "bottom"]].set_color(SOFT)
+    ax.tick_params(colors=INK, labelsize=8.5, color=SOFT)
+    ax.grid(axis=grid, color=LINE, lw=0.6)
+    ax.set_axisbelow(True)

@@ -1,0 +1,301 @@
+"""Foreign tables made runs: layouts, units, decimal marks, and above all signs."""
+
+import importlib
+from pathlib import Path
+
+import numpy as np
+import openpyxl
+import pytest
+
+from diagnosis.fit.identification import fit_run
+from matstd.cli import main
+from twin.errors import BadFile
+from twin.files.run_file import read_run
+from twin.foreign.points import linear_machine, points_run, read_points
+from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
+from twin.foreign.sheet import bare, read_sheet, unit_of_column
+from twin.library.ordinary import ordinary_model
+from twin.record.touches import at_poses
+from twin.units import DEG, UM, URAD
+
+BAD = 2
+TARGETS = np.array([0.0, 25.0, 50.0, 75.0, 100.0])
+GROWS = 0.1 * UM
+"""Error of the axis per mm of travel: it goes too far, 10 µm at the end."""
+REVERSAL = 2.0 * UM
+
+
+def deviation(target, cycle, sign):
+    """Actual minus target of the test axis, mm: too far, with reversal and a little scatter."""
+    return GROWS * target + 0.5 * REVERSAL * sign + 0.01 * UM * (cycle - 2)
+
+
+def wide_table(decimal=".", separator=","):
+    """A row a target, a column a cycle and direction."""
+    head = ["Target [mm]", *(f"{j} {d}" for j in (1, 2, 3) for d in ("up [µm]", "down [µm]"))]
+    rows = [
+        [f"{t:g}.0", *(f"{deviation(t, j, s) / UM:.4f}" for j in (1, 2, 3) for s in (1, -1))]
+        for t in TARGETS
+    ]
+    lines = [separator.join(row).replace(".", decimal) for row in rows]
+    return "\n".join([separator.join(head), *lines]) + "\n"
+
+
+def long_table():
+    """A row a reading."""
+    rows = [
+        f"{t:g},{j},{'+' if s > 0 else '-'},{deviation(t, j, s) / UM:.4f}"
+        for j in (1, 2, 3)
+        for s in (1, -1)
+        for t in TARGETS[::s]
+    ]
+    return "target_mm,cycle,direction,deviation_um\n" + "\n".join(rows) + "\n"
+
+
+def saved(tmp_path: Path, text: str, name="table.csv") -> Path:
+    path = tmp_path / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        (wide_table(), "wide.csv"),
+        (wide_table(",", ";"), "semicolons.csv"),
+        (wide_table(",", "\t"), "tabs.txt"),
+        (long_table(), "long.csv"),
+        ("Test of X\nLaser 5\n\n" + long_table() + "mean,,,3.1\n", "titled.csv"),
+    ],
+)
+def test_layouts_of_a_positioning_test_say_the_same(tmp_path, text, name):
+    test = read_positioning(read_sheet(saved(tmp_path, text, name)), "X")
+    assert len(test.target) == 30
+    for t, d, j, s in zip(test.target, test.deviation, test.cycle, test.direction, strict=True):
+        assert d == pytest.approx(deviation(t, j, s), abs=1e-4 * UM)
+
+
+def test_cycles_above_directions(tmp_path):
+    text = ",1,1,2,2\ntarget_mm,up_um,down_um,up_um,down_um\n0,1,2,3,4\n10,5,6,7,8\n"
+    test = read_positioning(read_sheet(saved(tmp_path, text)), "X")
+    picked = (test.cycle == 2) & (test.direction == -1)
+    assert test.deviation[picked] / UM == pytest.approx([4.0, 8.0])
+
+
+def test_actual_positions_stand_for_deviations(tmp_path):
+    text = "target [mm],actual [mm]\n0,0.001\n10,10.002\n"
+    test = read_positioning(read_sheet(saved(tmp_path, text)), "Z")
+    assert test.deviation / UM == pytest.approx([1.0, 2.0])
+
+
+def fitted_tip(run, q):
+    """Deviation of the tool point at readings, µm, as the ordinary model learns it from a run."""
+    chain = run.touches.chain
+    fit = fit_run(run, ordinary_model(chain))
+    theta = fit.theta[: len(fit.model.parameters)]
+    return fit.model.tip_deviation(at_poses(chain, q, 0.0), theta) / UM
+
+
+def test_an_axis_that_goes_too_far_has_a_growing_positioning_error(tmp_path):
+    """Sign, end to end: +10 µm over the travel in the table is EXX of +10 µm over the travel."""
+    test = read_positioning(read_sheet(saved(tmp_path, wide_table())), "X")
+    run = positioning_run(test, one_axis_machine("X", test.target), 0.1 * UM)
+    ends = fitted_tip(run, np.array([[0.0], [100.0]]))
+    assert ends[1, 0] - ends[0, 0] == pytest.approx(10.0, abs=0.2)
+
+
+def test_a_rotary_axis_that_turns_too_far(tmp_path):
+    """ECC grows by 100 µrad over 90 degrees: the tool point at 100 mm moves 10 µm in its sense."""
+    angles = np.linspace(0.0, 90.0, 13)
+    rows = [f"{a},{1e-4 * a / 90.0 / (DEG / 3600.0)}" for a in angles]
+    text = "target [deg],deviation [arcsec]\n" + "\n".join(rows) + "\n"
+    test = read_positioning(read_sheet(saved(tmp_path, text)), "C")
+    assert test.deviation[-1] == pytest.approx(100.0 * URAD)
+    chain = one_axis_machine("C", test.target)
+    run = positioning_run(test, chain, 1.0 * URAD)
+    assert run.deviation[-1] / UM == pytest.approx(-10.0)
+    assert run.u[0] / UM == pytest.approx(0.1)
+    moved = np.diff(run.touches.point, axis=0)
+    along = np.einsum("ni,ni->n", moved, run.touches.normal[:-1])
+    assert np.all(along > 0.0), "the direction is that of growing readings"
+
+
+PLATE = """name;x nom [mm];y nom [mm];x ist [mm];y ist [mm]
+H1;0,0;0,0;0,000;0,000
+H2;100,0;0,0;100,010;0,001
+H3;0,0;100,0;-0,002;100,000
+H4;100,0;100,0;100,008;100,001
+"""
+
+
+def test_a_part_and_a_standard_have_opposite_signs(tmp_path):
+    points = read_points(read_sheet(saved(tmp_path, PLATE)))
+    assert list(points.feature) == ["H1", "H2", "H3", "H4"]
+    assert points.deviation[1, 0] / UM == pytest.approx(10.0)
+    chain = linear_machine(points)
+    part = points_run(points, "part", chain, UM)
+    standard = points_run(points, "standard", chain, UM)
+    assert part.deviation == pytest.approx(-standard.deviation)
+    assert len(part) == 8, "a row a measured coordinate; z was not measured"
+    row = np.flatnonzero((part.touches.feature == "H2") & (part.touches.normal[:, 0] == 1.0))
+    assert part.deviation[row] / UM == pytest.approx([-10.0])
+
+
+def test_holes_too_far_apart_are_a_scale_that_is_too_long(tmp_path):
+    """Sign, end to end, of a machined part: 100.009 mm drilled for 100 is +90 ppm of X."""
+    points = read_points(read_sheet(saved(tmp_path, PLATE)))
+    run = points_run(points, "part", linear_machine(points), 0.1 * UM)
+    ends = fitted_tip(run, np.array([[0.0, 50.0], [100.0, 50.0]]))
+    assert ends[1, 0] - ends[0, 0] == pytest.approx(10.0, abs=1.0)
+
+
+def test_names_and_units_of_columns():
+    assert unit_of_column("Abweichung (µm)") == "µm"
+    assert unit_of_column("dev_um") == "um"
+    assert unit_of_column("hole_name") is None
+    assert bare("Abweichung (µm)") == "Abweichung"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("target,deviation\n0,1\n10,2\n", "unknown unit"),
+        ("a,b\n0,1\n10,2\n", "a column of targets"),
+        ("0,1\n10,2\n", "a line of column names"),
+        ("no numbers\nat all\n", "no table of numbers"),
+        ("target_mm;deviation_um\n0,5;1.5\n10,5;2.5\n", "one decimal mark"),
+        ("target_mm,cycle,deviation_um\n0,1.5,1\n10,2,2\n", "the number of a cycle"),
+    ],
+)
+def test_what_is_not_understood_is_refused(tmp_path, text, told):
+    with pytest.raises(BadFile, match=told):
+        read_positioning(read_sheet(saved(tmp_path, text)), "X")
+
+
+def _number(cell: str) -> float | str:
+    try:
+        return float(cell.replace(",", "."))
+    except ValueError:
+        return cell
+
+
+def workbook(path: Path) -> None:
+    """The plate as a workbook, on its second sheet."""
+    book = openpyxl.Workbook()
+    book.active.append(["only", "words"])
+    sheet = book.create_sheet("holes")
+    for line in PLATE.splitlines():
+        cells = line.split(";")
+        sheet.append([_number(cell) for cell in cells])
+    book.save(path)
+
+
+def test_a_workbook_says_the_same_as_its_text(tmp_path):
+    workbook(tmp_path / "plate.xlsx")
+    one = read_points(read_sheet(tmp_path / "plate.xlsx"))
+    other = read_points(read_sheet(saved(tmp_path, PLATE)))
+    assert np.array_equal(one.nominal, other.nominal)
+    assert one.deviation[:, :2] == pytest.approx(other.deviation[:, :2])
+    with pytest.raises(BadFile, match="one of Sheet, holes"):
+        read_sheet(tmp_path / "plate.xlsx", "plate")
+
+
+def test_import_writes_a_run_and_a_machine_that_read_back(tmp_path, capsys):
+    table = saved(tmp_path, wide_table())
+    out = tmp_path / "run.csv"
+    words = ["import", str(table), "--positioning", "X", "--u-um", "0.3", "-o", str(out)]
+    assert main(words) == 0
+    assert "-(actual - target)" in capsys.readouterr().out
+    run = read_run(out)
+    assert len(run) == 30
+    assert set(run.touches.last_move("X")) == {-1.0, 1.0}
+    assert run.u == pytest.approx(0.3 * UM)
+    assert main(words) == BAD, "an existing file stays"
+    assert main([*words[:4], "-o", str(tmp_path / "b.csv")]) == BAD, "an uncertainty is asked for"
+    assert not (tmp_path / "b.csv").exists()
+
+
+MAPPING = """format = "import/1"
+[head]
+machine = "machine.toml"
+probe = { radius_mm = 0.0, length_mm = 0.0 }
+u_um = 1.0
+[columns]
+Z_mm = 0.0
+px_mm = 0.0
+py_mm = 0.0
+pz_mm = 0.0
+nx = 0.0
+ny = 0.0
+nz = 1.0
+time_s = { from = "minutes", factor = 60.0 }
+dev_um = { from = "steps", factor = -2.5 }
+T_bed_degC = { from = "bed", missing = -180.0 }
+"""
+MACHINE = """format = "machine/1"
+name = "printer"
+chain = "[w f Z t]"
+[axis.Z]
+range = [-1.0, 1.0]
+"""
+
+
+def test_any_table_by_a_mapping_file(tmp_path):
+    saved(tmp_path, MACHINE, "machine.toml")
+    table = saved(tmp_path, "minutes\tsteps\tbed\n0\t1\t20.5\n1\t3\t21.5\n2\t2\t23.0\n", "log.txt")
+    mapping = saved(tmp_path, MAPPING, "map.toml")
+    out = tmp_path / "run.csv"
+    assert main(["import", str(table), "--map", str(mapping), "-o", str(out)]) == 0
+    run = read_run(out)
+    assert run.touches.time == pytest.approx([0.0, 60.0, 120.0])
+    assert run.deviation / UM == pytest.approx([-2.5, -7.5, -5.0])
+    assert run.touches.temperature["bed"] == pytest.approx([20.5, 21.5, 23.0])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('from = "steps"', 'from = "stepz"', "columns.dev_um"),
+        ("import/1", "import/2", "format"),
+        ('machine = "machine.toml"\n', "", "head.machine"),
+        ("u_um = 1.0\n", "", "u_um"),
+        ("factor = -2.5", "faktor = -2.5", "dev_um"),
+    ],
+)
+def test_faults_of_a_mapping_file_are_one_line(tmp_path, capsys, old, new, told):
+    saved(tmp_path, MACHINE, "machine.toml")
+    table = saved(tmp_path, "minutes\tsteps\tbed\n0\t1\t20.5\n1\t3\t21.5\n", "log.txt")
+    mapping = saved(tmp_path, MAPPING.replace(old, new), "map.toml")
+    out = tmp_path / "run.csv"
+    assert main(["import", str(table), "--map", str(mapping), "-o", str(out)]) == BAD
+    said = capsys.readouterr().err
+    assert told in said
+    assert said.count("\n") == 1
+    assert not out.exists()
+
+
+def test_the_command_is_a_module_of_its_own():
+    assert importlib.import_module("matstd.commands.import").__doc__.startswith("`matstd import`")
+
+
+def blocks_of_the_page(language: str) -> list[str]:
+    page = (Path(__file__).parents[2] / "docs" / "import.md").read_text(encoding="utf-8")
+    return [part.split("```", 1)[0] for part in page.split(f"```{language}\n")[1:]]
+
+
+def test_the_examples_of_the_page_are_read(tmp_path):
+    positioning, plate = blocks_of_the_page("csv")
+    assert len(read_positioning(read_sheet(saved(tmp_path, positioning)), "X").target) == 12
+    assert len(read_points(read_sheet(saved(tmp_path, plate))).nominal) == 3
+    assert blocks_of_the_page("toml")[0].replace(" ", "").count("from=") == 3
+
+
+def test_two_lists_are_two_set_ups(tmp_path):
+    for year in ("2019", "2026"):
+        saved(tmp_path, PLATE, f"{year}.csv")
+    out = tmp_path / "run.csv"
+    words = [str(tmp_path / "2019.csv"), str(tmp_path / "2026.csv"), "--part", "--u-um", "1"]
+    assert main(["import", *words, "-o", str(out)]) == 0
+    run = read_run(out)
+    assert len(run.touches.setups) == 2
+    assert len(run) == 16

@@ -1,0 +1,29 @@
+"""Tables of others made run files: positioning tests, lists of points, any table by a mapping.
+
+In go workbooks and text as instruments and CMMs write them, with the words of their headers, their
+units, separators and decimal marks; out come a `Run` (or its text) and, where no machine file is
+there, a machine whose travels are those of the data. The sign of a deviation is decided here, once,
+and said to the user: what a machine did wrong is the negative of what its controller sees.
+"""
+
+from twin.foreign.machine_text import machine_text
+from twin.foreign.mapping_file import mapped_run
+from twin.foreign.points import joined_points, linear_machine, points_run, read_points
+from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
+from twin.foreign.sheet import ANGLES, MM, Sheet, read_sheet
+
+__all__ = [
+    "ANGLES",
+    "MM",
+    "Sheet",
+    "joined_points",
+    "linear_machine",
+    "machine_text",
+    "mapped_run",
+    "one_axis_machine",
+    "points_run",
+    "positioning_run",
+    "read_points",
+    "read_positioning",
+    "read_sheet",
+]

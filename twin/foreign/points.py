@@ -1,0 +1,225 @@
+"""Lists of nominal and measured coordinates: a machined part, or a calibrated plate.
+
+Both compare where a point is with where it should be, and mean opposite things:
+
+- ``part``: the machine under test made the point, a better one measured it. Measured minus nominal
+  is where the tool really went relative to the workpiece: the machine's own deviation. A controller
+  that believes in the nominal machine sees such a surface outside its place by the negative.
+- ``standard``: the point is calibrated, the machine under test measured it. Measured minus
+  calibrated is what the controller believes, with its sign.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from twin.errors import BadFile
+from twin.foreign.sheet import MM, Sheet, bare, unit_of_column
+from twin.frames import Array
+from twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
+from twin.record import IntArray, Labels, Run, Setup, Touches
+
+Meaning = Literal["part", "standard"]
+"""Who made a list: see the module."""
+
+_NOMINAL = re.compile(r"nom|soll|target|calib|ref|theor|cad", re.IGNORECASE)
+_MEASURED = re.compile(r"meas|act|ist\b|gemessen|cmm|found", re.IGNORECASE)
+_DEVIATION = re.compile(r"dev|error|abweich|fehler|\bd[xyz]\b|delta", re.IGNORECASE)
+_LETTER = re.compile(r"(?<![a-z])d?([xyz])(?![a-z])", re.IGNORECASE)
+_NAME = re.compile(r"name|label|feature|hole|point|element|bohrung|merkmal|\bid\b", re.IGNORECASE)
+_SETUP = re.compile(r"set-?up|part|session|date|day|aufspannung|werkst", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class PointList:
+    """Points with their nominal place and what was found of each coordinate.
+
+    Attributes:
+        nominal: (N, 3), mm.
+        deviation: Measured minus nominal, (N, 3), mm; not a number where it was not measured.
+        feature: Names of the points, (N,).
+        setup: Which part or set-up a point belongs to, (N,).
+        line: Line of the file, (N,).
+    """
+
+    nominal: Array
+    deviation: Array
+    feature: Labels
+    setup: Labels
+    line: IntArray
+
+
+def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
+    """Points from a table with columns such as `x nominal [mm]`, `x measured [mm]`.
+
+    Deviations (`dx [µm]`) may stand in place of measured coordinates. A coordinate without a
+    column is zero and not measured.
+
+    Args:
+        sheet: The table.
+        unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
+
+    Raises:
+        BadFile: No nominal or no measured coordinate; a deviation without a unit.
+    """
+    nominal = np.zeros((len(sheet), 3))
+    deviation = np.full((len(sheet), 3), np.nan)
+    found = _roles(sheet)
+    for i, letter in enumerate("xyz"):
+        if ("nominal", letter) in found:
+            nominal[:, i] = _coordinate(sheet, found["nominal", letter], unit or "mm")
+        if ("measured", letter) in found:
+            measured = _coordinate(sheet, found["measured", letter], unit or "mm")
+            deviation[:, i] = measured - nominal[:, i]
+        if ("deviation", letter) in found:
+            deviation[:, i] = _coordinate(sheet, found["deviation", letter], unit)
+    if not np.isfinite(deviation).any() or not any(role == "nominal" for role, _ in found):
+        raise BadFile(
+            sheet.path,
+            "header",
+            f"columns {', '.join(map(repr, sheet.columns))}",
+            "columns such as 'x nominal [mm]' and 'x measured [mm]', or a mapping file",
+        )
+    names = [bare(c) for c in sheet.columns]
+    return PointList(
+        nominal,
+        deviation,
+        np.array(_texts(sheet, names, _NAME, "")),
+        np.array(_texts(sheet, names, _SETUP, "a")),
+        np.array(sheet.lines),
+    )
+
+
+def joined_points(lists: Sequence[PointList]) -> PointList:
+    """Several lists as one; each is a set-up of its own, named by its place in the order."""
+    if len(lists) == 1:
+        return lists[0]
+    return PointList(
+        np.concatenate([p.nominal for p in lists]),
+        np.concatenate([p.deviation for p in lists]),
+        np.concatenate([p.feature for p in lists]),
+        np.concatenate([[f"list{i + 1}_{s}" for s in p.setup] for i, p in enumerate(lists)]),
+        np.concatenate([p.line for p in lists]),
+    )
+
+
+def _roles(sheet: Sheet) -> dict[tuple[str, str], int]:
+    """Column of every role and letter."""
+    found: dict[tuple[str, str], int] = {}
+    for i, column in enumerate(sheet.columns):
+        name = bare(column)
+        letter = _LETTER.search(name.replace("_", " "))
+        if letter is None:
+            continue
+        role = (
+            "measured"
+            if _MEASURED.search(name)
+            else "deviation"
+            if _DEVIATION.search(name.replace("_", " "))
+            else "nominal"
+            if _NOMINAL.search(name) or name.strip().lower() == letter.group(1).lower()
+            else None
+        )
+        if role is None:
+            continue
+        key = (role, letter.group(1).lower())
+        if key in found:
+            both = f"{sheet.columns[found[key]]!r} and {column!r}"
+            raise BadFile(sheet.path, "header", both, f"one column of {role} {key[1]}")
+        found[key] = i
+    return found
+
+
+def _coordinate(sheet: Sheet, column: int, otherwise: str | None) -> Array:
+    """A column in mm."""
+    unit = unit_of_column(sheet.columns[column]) or otherwise
+    if unit not in MM:
+        found = f"column {sheet.columns[column]!r} without a unit of length"
+        raise BadFile(sheet.path, "header", found, f"one of {', '.join(MM)} behind it, or --unit")
+    return sheet.numbers(column) * MM[unit]
+
+
+def _texts(sheet: Sheet, names: list[str], pattern: re.Pattern[str], empty: str) -> list[str]:
+    """Cells of the first column that a pattern names and that holds no coordinate."""
+    for i, name in enumerate(names):
+        if pattern.search(name) and not _LETTER.search(name.replace("_", " ")):
+            return [text or empty for text in sheet.text(i)]
+    return [empty] * len(sheet)
+
+
+def linear_machine(points: PointList) -> Chain:
+    """A machine of the linear axes along which the points extend, for a list without a machine.
+
+    An axis along which points were measured but do not extend gets a travel of 2 mm.
+    """
+    low, high = points.nominal.min(axis=0), points.nominal.max(axis=0)
+    moves = (high > low) | ((high == low) & np.isfinite(points.deviation).any(axis=0))
+    travels = {
+        letter: Axis(range=(float(low[i]), float(high[i])))
+        if high[i] > low[i]
+        else Axis(range=(float(low[i]) - 1.0, float(low[i]) + 1.0))
+        for i, letter in enumerate("XYZ")
+        if moves[i]
+    }
+    return make_chain("linear machine", f"[w f {' '.join(travels)} t]", travels, (0.0, 0.0, 0.0))
+
+
+def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> Run:
+    """Run of a list of points: a row a measured coordinate, with the direction of that coordinate.
+
+    Readings are those that bring the tool point of the nominal machine to the nominal place, with
+    its rotary axes at zero; table frame and list share their origin, the set-up is free in a fit.
+
+    Args:
+        points: The list.
+        meaning: `part` or `standard`; it decides the sign.
+        chain: The machine.
+        u: Standard uncertainty of one coordinate, mm.
+
+    Raises:
+        OutsideTravel: A point that the machine does not reach.
+    """
+    rows, axis = np.nonzero(np.isfinite(points.deviation))
+    place = points.nominal[rows]
+    length = np.zeros(len(rows))
+    q = _readings(chain, place, length)
+    normal = np.eye(3)[axis]
+    names, setup = np.unique(points.setup, return_inverse=True)
+    sign = -1.0 if meaning == "part" else 1.0
+    touches = Touches(
+        chain=chain,
+        q=q,
+        length=length,
+        radius=np.zeros(len(rows)),
+        point=place,
+        normal=normal,
+        setups=tuple(Setup(_key(str(name))) for name in names),
+        setup=setup.reshape(-1)[rows].astype(np.int64),
+        time=np.zeros(len(rows)),
+        approach=np.zeros(q.shape),
+        feature=points.feature[rows],
+        pose=rows.astype(np.int64),
+    )
+    deviation = sign * points.deviation[rows, axis]
+    return Run(touches, deviation, np.full(len(rows), u), line=points.line[rows])
+
+
+def _readings(chain: Chain, place: Array, length: Array) -> Array:
+    """Readings that bring the nominal tool point to places of the table frame, (N, A)."""
+    zero = np.zeros((len(place), len(chain.axes)))
+    if len(chain.linear_axes) == 3:
+        return inverse_linear(chain, place, zero, length)
+    # fewer axes reach places in their own directions only: what is beside them is the set-up's
+    columns = [chain.axis_index(name) for name in chain.linear_axes]
+    D = linear_directions(chain, zero)
+    offset = place - tip(chain, zero, length)
+    zero[:, columns] = np.einsum("nmi,ni->nm", np.linalg.pinv(D), offset)
+    return zero
+
+
+def _key(name: str) -> str:
+    """A name that may stand as a key of the run's head."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "_", name) or "a"

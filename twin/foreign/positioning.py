@@ -1,0 +1,235 @@
+"""Positioning tests of one axis (ISO 230-2): targets, cycles, both directions of approach.
+
+The instrument (laser interferometer, autocollimator, encoder) says by how much the axis really
+moved: ``actual - target``, tool relative to workpiece, which is the component error of the axis. A
+controller that believes in the nominal machine sees the surface outside its place by the negative
+of that along the direction of motion; a deviation in the file therefore gets the other sign here.
+
+Reference:
+    ISO 230-2:2014, clauses 3 and 5 (terms, target positions, cycles).
+"""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.errors import BadFile
+from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
+from twin.frames import Array
+from twin.machine import Axis, Chain, make_chain, tip
+from twin.record import IntArray, Run, Setup, Touches
+
+ARM = 100.0
+"""Distance (mm) from a rotary axis at which its angle is counted as a distance along the motion:
+any will do, since the angle is what was measured."""
+
+_TARGET = re.compile(r"target|soll|nominal|command|position|\bp_?i\b", re.IGNORECASE)
+_ACTUAL = re.compile(r"actual|measured|ist\b|istwert", re.IGNORECASE)
+_DEVIATION = re.compile(r"dev|error|abweich|fehler|\bx_?ij\b", re.IGNORECASE)
+_CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
+_DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
+_UP = re.compile(r"up|↑|\+|pos|fwd|forward|vor", re.IGNORECASE)
+_DOWN = re.compile(r"down|dn|↓|-|−|neg|rev|reverse|back|rück|zurück", re.IGNORECASE)
+_NUMBER = re.compile(r"\d+")
+
+
+@dataclass(frozen=True, eq=False)
+class PositioningTest:
+    """Readings of a positioning test, one entry a reading.
+
+    Attributes:
+        axis: Letter of the axis.
+        target: Commanded position, (N,), mm or rad.
+        deviation: Actual minus target, (N,), mm or rad.
+        cycle: Number of the cycle, (N,).
+        direction: 1 where the target was reached with a growing reading, -1 else, 0 unknown.
+        line: Line of the file, (N,).
+    """
+
+    axis: str
+    target: Array
+    deviation: Array
+    cycle: IntArray
+    direction: IntArray
+    line: IntArray
+
+
+def read_positioning(sheet: Sheet, axis: str, unit: str | None = None) -> PositioningTest:
+    """A positioning test from a table.
+
+    Two layouts are understood: a row a reading (columns target, cycle, direction, and deviation or
+    actual position), and a row a target with a column a cycle and direction (`1 up`, `1 down`, or
+    the cycle in one header row and the direction in the next).
+
+    Args:
+        sheet: The table.
+        axis: Letter of the axis, which says whether it turns (A B C).
+        unit: Of deviations whose column names none.
+
+    Raises:
+        BadFile: No column of targets or deviations, a unit that is not stated.
+    """
+    names = [bare(c) for c in sheet.columns]
+    target = _only(names, _TARGET, without=(_ACTUAL, _DEVIATION))
+    if target is None:
+        raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", "a column of targets")
+    base = ANGLES if axis in "ABC" else MM
+    factor = base[_unit(sheet, target, base, "deg" if axis in "ABC" else "mm")]
+    at = sheet.numbers(target) * factor
+    values, actual = _only(names, _DEVIATION), _only(names, _ACTUAL)
+    if values is None and actual is None:
+        return _wide(sheet, axis, target, at, unit, base)
+    cycle, direction = _only(names, _CYCLE), _only(names, _DIRECTION)
+    if values is not None:
+        deviation = sheet.numbers(values) * base[_unit(sheet, values, base, unit)]
+    else:
+        assert actual is not None
+        deviation = sheet.numbers(actual) * base[_unit(sheet, actual, base, unit)] - at
+    n = len(sheet)
+    return _present(
+        PositioningTest(
+            axis,
+            at,
+            deviation,
+            _whole(sheet, cycle) if cycle is not None else np.ones(n, dtype=np.int64),
+            _signs(sheet, direction) if direction is not None else np.zeros(n, dtype=np.int64),
+            np.array(sheet.lines),
+        )
+    )
+
+
+def _wide(
+    sheet: Sheet, axis: str, target: int, at: Array, unit: str | None, base: dict[str, float]
+) -> PositioningTest:
+    """A row a target, a column a cycle and direction."""
+    parts = []
+    for i, name in enumerate(sheet.columns):
+        number = _NUMBER.search(name)
+        if i == target or number is None:
+            continue
+        rest = bare(name).replace(number.group(0), "", 1)
+        sign = 1 if _UP.search(rest) else -1 if _DOWN.search(rest) else 0
+        values = sheet.numbers(i) * base[_unit(sheet, i, base, unit)]
+        whole = np.ones(len(sheet), dtype=np.int64)
+        parts.append((at, values, int(number.group(0)) * whole, sign * whole, sheet.lines))
+    if not parts:
+        expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
+        raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    return _present(PositioningTest(axis, *columns))
+
+
+def _present(test: PositioningTest) -> PositioningTest:
+    """Without readings that are not there."""
+    rows = np.isfinite(test.target) & np.isfinite(test.deviation)
+    return PositioningTest(
+        test.axis,
+        test.target[rows],
+        test.deviation[rows],
+        test.cycle[rows],
+        test.direction[rows],
+        test.line[rows],
+    )
+
+
+def _only(
+    names: list[str], pattern: re.Pattern[str], without: tuple[re.Pattern[str], ...] = ()
+) -> int | None:
+    """The first column whose name a pattern finds and others do not."""
+    found = (i for i, n in enumerate(names) if pattern.search(n))
+    return next((i for i in found if not any(w.search(names[i]) for w in without)), None)
+
+
+def _unit(sheet: Sheet, column: int, base: dict[str, float], otherwise: str | None) -> str:
+    """Unit of a column; raises BadFile where none is known."""
+    unit = unit_of_column(sheet.columns[column]) or otherwise
+    if unit is None or unit not in base:
+        found = f"column {sheet.columns[column]!r} in {unit or 'an unknown unit'}"
+        expected = f"one of {', '.join(base)} behind the name, or --unit"
+        raise BadFile(sheet.path, "header", found, expected)
+    return unit
+
+
+def _listed(sheet: Sheet) -> str:
+    return ", ".join(repr(c) for c in sheet.columns)
+
+
+def _whole(sheet: Sheet, column: int) -> IntArray:
+    """Numbers of cycles."""
+    numbers = sheet.numbers(column)
+    odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))
+    if len(odd):
+        raise sheet.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", "the number of a cycle")
+    return numbers.astype(np.int64)
+
+
+def _signs(sheet: Sheet, column: int) -> IntArray:
+    """Signs of directions of approach."""
+    out = np.zeros(len(sheet), dtype=np.int64)
+    for i, word in enumerate(sheet.text(column)):
+        if word in ("1", "-1", "0"):
+            out[i] = int(word)
+        elif _UP.search(word) or _DOWN.search(word):
+            out[i] = 1 if _UP.search(word) else -1
+        elif word:
+            raise sheet.bad(i, column, repr(word), "up or down (+ or -, 1 or -1)")
+    return out
+
+
+def one_axis_machine(axis: str, target: Array) -> Chain:
+    """A machine of one axis whose travel is that of the targets, the tool at `ARM` if it turns."""
+    low, high = float(target.min()), float(target.max())
+    turns = axis in "ABC"
+    chain = f"[w {axis}' f t]" if turns else f"[w f {axis} t]"
+    aside = {"A": (0.0, -ARM, 0.0), "B": (0.0, 0.0, -ARM), "C": (-ARM, 0.0, 0.0)}
+    table = Axis(range=(low, high), point=aside.get(axis))
+    return make_chain(f"{axis} axis", chain, {axis: table})
+
+
+def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
+    """Run of a positioning test on a machine that has its axis.
+
+    Every reading is a distance along the motion: its direction is that in which the tool moves
+    relative to the workpiece while the reading grows, its deviation the negative of what the
+    instrument says (times the arm on a rotary axis).
+
+    Args:
+        test: The readings.
+        chain: The machine; its other axes stand at zero.
+        u: Standard uncertainty of one deviation, mm, or rad on a rotary axis.
+
+    Raises:
+        UnknownAxis: The machine does not have the axis.
+    """
+    n = len(test.target)
+    i = chain.axis_index(test.axis)
+    q = np.zeros((n, len(chain.axes)))
+    q[:, i] = test.target
+    length = np.zeros(n)
+    point = tip(chain, q, length)
+    step = 1e-4
+    ahead, behind = q.copy(), q.copy()
+    ahead[:, i] += step
+    behind[:, i] -= step
+    motion = (tip(chain, ahead, length) - tip(chain, behind, length)) / (2.0 * step)
+    speed = np.linalg.norm(motion, axis=1)  # 1 on a linear axis, the arm on a rotary one
+    approach = np.zeros(q.shape)
+    approach[:, i] = test.direction
+    targets = np.unique(np.round(test.target, 9), return_inverse=True)[1].reshape(-1)
+    touches = Touches(
+        chain=chain,
+        q=q,
+        length=length,
+        radius=np.zeros(n),
+        point=point,
+        normal=motion / speed[:, None],
+        setups=(Setup("a"),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=np.zeros(n),
+        approach=approach,
+        feature=np.array([f"cycle{c}" for c in test.cycle]),
+        pose=targets.astype(np.int64),
+    )
+    # one line of the file may hold many readings: the rows of the run are what messages name
+    return Run(touches, -test.deviation * speed, np.asarray(u * speed), repeat=test.cycle)

@@ -1,0 +1,264 @@
+"""Foreign tables as they come: workbooks, and text with any separator and decimal mark.
+
+The table of a file is found, not declared: its first row of numbers ends the header; what stands
+above the header is a title, what follows the last row of numbers a footer (means, remarks).
+"""
+
+import csv
+import io
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from twin.errors import BadFile
+from twin.files import read_text
+from twin.frames import Array
+
+WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
+"""Endings of files that are read as workbooks."""
+
+_SEPARATORS = (";", "\t", ",", "|")
+"""In the order in which they are tried: a comma last, because it may be a decimal mark."""
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?\Z")
+_DECIMAL_POINT = re.compile(r"[+-]?\d+\.\d*([eE][+-]?\d+)?\Z")
+_UNIT = re.compile(r"\s*[\[(]\s*([^\])]+?)\s*[\])]\s*\Z|_([A-Za-zµμ]+)\Z")
+
+MM = {"mm": 1.0, "µm": 1e-3, "um": 1e-3, "micron": 1e-3, "nm": 1e-6, "m": 1e3, "in": 25.4}
+"""Units of length in files of others, mm."""
+ANGLES = {"deg": math.pi / 180.0, "°": math.pi / 180.0, "rad": 1.0, "mrad": 1e-3, "µrad": 1e-6,
+          "urad": 1e-6, "arcsec": math.pi / 648000.0, '"': math.pi / 648000.0}  # fmt: skip
+"""Units of angles in files of others, rad."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One table of a foreign file, as text and numbers.
+
+    Attributes:
+        path: The file.
+        columns: Names in its header, with their units as they stand there.
+        cells: Rows of numbers, each as long as `columns`; "" where a cell is empty.
+        lines: Line or row of the file that each of them stands in.
+        title: What stands above the header.
+        left_out: Lines below the header that hold no row of numbers.
+    """
+
+    path: Path
+    columns: tuple[str, ...]
+    cells: tuple[tuple[str | float, ...], ...]
+    lines: tuple[int, ...]
+    title: tuple[str, ...]
+    left_out: tuple[int, ...]
+
+    def __len__(self) -> int:
+        return len(self.cells)
+
+    def numbers(self, column: int, missing: float | None = None) -> Array:
+        """Numbers of a column, (N,); not a number where a cell is empty or says `missing`.
+
+        Raises:
+            BadFile: A cell that is no number; its line and what stood there.
+        """
+        out = np.full(len(self), np.nan)
+        for i, row in enumerate(self.cells):
+            cell = row[column]
+            if isinstance(cell, str) and cell:
+                expected = "a number" if "," not in cell else "one decimal mark in the whole file"
+                raise self.bad(i, column, repr(cell), expected)
+            if cell != "" and cell != missing:
+                out[i] = cell
+        return out
+
+    def text(self, column: int) -> list[str]:
+        """Cells of a column as text; whole numbers without a decimal mark."""
+        cells = [row[column] for row in self.cells]
+        return [f"{c:g}" if isinstance(c, float) else c for c in cells]
+
+    def bad(self, row: int, column: int, found: str, expected: str) -> BadFile:
+        """The exception for a cell."""
+        where = f"line {self.lines[row]}, column {self.columns[column]!r}"
+        return BadFile(self.path, where, found, expected)
+
+    def column(self, name: str) -> int:
+        """Index of a column by its whole name or its name without unit.
+
+        Raises:
+            BadFile: No such column, with those that are there.
+        """
+        for names in (self.columns, tuple(bare(c) for c in self.columns)):
+            if name in names:
+                return names.index(name)
+        raise BadFile(
+            self.path, "header", f"no column {name!r}", f"one of {', '.join(self.columns)}"
+        )
+
+
+def bare(column: str) -> str:
+    """Name of a column without the unit behind it.
+
+    Example:
+        >>> bare("Deviation [µm]"), bare("x_mm"), bare("Soll X (mm)")
+        ('Deviation', 'x', 'Soll X')
+    """
+    return _UNIT.sub("", column).strip() if unit_of_column(column) else column.strip()
+
+
+def unit_of_column(column: str) -> str | None:
+    """Unit behind the name of a column, None where none that is known stands there.
+
+    Example:
+        >>> unit_of_column("Deviation [µm]"), unit_of_column("x_mm"), unit_of_column("point_name")
+        ('µm', 'mm', None)
+    """
+    match = _UNIT.search(column)
+    unit = (match.group(1) or match.group(2)).replace("μ", "µ") if match else ""
+    return unit if unit in MM or unit in ANGLES else None
+
+
+def read_sheet(path: str | Path, name: str | None = None) -> Sheet:
+    """The table of a foreign file.
+
+    Args:
+        path: A workbook (xlsx, xls, ods ...) or text with commas, semicolons or tabs; decimal
+            commas are read where every number of the file has them.
+        name: Sheet of a workbook; None takes the first that has a table.
+
+    Raises:
+        BadFile: No table of numbers, a sheet that is not there, or mixed decimal marks.
+    """
+    path = Path(path)
+    if path.suffix.lower() in WORKBOOKS:
+        return _workbook(path, name)
+    rows = _text_rows(path)
+    sheet = _table(path, rows)
+    if sheet is None:
+        raise BadFile(path, "file", "no table of numbers", "a header and rows of numbers below it")
+    return sheet
+
+
+def _workbook(path: Path, name: str | None) -> Sheet:
+    """The table of one sheet of a workbook."""
+    from python_calamine import CalamineError, CalamineWorkbook
+
+    try:
+        book = CalamineWorkbook.from_path(path)
+    except (OSError, CalamineError) as error:
+        raise BadFile(path, "file", str(error), "a workbook that can be read") from error
+    names = book.sheet_names
+    if name is not None and name not in names:
+        raise BadFile(path, "sheet", repr(name), f"one of {', '.join(names)}")
+    for one in [name] if name else names:
+        found = book.get_sheet_by_name(one).to_python(skip_empty_area=False)
+        rows = [(i + 1, [_cell(c) for c in row]) for i, row in enumerate(found)]
+        sheet = _table(path, rows)
+        if sheet is not None:
+            return sheet
+    raise BadFile(path, f"sheet {name or ', '.join(names)}", "no table of numbers", "a table")
+
+
+def _cell(value: object) -> str | float:
+    """A cell of a workbook: numbers as they are, everything else as text."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value).strip()
+    return float(value)
+
+
+def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
+    """Rows of a text file, its numbers read."""
+    text = read_text(path)
+    counts = {s: _typical(text, s) for s in _SEPARATORS}
+    separator = next((s for s in _SEPARATORS if counts[s] >= 1), ",")
+    reader = csv.reader(io.StringIO(text), delimiter=separator)
+    rows = [(reader.line_num, [c.strip() for c in row]) for row in reader]
+    mark = _decimal_mark(path, rows)
+    return [(line, [_number(c, mark) for c in row]) for line, row in rows]
+
+
+def _typical(text: str, separator: str) -> float:
+    """Separators in the typical line of the fuller half of a text."""
+    counts = sorted(line.count(separator) for line in text.splitlines() if line.strip())
+    return float(np.median(counts[len(counts) // 2 :])) if counts else 0.0
+
+
+def _decimal_mark(path: Path, rows: Sequence[tuple[int, list[str]]]) -> str:
+    """The decimal mark that all numbers of a file share; raises BadFile where both stand."""
+    commas = [line for line, row in rows if any(_DECIMAL_COMMA.match(c) for c in row)]
+    points = [line for line, row in rows if any(_DECIMAL_POINT.match(c) for c in row)]
+    if commas and points:
+        found = f"decimal commas, and decimal points in line {points[0]}"
+        raise BadFile(path, f"line {commas[0]}", found, "one decimal mark in the whole file")
+    return "," if commas else "."
+
+
+def _number(cell: str, mark: str) -> str | float:
+    """A cell as a number if it is one."""
+    if "_" in cell or not cell.isascii():
+        return cell
+    try:
+        return float(cell.replace(mark, "."))
+    except ValueError:
+        return cell
+
+
+def _table(path: Path, rows: Sequence[tuple[int, Sequence[str | float]]]) -> Sheet | None:
+    """Header and rows of numbers, None where there are none."""
+    rows = [(line, row) for line, row in rows if any(c != "" for c in row)]
+    first = next((i for i in range(len(rows)) if _begins_table(rows, i)), None)
+    if first is None:
+        return None
+    above = [i for i in range(first) if sum(c != "" for c in rows[i][1]) >= 2]
+    if not above:
+        raise BadFile(path, f"line {rows[first][0]}", "numbers", "a line of column names above")
+    width = max(len(row) for _, row in rows[first:])
+    header = _header([list(rows[i][1]) for i in above[-2:]], width)
+    data = [(line, row) for line, row in rows[first:] if _is_data(row)]
+    others = [line for line, row in rows[first:] if not _is_data(row)]
+    title = [" ".join(str(c) for c in row if c != "") for _, row in rows[: above[-1]]]
+    return Sheet(
+        path=path,
+        columns=header,
+        cells=tuple((*row, *[""] * (width - len(row))) for _, row in data),
+        lines=tuple(line for line, _ in data),
+        title=tuple(title),
+        left_out=tuple(others),
+    )
+
+
+def _begins_table(rows: Sequence[tuple[int, Sequence[str | float]]], i: int) -> bool:
+    """Whether a row of numbers begins the table: numbers of cycles stand above a row of names."""
+    if not _is_data(rows[i][1]):
+        return False
+    after = rows[i + 1][1] if i + 1 < len(rows) else ()
+    words = sum(isinstance(c, str) and c != "" for c in after)
+    more = any(_is_data(row) for _, row in rows[i + 2 :])
+    return not (words >= 2 and not _is_data(after) and more)
+
+
+def _is_data(row: Sequence[str | float]) -> bool:
+    """Whether at least two cells and half of them are numbers."""
+    filled = [c for c in row if c != ""]
+    numbers = sum(isinstance(c, float) for c in filled)
+    return numbers >= 2 and 2 * numbers >= len(filled)
+
+
+def _header(rows: list[list[str | float]], width: int) -> tuple[str, ...]:
+    """Names of the columns: the last row of names, with the row above where names stand twice.
+
+    A number in the upper row counts for the columns up to the next, as in merged cells.
+    """
+    names = [[f"{c:g}" if isinstance(c, float) else c for c in row] for row in rows]
+    names = [row + [""] * (width - len(row)) for row in names]
+    last = names[-1]
+    filled = [n for n in last if n]
+    if len(names) == 1 or len(set(filled)) == len(filled):
+        return tuple(last)
+    carried, upper = "", []
+    for name in names[0]:
+        carried = name or carried
+        upper.append(carried)
+    return tuple(f"{a} {b}".strip() for a, b in zip(upper, last, strict=True))
