@@ -1,4 +1,8 @@
-"""Sentences made from results."""
+"""Sentences made from results, for pages and for the console; nothing parses them.
+
+A module for each room below: what a result says in numbers and names is told here in words with
+units, values with their uncertainty.
+"""
 
 from report.words.diagnosis_words import (
     comparison_sentence,
@@ -14,6 +18,7 @@ from report.words.diagnosis_words import (
 )
 from report.words.probe_words import ordering_words
 from report.words.remark_words import remark_sentence
+from report.words.sensitivity_words import study_words, unsampled
 
 __all__ = [
     "comparison_sentence",
@@ -26,6 +31,8 @@ __all__ = [
     "sizes",
     "stated_noise",
     "structure_words",
+    "study_words",
+    "unsampled",
     "values",
     "verdict_sentence",
 ]
