@@ -5,7 +5,6 @@ from artefact.compare.identifiability import (
     Alone,
     IdentifiabilityReport,
     identifiability_report,
-    write_identifiability,
 )
 
 __all__ = [
@@ -17,5 +16,4 @@ __all__ = [
     "identifiability_report",
     "judged",
     "random_lots",
-    "write_identifiability",
 ]
