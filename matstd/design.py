@@ -16,7 +16,7 @@ from artefact.place import Placement, place
 from cad_out.verify import export_standard
 from diagnosis.answer import probed_volume, prove
 from diagnosis.fit import fit_run
-from matstd.wanted import frame, placement_options, probe, probing
+from matstd.wanted import blank, placement_options, probe, probe_reach
 from probe_paths.campaign import VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import PlanOptions, TouchPlan, plan_touches
@@ -111,14 +111,13 @@ def _placement(
 ) -> Placement:
     """Standard and touches for the project's machine."""
     return place(
-        probing(project),
-        frame(project),
+        probe_reach(project),
+        blank(project),
         workspace,
         rng,
-        project.ranges,
+        project.population,
         placement_options(project),
         progress,
-        project.expected.distributions,
     )
 
 

@@ -1,11 +1,18 @@
-"""What touches on a standard can and cannot know of a machine: one record for page and file."""
+"""What touches on a standard can and cannot know of a machine: one record for report and file."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.compare.alternatives import Alternative, alternatives, both, set_up, tried_in, ways
+from artefact.compare.alternatives import (
+    Alternative,
+    alternatives,
+    joined_rows,
+    other_setups,
+    setup_parameters,
+    touches_reached_in,
+)
 from artefact.reach import Requests
 from artefact.worth import Criterion
 from information.criteria import Posterior
@@ -74,26 +81,28 @@ class IdentifiabilityReport:
 
 
 def identifiability_report(
-    aim: Criterion, requests: Requests, rng: np.random.Generator
+    criterion: Criterion, requests: Requests, rng: np.random.Generator
 ) -> IdentifiabilityReport:
     """What some touches can know of the machine.
 
     Args:
-        aim: Machine, expected errors, noise.
+        criterion: Machine, expected errors, noise.
         requests: The touches.
         rng: Draws the touches that alternatives are tried with.
     """
-    model, touches = aim.model, aim.probing.touches(requests)
-    W = aim.whitened(requests)
-    more = tried_in(aim.probing, requests, rng)
-    richer = {"more touches at the same table poses": aim.whitened(more)}
-    for name, way in ways(aim).items():
-        second = tried_in(way, requests, rng)
+    model, touches = criterion.model, criterion.reach.touches(requests)
+    W = criterion.whitened(requests)
+    more = touches_reached_in(criterion.reach, requests, rng)
+    richer = {"more touches at the same table poses": criterion.whitened(more)}
+    for name, other in other_setups(criterion).items():
+        second = touches_reached_in(other, requests, rng)
         if len(second):
-            richer[name] = both(aim, requests, second, way).W
-    gauge = identifiability(W, aim.prior_sd, model.names, model.parameters, model.chain, richer)
+            richer[name] = joined_rows(criterion, requests, second, other).W
+    gauge = identifiability(
+        W, criterion.prior_sd, model.names, model.parameters, model.chain, richer
+    )
     units = [p.unit for _, p in model.parameters]
-    setup = set_up(aim)
+    setup = setup_parameters(criterion)
     chain = model.chain
     return IdentifiabilityReport(
         touches=len(requests),
@@ -104,21 +113,21 @@ def identifiability_report(
         },
         gauge=gauge,
         freedoms=in_families(gauge.freedoms),
-        combinations=combinations(W, aim.prior_sd, units, setup.tolist()),
-        alone=_alone(aim, W, setup.tolist()),
-        degrees=supported_degrees(model, touches, W, aim.noise),
-        alternatives=alternatives(aim, requests, rng),
+        combinations=combinations(W, criterion.prior_sd, units, setup.tolist()),
+        alone=_alone(criterion, W, setup.tolist()),
+        degrees=supported_degrees(model, touches, W, criterion.noise),
+        alternatives=alternatives(criterion, requests, rng),
     )
 
 
-def _alone(aim: Criterion, W: Array, setup: Sequence[int]) -> tuple[Alone, ...]:
+def _alone(criterion: Criterion, W: Array, setup: Sequence[int]) -> tuple[Alone, ...]:
     """Machine errors that are known for themselves; the set-up is of no interest."""
-    known = Posterior(W, aim.prior_sd, aim.model.names)
+    known = Posterior(W, criterion.prior_sd, criterion.model.names)
     alone = set(known.alone)
     out = [
         Alone(name, float(before), float(after), parameter.unit)
         for p, (name, before, after, (_, parameter)) in enumerate(
-            zip(known.names, known.prior_sd, known.sd, aim.model.parameters, strict=True)
+            zip(known.names, known.prior_sd, known.sd, criterion.model.parameters, strict=True)
         )
         if name in alone and p not in setup
     ]

@@ -5,10 +5,10 @@ Out: a `Run`. `simulate` checks every move for collisions before it runs the pro
 never learns what the virtual machine knew. `orders` and `probing_time` say what a plan costs.
 """
 
+from probe_paths.campaign.contact_points import foot_points
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.duration import probing_time
 from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.foot_point_search import foot_points
 from probe_paths.campaign.order_study import Order, Ordering, orders
 from probe_paths.campaign.simulation import Campaign, simulate
 

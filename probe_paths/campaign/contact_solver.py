@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from artefact.body import Meeting, Standard
-from artefact.reach import Mask, contact
+from artefact.body import Meeting, Standard, contact
+from artefact.reach import Mask
 from probe_paths.control import Clock, ReadProgram
 from probe_paths.language import Dialect
 from twin.frames import Array, apply, inverse, turn
@@ -18,6 +18,7 @@ CONTACT_TOLERANCE = 1e-3 * NM
 """The ball touches when its gap is this small, mm."""
 
 _STEPS = 12
+"""Of Newton's method; with errors of ordinary size four were enough."""
 
 Disturbance = Callable[[Touches], Contribution]
 

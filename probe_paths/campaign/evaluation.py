@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from artefact.body import Standard
-from probe_paths.campaign.contact_points import at_true_contacts
-from probe_paths.campaign.foot_point_search import foot_points
+from probe_paths.campaign.contact_points import at_true_contacts, foot_points
 from probe_paths.control import LogPart
 from probe_paths.language import Dialect
 from probe_paths.plan import LINEAR, Probe, ProgramFrame

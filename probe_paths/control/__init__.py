@@ -5,7 +5,7 @@ takes (`ReadProgram`), and what one run of it logged (`LogPart`). Rules for sing
 `modes` and `motion`, those for a whole program in `structure` and `runner`.
 """
 
-from probe_paths.control.clock import Clock
+from probe_paths.control.clock import Clock, step_times
 from probe_paths.control.interpreter import interpret, read_program, stated_probe
 from probe_paths.control.log import LogPart, read_log
 from probe_paths.control.steps import (
@@ -19,7 +19,6 @@ from probe_paths.control.steps import (
     Step,
     Value,
 )
-from probe_paths.control.timeline import step_times
 
 __all__ = [
     "STATUS",

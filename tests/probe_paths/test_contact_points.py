@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from probe_paths.campaign.contact_points import at_true_contacts
+from probe_paths.campaign.contact_points import at_true_contacts, foot_points
 from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.foot_point_search import foot_points
 from probe_paths.campaign.simulation import simulate
 from sensitivity.population.sampling import Population, drawn_errors
 from twin.frames import Array, apply, inverse
