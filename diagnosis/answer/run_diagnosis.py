@@ -34,7 +34,7 @@ from diagnosis.search import (
 from twin.compute import one_blas_thread
 from twin.library import ordinary_model, proposals
 from twin.model import Effect, Model
-from twin.record import Run, counted_once
+from twin.record import Run, without_copies
 
 DEPENDENCES = 2
 """Patterns, one after the other, of which `depends_on` tells."""
@@ -67,7 +67,7 @@ def diagnose(
     Example:
         ``diagnose(read_run("run.csv")).verdict`` is one of three phrases.
     """
-    run = counted_once(run)
+    run = without_copies(run)
     start = model or ordinary_model(run.touches.chain)
     belief = prior or Prior.of_effects(start.effects)
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)

@@ -13,7 +13,7 @@ from diagnosis.residual.structure import Structure, find_structure
 from twin.compute import one_blas_thread
 from twin.frames import Array
 from twin.model import Model
-from twin.record import Run, counted_once
+from twin.record import Run, without_copies
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +150,7 @@ def compare(
     Raises:
         NotEnoughData: So few touches that nothing can be said.
     """
-    run = counted_once(run)
+    run = without_copies(run)
     if estimates is None:
         fit = fit_run(run, model)
         u = run.u

@@ -1,4 +1,8 @@
-"""Sentences made from results, and the files that hold them beside the figures."""
+"""Sentences made from results, for pages and for the console; nothing parses them.
+
+A module for each room below: what a result says in numbers and names is told here in words with
+units, values with their uncertainty.
+"""
 
 from report.words.diagnosis_words import (
     comparison_sentence,
@@ -22,6 +26,7 @@ from report.words.identifiability_words import (
 from report.words.identification_file import write_identification
 from report.words.parameter_words import in_words, short
 from report.words.probe_words import ordering_words
+from report.words.sensitivity_words import study_words, unsampled
 
 __all__ = [
     "combination_words",
@@ -39,6 +44,8 @@ __all__ = [
     "short",
     "sizes",
     "stated_noise",
+    "study_words",
+    "unsampled",
     "values",
     "verdict_sentence",
     "write_identifiability",

@@ -16,7 +16,7 @@ from diagnosis.residual.run_remarks import remarks
 from matstd.cli import main
 from twin.errors import BadFile
 from twin.library.ordinary import ordinary_model
-from twin.record.copies import counted_once
+from twin.record.copies import without_copies
 from twin.units import NM, UM
 
 NUMBER = (int, float)
@@ -499,11 +499,11 @@ def test_a_run_pasted_many_times_counts_once(case) -> None:
     pasted = run[np.tile(np.arange(n), 3)]
     time = pasted.touches.time + np.repeat(np.arange(3), n) * (np.ptp(run.touches.time) + 15.0)
     pasted = replace(pasted, touches=replace(pasted.touches, time=time))
-    once = counted_once(pasted)
+    once = without_copies(pasted)
     assert len(once) == n
     assert any(f"{2 * n} rows repeat the readings" in line for line in once.remarks)
-    assert counted_once(once) is once
-    again = counted_once(run[np.r_[0, np.arange(n)]])
+    assert without_copies(once) is once
+    again = without_copies(run[np.r_[0, np.arange(n)]])
     assert len(again) == n
     assert "1 row stands twice" in again.remarks[0]
 
@@ -520,7 +520,7 @@ def test_replicates_are_no_copies(case) -> None:
     rounded = np.round(noisy / shown) * shown
     twice = replace(twice, deviation=rounded, touches=replace(twice.touches, time=time))
     assert (rounded[:n] == rounded[n:]).sum() > 50
-    assert counted_once(twice) is twice
+    assert without_copies(twice) is twice
 
 
 def test_millimetres_in_a_file(changed, tmp_path) -> None:
