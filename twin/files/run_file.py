@@ -83,11 +83,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     run = _assemble(table, chain, head, remarks)
     if "dev_um" not in table:
         run, moved = aligned(run)
-        remarks += [
-            f"set-up {m.name} stands {m.shift:.2f} mm and {m.turn / DEG:.2f}° from where the head "
-            "says, as its touches tell; it is taken there"
-            for m in moved
-        ]
+        remarks += [columns.moved_setup(m) for m in moved]
     run = checked_run(run, table, remarks)
     return replace(run, remarks=tuple(remarks))
 
