@@ -29,9 +29,9 @@ HEAD = """\
 # Python interface
 
 Every room is a package with parts; a part is used through the names that its `__init__` lists.
-[architecture.md](architecture.md) says how the rooms hang together, [conventions.md](conventions.md)
-which frames, signs and units they share. `make api` writes this page, and to `out/api` the same with
-signatures, arguments, units and errors of every name.
+[architecture.md](architecture.md) says how the rooms hang together,
+[conventions.md](conventions.md) which frames, signs and units they share. `make api` writes this
+page, and to `out/api` the same with signatures, arguments, units and errors of every name.
 """
 
 

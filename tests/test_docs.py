@@ -23,7 +23,7 @@ ROOMS = (
 PAGES = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "examples").rglob("*.md")]
 SOURCES = [f for room in ROOMS for f in sorted((ROOT / room).rglob("*.py"))]
 IDS = [f.relative_to(ROOT).as_posix() for f in [*PAGES, *SOURCES]]
-OURS = re.compile(r"`((?:%s)(?:[./]\w+)+)(?:\([^`]*\))?`" % "|".join(ROOMS))
+OURS = re.compile(r"`((?:{})(?:[./]\w+)+)(?:\([^`]*\))?`".format("|".join(ROOMS)))
 FILES = {"html", "json", "csv", "toml", "md"}
 """Endings of files that a command writes: `diagnosis.json` is no module."""
 
