@@ -26,7 +26,13 @@ from report.words.identifiability_words import (
 from report.words.identification_file import write_identification
 from report.words.parameter_words import in_words, short
 from report.words.probe_words import ordering_words
-from report.words.sensitivity_words import study_words, unsampled
+from report.words.sensitivity_words import (
+    place_words,
+    region_words,
+    sampling_words,
+    study_words,
+    unsampled,
+)
 
 __all__ = [
     "combination_words",
@@ -38,9 +44,12 @@ __all__ = [
     "named_value",
     "ordering_words",
     "pair_words",
+    "place_words",
     "reason_words",
+    "region_words",
     "resolution_words",
     "rivals_words",
+    "sampling_words",
     "short",
     "sizes",
     "stated_noise",

@@ -5,9 +5,10 @@ import pytest
 from machines import LENGTH
 
 from report.maps.regions_picture import draw_regions
+from report.words.sensitivity_words import place_words, region_words
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
-from sensitivity.shares.workspace_regions import region_totals, region_words, regions
+from sensitivity.shares.workspace_regions import region_totals, regions
 from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
 from twin.machine.ranges import DEFAULT_RANGES, Ranges
@@ -20,12 +21,12 @@ def found(chain, workspace):
 
 
 def named(found, words):
-    (one,) = [r for r in found if r.words.startswith(words)]
+    (one,) = [r for r in found if place_words(r.place).startswith(words)]
     return one
 
 
 def test_poses_lie_where_the_words_say(found, chain):
-    assert [r.words for r in found] == [
+    assert [place_words(r.place) for r in found] == [
         "whole workspace",
         "middle: X, Y and Z in their middle third",
         "corners: X, Y and Z in their outer sixths",
@@ -142,7 +143,7 @@ def test_the_tornado_holds_the_shares_in_percent(found, chain):
         labels = [t.get_text() for t in axes.get_yticklabels()]
         assert labels == [chain.symbols[i].name for i in order]
         title = axes.get_title(loc="left")
-        assert title == f"{region.words}\n{region.rms / UM:.0f} µm rms"
+        assert title == f"{place_words(region.place)}\n{region.rms / UM:.0f} µm rms"
     assert panels[-1].get_xlabel() == "share of the variance / %"
     ends = [100.0 * np.quantile(r.shares[:, r.largest(1)], 0.95) for r in found]
     assert max(ends) < panels[0].get_xlim()[1] < 1.2 * max(ends)
