@@ -8,7 +8,7 @@ import numpy as np
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
 from diagnosis.residual.failing_regions import Region, regions
-from diagnosis.residual.run_remarks import remarks
+from diagnosis.residual.run_remarks import Remark, remarks
 from diagnosis.residual.structure import Structure, find_structure
 from twin.compute import one_blas_thread
 from twin.frames import Array
@@ -47,7 +47,7 @@ class Comparison:
             and of the prediction where it was made without this run.
         structure: What the residual varies with, the most certain first.
         where: Regions where the model fails.
-        remarks: What else a user should know, one line each.
+        remarks: What else a user should know.
     """
 
     fit: Fit
@@ -55,7 +55,7 @@ class Comparison:
     u: Array
     structure: tuple[Structure, ...]
     where: tuple[Region, ...]
-    remarks: tuple[str, ...]
+    remarks: tuple[Remark, ...]
 
     @property
     def run(self) -> Run:

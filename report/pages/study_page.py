@@ -9,7 +9,7 @@ import numpy as np
 from report.maps import level
 from report.pages.page import write_page
 from report.scenes import Scene, draw_volumes
-from report.words import place_words, region_words, sampling_words, unsampled
+from report.words import dominant_words, place_words, sampling_words, unsampled
 from sensitivity.shares import regions
 from sensitivity.study import Study, Volume, has_volume, volume
 from twin.errors import DesignError
@@ -85,7 +85,11 @@ def study_content(study: Study, pictures: Sequence[Shown]) -> dict[str, Any]:
         "study_worst_um": float(v.p95.max()) / UM,
         "exact_um": study.exact.rms / UM,
         "regions": [
-            {"words": place_words(r.place), "rms_um": r.rms / UM, "errors": region_words(r, names)}
+            {
+                "words": place_words(r.place),
+                "rms_um": r.rms / UM,
+                "errors": dominant_words(r, names),
+            }
             for r in regions(study.population, study.workspace)
         ],
     }

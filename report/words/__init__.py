@@ -8,9 +8,11 @@ from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
     named_value,
+    region_words,
     rivals_words,
     sizes,
     stated_noise,
+    structure_words,
     values,
     verdict_sentence,
 )
@@ -26,9 +28,10 @@ from report.words.identifiability_words import (
 from report.words.identification_file import write_identification
 from report.words.parameter_words import in_words, short
 from report.words.probe_words import ordering_words
+from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (
+    dominant_words,
     place_words,
-    region_words,
     sampling_words,
     study_words,
     unsampled,
@@ -37,6 +40,7 @@ from report.words.sensitivity_words import (
 __all__ = [
     "combination_words",
     "comparison_sentence",
+    "dominant_words",
     "family_words",
     "gist",
     "in_words",
@@ -47,12 +51,14 @@ __all__ = [
     "place_words",
     "reason_words",
     "region_words",
+    "remark_sentence",
     "resolution_words",
     "rivals_words",
     "sampling_words",
     "short",
     "sizes",
     "stated_noise",
+    "structure_words",
     "study_words",
     "unsampled",
     "values",

@@ -76,7 +76,7 @@ def place_words(place: Place) -> str:
     }[place.part]
 
 
-def region_words(region: Region, names: Sequence[str], enough: float = 0.5) -> str:
+def dominant_words(region: Region, names: Sequence[str], enough: float = 0.5) -> str:
     """Which errors make most of the deviation in a region, in one sentence.
 
     Args:

@@ -1,4 +1,9 @@
-"""What needs no sampling: Jacobians, variance shares, lengths over a workspace, first order."""
+"""What needs no sampling: Jacobians, variance shares, lengths over a workspace, to first order.
+
+Readings of a machine go in; out come the deviation of the tool point per unit of every error
+parameter, its covariance over a population and the distribution of its length. `workspace` says
+where is looked.
+"""
 
 from sensitivity.first_order.by_parameter import jacobian_by_parameter
 from sensitivity.first_order.indices import covariance, rms, variance_parts, variance_shares

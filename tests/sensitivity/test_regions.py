@@ -5,7 +5,7 @@ import pytest
 from machines import LENGTH
 
 from report.maps.regions_picture import draw_regions
-from report.words.sensitivity_words import place_words, region_words
+from report.words.sensitivity_words import dominant_words, place_words
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.shares.workspace_regions import region_totals, regions
@@ -80,8 +80,8 @@ def test_shares_of_two_constants_by_hand():
     for region in all_of_them:
         assert region.rms == pytest.approx(5 * UM)
         assert region.mean_shares[names.index("EX0X")] == pytest.approx(9 / 25)
-        assert region_words(region, names) == "EZ0Z makes 64 % of the variance"
-    words = region_words(all_of_them[0], names, enough=0.9)
+        assert dominant_words(region, names) == "EZ0Z makes 64 % of the variance"
+    words = dominant_words(all_of_them[0], names, enough=0.9)
     assert words == "EZ0Z 64 %, EX0X 36 % make 100 % of the variance together"
 
 
@@ -120,7 +120,7 @@ def test_diamonds_stand_at_the_total_effects(found, chain, workspace):
 def test_a_machine_without_errors_is_named(chain, workspace):
     ranges = Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES})
     nothing = regions(Population(chain, ranges), workspace)
-    assert "no error moves the tool point" in region_words(nothing[0], [])
+    assert "no error moves the tool point" in dominant_words(nothing[0], [])
     assert "No error" in draw_regions(chain, nothing).texts[0].get_text()
 
 
