@@ -15,7 +15,7 @@ from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
 from twin.machine import Chain
-from twin.record import IntArray, Run, Setup, Touches, computed_deviation
+from twin.record import IntArray, Run, Setup, Touches, aligned, computed_deviation
 from twin.units import DEG, UM
 
 _OPTIONAL = (
@@ -43,6 +43,11 @@ class SetupTable(Table):
 
     origin_mm: Vector = (0.0, 0.0, 0.0)
     rotation_deg: Vector = (0.0, 0.0, 0.0)
+
+    def setup(self, name: str) -> Setup:
+        """The set-up in base units."""
+        rotation = fixed_xyz(np.array(self.rotation_deg) * DEG)
+        return Setup(name, pose(rotation, np.array(self.origin_mm)))
 
 
 class HeadTable(Table):
@@ -81,6 +86,9 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks: list[str] = []
     run = _assemble(table, chain, head, remarks)
+    if "dev_um" not in table:
+        run, moved = aligned(run)
+        remarks += [columns.moved_setup(m) for m in moved]
     run = checked_run(run, table, remarks)
     return replace(run, remarks=tuple(remarks))
 
@@ -158,10 +166,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
 def _setups(table: CsvTable, head: HeadTable) -> tuple[tuple[Setup, ...], IntArray]:
     """Set-ups in the order of the head, and the index of every row's."""
     tables = head.setup or {"a": SetupTable()}
-    setups = tuple(
-        Setup(name, pose(fixed_xyz(np.array(s.rotation_deg) * DEG), np.array(s.origin_mm)))
-        for name, s in tables.items()
-    )
+    setups = tuple(entry.setup(name) for name, entry in tables.items())
     names = list(tables)
     if "setup" not in table:
         if len(names) > 1:
