@@ -13,6 +13,7 @@ from report.words.diagnosis_words import (
     sizes,
     stated_noise,
     structure_words,
+    unit_words,
     values,
     verdict_sentence,
 )
@@ -60,6 +61,7 @@ __all__ = [
     "stated_noise",
     "structure_words",
     "study_words",
+    "unit_words",
     "unsampled",
     "values",
     "verdict_sentence",
