@@ -4,6 +4,7 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
+from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
@@ -39,8 +40,10 @@ from report.words.sensitivity_words import (
 )
 
 __all__ = [
+    "best_rival",
     "combination_words",
     "comparison_sentence",
+    "design_lines",
     "dominant_words",
     "family_words",
     "gist",
@@ -50,6 +53,7 @@ __all__ = [
     "ordering_words",
     "pair_words",
     "place_words",
+    "proof_line",
     "reason_words",
     "region_words",
     "remark_sentence",
@@ -64,6 +68,7 @@ __all__ = [
     "unit_words",
     "unsampled",
     "values",
+    "verdict_of_design",
     "verdict_sentence",
     "write_identifiability",
     "write_identification",
