@@ -110,6 +110,7 @@ def draw_volumes(pictures: Mapping[Path, Sequence[Scene]], stl: str | Path | Non
 def _extent(stl: Path) -> Array:
     """Lowest and highest corner of a body, (2, 3)."""
     try:
+        stl.stat()
         corners = read_stl(stl)[0]
     except OSError as error:
         raise DesignError(f"{stl}: cannot be read ({error.strerror})") from error
