@@ -5,7 +5,7 @@ from twin.files.machine_file import AxisTable, Pair, Vector, WorkpieceTable, rea
 from twin.files.pose_file import read_poses, reading_columns
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
-from twin.files.sensor_file import read_sensors
+from twin.files.sensor_file import SensorRecord, read_sensors
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.files.whole import NOT_WRITABLE, refuse_to_overwrite, write_whole, written_whole
 
@@ -13,6 +13,7 @@ __all__ = [
     "NOT_WRITABLE",
     "AxisTable",
     "Pair",
+    "SensorRecord",
     "Table",
     "Vector",
     "WorkpieceTable",

@@ -12,10 +12,12 @@ from twin.library.catalogue import (
     users_files,
 )
 from twin.library.ordinary import ordinary_model
+from twin.library.sized_effect import SizedEffect, parse_sized_effect, parse_sizes
 from twin.library.trial import fault, try_effect, try_kind, users_lines
 
 __all__ = [
     "Kind",
+    "SizedEffect",
     "fault",
     "is_seen",
     "kinds",
@@ -23,6 +25,8 @@ __all__ = [
     "load_user_effects",
     "ordinary_model",
     "parse_effect",
+    "parse_sized_effect",
+    "parse_sizes",
     "proposals",
     "register",
     "try_effect",
