@@ -1,4 +1,66 @@
-"""The material standard: freeform patches, datum spheres, datum plane and the body they sit on."""
+"""Designs a freeform material standard for a machine, and knows everything of it but its CAD.
+
+A standard is one body with freeform patches, datum spheres and a datum plane. From a project (the
+machine, its probe, the user's workspace, the errors that are expected, a blank and its limits)
+`place` makes the body and chooses the touches on it:
+
+    Project -> Blank, ProbeReach, Population -> place -> Placement (Standard, Requests, Criterion)
+    Placement -> identifiability_report -> what the touches can and cannot know
+    Standard -> write_standard -> standard.toml, which CAD and probing programs start from
+
+Sites with random smooth faces stand all over the blank (`layout`); every touch that the machine can
+make on them (`reach`) is a row of information (`worth`); patches, shapes, table poses and touches
+are chosen from the rows (`place`) and judged beside other artefacts (`compare`). A new kind of
+face, body or limit goes into `body`, a new key of the project into `brief`, a rival artefact into
+`layout`, a hindrance for the probe into `reach`, a criterion into `worth`.
+"""
+
+from artefact.body import (
+    DatumSphere,
+    FreeformPatch,
+    Limits,
+    Standard,
+    check,
+    constraints,
+    contact,
+    graph_patch,
+    read_standard,
+    write_standard,
+)
+from artefact.brief import Project, read_project
+from artefact.compare import IdentifiabilityReport, Rival, identifiability_report
+from artefact.layout import Blank, Fittings, Site, standard_from_sites
+from artefact.place import Placement, PlacementOptions, place
+from artefact.reach import ProbeReach, Requests
+from artefact.worth import Criterion
 
 PARTS = ("brief", "body", "layout", "reach", "worth", "compare", "place")
 """From bottom to top: each imports only from those before it."""
+
+__all__ = [
+    "Blank",
+    "Criterion",
+    "DatumSphere",
+    "Fittings",
+    "FreeformPatch",
+    "IdentifiabilityReport",
+    "Limits",
+    "Placement",
+    "PlacementOptions",
+    "ProbeReach",
+    "Project",
+    "Requests",
+    "Rival",
+    "Site",
+    "Standard",
+    "check",
+    "constraints",
+    "contact",
+    "graph_patch",
+    "identifiability_report",
+    "place",
+    "read_project",
+    "read_standard",
+    "standard_from_sites",
+    "write_standard",
+]

@@ -15,7 +15,7 @@ import numpy as np
 
 from artefact.layout import Blank
 from artefact.reach import ProbeReach
-from artefact.worth import criterion, random_touches
+from artefact.worth import criterion_for, random_touches
 from information.selection import heaviest, relaxed, rounded
 from probe_paths.plan import Probe
 from sensitivity.first_order import Workspace
@@ -68,22 +68,22 @@ def main() -> list[Result]:
 
 def _designs(chain: Chain, model: Model) -> list[Result]:
     probe, rng = Probe(), np.random.default_rng(1)
-    probing = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
+    reach = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     workspace = Workspace(chain, {}, probe.length)
-    aim = criterion(probing, model, Blank(), workspace, 1.0 * UM, rng)
-    wanted = random_touches(probing, aim.volume, aim.rotary, CANDIDATES, rng)
-    W = aim.rows(wanted)
+    criterion = criterion_for(reach, model, Blank(), workspace, 1.0 * UM, rng)
+    wanted = random_touches(reach, criterion.volume, criterion.rotary, CANDIDATES, rng)
+    W = criterion.rows(wanted)
     print(
         f"{len(model.names)} coefficients; {W.shape[0]} candidates, {W.shape[1]} directions that "
         "touches or tool point feel"
     )
     found = []
     for name in ("I", "D"):
-        purpose = aim.purposes[name]
+        objective = criterion.objectives[name]
         start, cpu = time.perf_counter(), time.process_time()
-        best = relaxed(purpose, W, TOUCHES, heaviest(rng.random(len(W)), TOUCHES))
+        best = relaxed(objective, W, TOUCHES, heaviest(rng.random(len(W)), TOUCHES))
         middle = time.perf_counter()
-        whole = rounded(purpose, W, best.weight, TOUCHES)
+        whole = rounded(objective, W, best.weight, TOUCHES)
         end = time.perf_counter()
         efficiency = best.bound / whole.value
         print(

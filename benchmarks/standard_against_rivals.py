@@ -16,6 +16,7 @@ from artefact.compare import Rival
 from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions, place
 from artefact.reach import ProbeReach
+from artefact.worth import TouchOptions
 from probe_paths.plan import Probe
 from sensitivity.first_order import Workspace
 from twin.units import UM
@@ -34,8 +35,10 @@ def rivals_of(seed: int) -> tuple[Rival, ...]:
         Blank(fittings=Fittings(sphere_heights=(60.0, 95.0, 130.0))),
         Workspace(project.chain, project.workspace, project.probe_length),
         np.random.default_rng(seed),
-        project.ranges,
-        PlacementOptions(touches=TOUCHES, patches=project.standard.patches, noise=1.0 * UM),
+        project.population,
+        PlacementOptions(
+            patches=project.standard.patches, noise=1.0 * UM, choice=TouchOptions(touches=TOUCHES)
+        ),
     )
     return placement.rivals
 

@@ -1,4 +1,19 @@
-"""CAD of a standard: a solid, STEP and STL files, and their measured conformity."""
+"""From a standard to its CAD files, measured before they get their names.
+
+In: a `Standard` of `artefact.body`, whose limits the caller has checked. Out: `standard.step`
+(AP242, named faces) and `standard.stl` in a folder, and a `Conformity` of all that was measured on
+them; or a `NotBuildable` that names the figure out of its limit, and no file.
+
+The CAD kernel runs in a process of its own (`build`), because its faults end the process they run
+in. `verify` reads the files anew: by the kernel, by a reader of the STEP text that knows no kernel,
+and by two mesh libraries. Another file format is written in `build` beside `exchange` and gets its
+own figures in `verify.conformity`.
+"""
+
+from cad_out.build import Mesh, as_part, run_apart
+from cad_out.verify import Conformity, export_standard, measure
 
 PARTS = ("build", "verify")
 """From bottom to top: each imports only from those before it."""
+
+__all__ = ["Conformity", "Mesh", "as_part", "export_standard", "measure", "run_apart"]

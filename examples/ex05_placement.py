@@ -11,6 +11,7 @@ import numpy as np
 from artefact.layout import Blank
 from artefact.place import PlacementOptions, place
 from artefact.reach import ProbeReach
+from artefact.worth import TouchOptions
 from probe_paths.plan import Probe
 from sensitivity.first_order import Workspace
 from twin.files import read_machine
@@ -19,18 +20,18 @@ from twin.record import Setup
 from twin.units import DEG, UM
 
 HERE = Path(__file__).parent
-OPTIONS = PlacementOptions(patches=8, touches=160, poses=12, sites=80)
+OPTIONS = PlacementOptions(patches=8, sites=80, choice=TouchOptions(touches=160, poses=12))
 LIMITS = {"X": (-150.0, 150.0), "Y": (-150.0, 150.0), "B": (-90 * DEG, 20 * DEG)}
 
 
 def main():
     chain, probe = read_machine(HERE / "hsm600u-machine.toml"), Probe()
-    probing = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
+    reach = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     workspace = Workspace(chain, LIMITS, probe.length)
-    placed = place(probing, Blank(), workspace, np.random.default_rng(600), options=OPTIONS)
+    placed = place(reach, Blank(), workspace, np.random.default_rng(600), options=OPTIONS)
     return {
         "placement": placed,
-        "not predicted before any touch, µm": placed.before[0] / UM,
+        "not predicted before any touch, µm": placed.prior_rms[0] / UM,
         "not predicted after 160 touches, µm": {r.name: r.rms / UM for r in placed.rivals},
         "combinations determined": {r.name: r.estimable for r in placed.rivals},
     }

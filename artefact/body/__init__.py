@@ -1,9 +1,14 @@
-"""Shapes and bodies of a standard, its limits and its file."""
+"""What a standard is: faces, spheres, body, limits and file, and what a moving ball meets on it.
+
+In: control nets and places of faces, or a `standard.toml`. Out: a `Standard` whose surfaces answer
+for points, normals and curvatures, whose bodies answer for distances, and whose `constraints` are
+numbers. A new kind of face implements `Surface`; a new limit is one more yield in `limits`.
+"""
 
 from artefact.body.datum import DatumSphere, MountingHole
+from artefact.body.first_contact import contact
 from artefact.body.freeform import OVERHANG, ErrorShare, FreeformPatch, graph_patch
 from artefact.body.limits import (
-    Constraint,
     Limits,
     check,
     constraints,
@@ -11,9 +16,8 @@ from artefact.body.limits import (
     min_concave_radius,
     overhang,
 )
-from artefact.body.patch import Mask, Meeting, Surface, rows, sphere_entry, unit
-from artefact.body.solids import Plate, entry
-from artefact.body.spline import Jet
+from artefact.body.patch import Meeting, Surface, rows, unit
+from artefact.body.solids import Plate
 from artefact.body.standard import STEEL, Base, Core, Material, Standard
 from artefact.body.standard_file import read_standard, write_standard
 
@@ -21,14 +25,11 @@ __all__ = [
     "OVERHANG",
     "STEEL",
     "Base",
-    "Constraint",
     "Core",
     "DatumSphere",
     "ErrorShare",
     "FreeformPatch",
-    "Jet",
     "Limits",
-    "Mask",
     "Material",
     "Meeting",
     "MountingHole",
@@ -37,14 +38,13 @@ __all__ = [
     "Surface",
     "check",
     "constraints",
-    "entry",
+    "contact",
     "graph_patch",
     "max_slope",
     "min_concave_radius",
     "overhang",
     "read_standard",
     "rows",
-    "sphere_entry",
     "unit",
     "write_standard",
 ]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from artefact.body.newton import ball_contact, foot_points, graph_normal
+from artefact.body.newton import ball_contact, foot_parameters, graph_normal
 from artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry, unit
 from artefact.body.spline import Jet, check_knots, clamped_knots, greville, height, jet
 from twin.errors import ShapeMismatch
@@ -130,18 +130,8 @@ class FreeformPatch:
         return Derivatives(*(turn(self.T_artefact_patch, np.column_stack(d)) for d in local))
 
     def curvature(self, uv: Array) -> Array:
-        """Principal curvatures, (N, 2), 1/mm, largest first; positive = concave from outside.
-
-        Eigenvalues of ``I^-1 II`` with ``I = 1 + grad h grad h^T`` and ``II = hess h / w``,
-        ``w^2 = 1 + |grad h|^2``: a ball fits where its radius is below one over the largest.
-        """
-        j = self.jet(uv)
-        w2 = 1.0 + j.hu**2 + j.hv**2
-        mean2 = (1 + j.hv**2) * j.huu - 2 * j.hu * j.hv * j.huv + (1 + j.hu**2) * j.hvv
-        mean = mean2 / (2.0 * w2**1.5)
-        gauss = (j.huu * j.hvv - j.huv**2) / w2**2
-        root = np.sqrt(np.maximum(mean**2 - gauss, 0.0))
-        return np.column_stack([mean + root, mean - root])
+        """Principal curvatures, (N, 2), 1/mm, largest first; positive = concave from outside."""
+        return self.jet(uv).curvature
 
     def slope(self, uv: Array) -> Array:
         """Angle between the normal and the patch's own direction, (N,), rad."""
@@ -171,7 +161,7 @@ class FreeformPatch:
             uv, shape (N, 2), mm; nan where no foot point lies on the spline.
         """
         local = apply(self.T_patch_artefact, rows(points))
-        return foot_points(self.jet, self.domain, local, self._nearest_node(local))
+        return foot_parameters(self.jet, self.domain, local, self._nearest_node(local))
 
     def contact(self, start: Array, direction: Array, radius: float) -> Hit:
         """First contact of a moving ball: ``S(u, v) + radius n(u, v) = start + t d``, by Newton.

@@ -50,6 +50,7 @@ class Constraint:
         limit: What is asked.
         slack: Distance from the limit on the good side, in the unit of the value.
         unit: Of value, limit and slack.
+        other: Body that is in the way; empty where there is none.
     """
 
     name: str
@@ -58,10 +59,17 @@ class Constraint:
     limit: float
     slack: float
     unit: str
+    other: str = ""
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """Subject and, where there is one, the body in its way."""
+        return tuple(filter(None, (self.subject, self.other)))
 
     def __str__(self) -> str:
+        name = f"{self.name} {self.other}" if self.other else self.name
         return (
-            f"{self.subject}: {self.name} is {self.value:.3f} {self.unit}, "
+            f"{self.subject}: {name} is {self.value:.3f} {self.unit}, "
             f"limit {self.limit:.3f} {self.unit}"
         )
 
@@ -160,7 +168,7 @@ def _of_patch(standard: Standard, patch: FreeformPatch, limits: Limits) -> Itera
     others = {name: body for name, body in standard.bodies.items() if name != patch.name}
     name, room = _nearest(others, centres)
     yield _at_least(
-        f"room for the ball before {name}", patch.name, room - limits.ball_radius, limits.gap
+        "room for the ball before", patch.name, room - limits.ball_radius, limits.gap, other=name
     )
 
 
@@ -170,13 +178,13 @@ def _of_sphere(standard: Standard, sphere: DatumSphere, limits: Limits) -> Itera
     base = standard.base
     name, room = _nearest(others, rows(sphere.centre))
     room -= sphere.radius + 2.0 * limits.ball_radius
-    yield _at_least(f"room for the ball before {name}", sphere.name, room, limits.gap)
+    yield _at_least("room for the ball before", sphere.name, room, limits.gap, other=name)
     heights = np.linspace(sphere.foot, sphere.centre[2], 9)
     axis = np.column_stack([np.tile(sphere.centre[:2], (9, 1)), heights])
     others.pop("BASE")
     name, room = _nearest(others, axis)
     yield _at_least(
-        f"distance of the stem from {name}", sphere.name, room - sphere.foot_radius, limits.gap
+        "distance of the stem from", sphere.name, room - sphere.foot_radius, limits.gap, other=name
     )
     inset = -outline_distance(rows(sphere.centre[:2]), base.half_size, base.corner_radius)[0]
     yield _at_least("stem inside the outline", sphere.name, inset - sphere.foot_radius, 1.0)
@@ -191,13 +199,14 @@ def _of_holes(standard: Standard) -> Iterator[Constraint]:
         for other in standard.holes[:k]:
             wall = np.hypot(hole.x - other.x, hole.y - other.y)
             wall -= hole.bore_radius + other.bore_radius
-            yield _at_least(f"wall to {other.name}", hole.name, float(wall), 3.0)
+            yield _at_least("wall to", hole.name, float(wall), 3.0, other=other.name)
         xy = np.array([[hole.x, hole.y]])
         inset = -outline_distance(xy, base.half_size, base.corner_radius)[0]
         yield _at_least("wall to the outline", hole.name, inset - hole.bore_radius, 3.0)
         yield _at_most("depth of the counterbore", hole.name, hole.bore_depth, base.thickness - 5.0)
         name, room = _nearest(above, np.column_stack([np.repeat(xy, len(heights), 0), heights]))
-        yield _at_least(f"access from above past {name}", hole.name, room - hole.bore_radius, 1.0)
+        free = room - hole.bore_radius
+        yield _at_least("access from above past", hole.name, free, 1.0, other=name)
 
 
 def _burial(standard: Standard, patch: FreeformPatch) -> float:
@@ -220,8 +229,10 @@ def _nearest(bodies: dict[str, Body], points: Array) -> tuple[str, float]:
     return name, rooms[name]
 
 
-def _at_least(name: str, subject: str, value: float, limit: float, unit: str = "mm") -> Constraint:
-    return Constraint(name, subject, value, limit, value - limit, unit)
+def _at_least(
+    name: str, subject: str, value: float, limit: float, unit: str = "mm", other: str = ""
+) -> Constraint:
+    return Constraint(name, subject, value, limit, value - limit, unit, other)
 
 
 def _at_most(name: str, subject: str, value: float, limit: float, unit: str = "mm") -> Constraint:

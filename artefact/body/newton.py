@@ -20,7 +20,7 @@ Surface = Callable[[Array], Jet]
 Domain = tuple[Array, Array]
 
 
-def foot_points(surface: Surface, domain: Domain, points: Array, uv: Array) -> Array:
+def foot_parameters(surface: Surface, domain: Domain, points: Array, uv: Array) -> Array:
     """Foot points on a height field: ``(S - p) . S_u = (S - p) . S_v = 0``.
 
     Newton on the squared distance, with the step of Gauss and Newton where the Hessian is not

@@ -1,6 +1,6 @@
 """Tensor-product B-splines over the plane: values and derivatives at many points at once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -122,6 +122,28 @@ class Jet:
     huu: Array
     huv: Array
     hvv: Array
+
+    @property
+    def curvature(self) -> Array:
+        """Principal curvatures of the graph, (N, 2), 1/mm, largest first; positive = concave.
+
+        Eigenvalues of ``I^-1 II`` with ``I = 1 + grad h grad h^T`` and ``II = hess h / w``,
+        ``w^2 = 1 + |grad h|^2``: a ball fits where its radius is below one over the largest.
+        """
+        w2 = 1.0 + self.hu**2 + self.hv**2
+        mean2 = (
+            (1 + self.hv**2) * self.huu
+            - 2 * self.hu * self.hv * self.huv
+            + (1 + self.hu**2) * self.hvv
+        )
+        mean = mean2 / (2.0 * w2**1.5)
+        gauss = (self.huu * self.hvv - self.huv**2) / w2**2
+        root = np.sqrt(np.maximum(mean**2 - gauss, 0.0))
+        return np.column_stack([mean + root, mean - root])
+
+    def scaled(self, factor: float) -> "Jet":
+        """The jet of the height field times a factor."""
+        return Jet(*(factor * getattr(self, f.name) for f in fields(self)))
 
 
 def jet(knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array) -> Jet:

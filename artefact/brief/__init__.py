@@ -1,4 +1,8 @@
-"""What is wanted: the project file."""
+"""What is wanted: the project file, checked against its machine before any work is done.
+
+In: `project.toml` and the machine file it names. Out: a `Project` in base units. A new key is a
+field of one of the tables, and a check beside it if it can contradict another.
+"""
 
 from artefact.brief.project_file import Project, read_project
 from artefact.brief.standard_tables import BASE_THICKNESS, CORNER_RADIUS

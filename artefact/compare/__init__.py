@@ -1,21 +1,23 @@
-"""A standard against other artefacts, stylus lengths and set-ups."""
+"""A standard against other artefacts, stylus lengths and set-ups, at equal touches.
 
-from artefact.compare.comparison import Rival, before, compare, judged, random_lots
+In: a criterion and the touches of a design. Out: the figures of every `Rival`, and what the touches
+can and cannot know (`IdentifiabilityReport`), with what would resolve it.
+"""
+
+from artefact.compare.comparison import Rival, compare, evaluated, prior_rms, random_lots
 from artefact.compare.identifiability import (
     Alone,
     IdentifiabilityReport,
     identifiability_report,
-    write_identifiability,
 )
 
 __all__ = [
     "Alone",
     "IdentifiabilityReport",
     "Rival",
-    "before",
     "compare",
+    "evaluated",
     "identifiability_report",
-    "judged",
+    "prior_rms",
     "random_lots",
-    "write_identifiability",
 ]

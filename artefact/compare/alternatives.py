@@ -13,7 +13,7 @@ import numpy as np
 from artefact.reach import ProbeReach, Requests
 from artefact.worth import Criterion
 from information.criteria import Posterior, mean_prediction, whitened
-from information.identifiability import seen
+from information.identifiability import rank_analysis
 from information.selection import Quota, Selection, fill
 from twin.errors import DesignError
 from twin.frames import Array, fixed_xyz, pose
@@ -70,77 +70,81 @@ class Alternative:
     words: str
 
 
-def ways(aim: Criterion) -> dict[str, ProbeReach]:
+def other_setups(criterion: Criterion) -> dict[str, ProbeReach]:
     """Other ways to measure: another stylus, other set-ups; by name."""
-    probing = aim.probing
-    out = {"a second stylus length": replace(probing, length=probing.length + STYLUS)}
+    reach = criterion.reach
+    out = {"a second stylus length": replace(reach, length=reach.length + STYLUS)}
     for name, (shift, turn) in SETUPS.items():
-        T = probing.setup.T_table_artefact @ pose(fixed_xyz(np.array(turn) * DEG), np.array(shift))
-        out[name] = replace(probing, setup=Setup("second", T))
+        T = reach.setup.T_table_artefact @ pose(fixed_xyz(np.array(turn) * DEG), np.array(shift))
+        out[name] = replace(reach, setup=Setup("second", T))
     return out
 
 
-def tried_in(way: ProbeReach, requests: Requests, rng: np.random.Generator) -> Requests:
+def touches_reached_in(other: ProbeReach, requests: Requests, rng: np.random.Generator) -> Requests:
     """Touches of the same points at the same table poses that a way to measure reaches."""
     poses = np.unique(np.round(requests.rotary, 9), axis=0)
     n = len(requests)
     rows = np.tile(np.arange(n), _EACH)
     tried = replace(requests[rows], rotary=poses[rng.integers(len(poses), size=len(rows))])
-    return tried[np.flatnonzero(way.is_reachable(tried))[:_MOST]]
+    return tried[np.flatnonzero(other.is_reachable(tried))[:_MOST]]
 
 
-def both(aim: Criterion, first: Requests, second: Requests, way: ProbeReach) -> Measured:
+def joined_rows(
+    criterion: Criterion, first: Requests, second: Requests, other: ProbeReach
+) -> Measured:
     """Rows of touches made as now, and of others made in another way."""
-    model = aim.model
-    W = [whitened(model.columns(aim.probing.touches(first)), aim.prior_sd, aim.noise)]
-    W.append(whitened(model.columns(way.touches(second)), aim.prior_sd, aim.noise))
-    own = _own(aim, way)
-    rows = np.zeros((len(first) + len(second), len(aim.prior_sd) + len(own)))
-    rows[: len(first), : len(aim.prior_sd)] = W[0]
-    rows[len(first) :, : len(aim.prior_sd)] = W[1]
+    model = criterion.model
+    W = [
+        whitened(model.columns(criterion.reach.touches(first)), criterion.prior_sd, criterion.noise)
+    ]
+    W.append(whitened(model.columns(other.touches(second)), criterion.prior_sd, criterion.noise))
+    own = _own(criterion, other)
+    rows = np.zeros((len(first) + len(second), len(criterion.prior_sd) + len(own)))
+    rows[: len(first), : len(criterion.prior_sd)] = W[0]
+    rows[len(first) :, : len(criterion.prior_sd)] = W[1]
     rows[len(first) :, own] = 0.0
-    rows[len(first) :, len(aim.prior_sd) :] = W[1][:, own]
-    return Measured(rows, np.concatenate([aim.prior_sd, aim.prior_sd[own]]))
+    rows[len(first) :, len(criterion.prior_sd) :] = W[1][:, own]
+    return Measured(rows, np.concatenate([criterion.prior_sd, criterion.prior_sd[own]]))
 
 
-def _own(aim: Criterion, way: ProbeReach) -> IntArray:
+def _own(criterion: Criterion, other: ProbeReach) -> IntArray:
     """Parameters that are others in another way to measure: of the set-up, or of the tool."""
-    link = "w" if way.length == aim.probing.length else "t"
-    if way is aim.probing:
+    link = "w" if other.length == criterion.reach.length else "t"
+    if other is criterion.reach:
         return np.zeros(0, dtype=np.int64)
-    return set_up(aim, link)
+    return setup_parameters(criterion, link)
 
 
-def set_up(aim: Criterion, links: str = "wt") -> IntArray:
+def setup_parameters(criterion: Criterion, links: str = "wt") -> IntArray:
     """Parameters of the set-up of the workpiece (w), the tool (t) or both."""
-    symbols = [getattr(effect, "symbol", None) for effect, _ in aim.model.parameters]
+    symbols = [getattr(effect, "symbol", None) for effect, _ in criterion.model.parameters]
     mine = [s is not None and s.family is Family.SETUP and s.link in links for s in symbols]
     return np.flatnonzero(mine)
 
 
-def machine_rank(aim: Criterion, W: Array) -> int:
+def machine_rank(criterion: Criterion, W: Array) -> int:
     """Combinations of machine errors that rows see, set-ups and tools being unknown."""
-    P = len(aim.prior_sd)
-    nuisance = np.concatenate([set_up(aim), np.arange(P, W.shape[1])])
-    return seen(W).rank - seen(W[:, nuisance]).rank
+    P = len(criterion.prior_sd)
+    nuisance = np.concatenate([setup_parameters(criterion), np.arange(P, W.shape[1])])
+    return rank_analysis(W).rank - rank_analysis(W[:, nuisance]).rank
 
 
 def alternatives(
-    aim: Criterion, requests: Requests, rng: np.random.Generator
+    criterion: Criterion, requests: Requests, rng: np.random.Generator
 ) -> tuple[Alternative, ...]:
     """What every other way to measure buys.
 
     Args:
-        aim: Criterion.
+        criterion: Criterion.
         requests: The touches of the design.
         rng: Draws the touches that are tried.
     """
     half = requests[::2]
-    base = _bought(aim, requests, half, aim.probing, rng)
+    base = _bought(criterion, requests, half, criterion.reach, rng)
     out = []
-    for name, way in ways(aim).items():
+    for name, other in other_setups(criterion).items():
         try:
-            found = _bought(aim, requests, half, way, rng)
+            found = _bought(criterion, requests, half, other, rng)
         except DesignError as error:
             out.append(Alternative(name, False, 0, 1.0, f"{name}: {error}"))
             continue
@@ -157,27 +161,31 @@ def alternatives(
 
 
 def _bought(
-    aim: Criterion, requests: Requests, half: Requests, way: ProbeReach, rng: np.random.Generator
+    criterion: Criterion,
+    requests: Requests,
+    half: Requests,
+    other: ProbeReach,
+    rng: np.random.Generator,
 ) -> tuple[int, float]:
     """Machine rank and mean predicted variance, mm^2, with the other half made in some way.
 
     Raises:
         DesignError: The machine reaches too few touches.
     """
-    tried = tried_in(way, requests, rng)
+    tried = touches_reached_in(other, requests, rng)
     wanted = len(requests) - len(half)
     if len(tried) < wanted:
         raise DesignError(f"the machine reaches {len(tried)} touches, {wanted} are wanted")
-    found = both(aim, half, tried, way)
-    tips = np.concatenate([aim.tip_volume, aim.tip_user])
+    found = joined_rows(criterion, half, tried, other)
+    tips = np.concatenate([criterion.tip_volume, criterion.tip_user])
     extra = found.W.shape[1] - tips.shape[2]
     G = np.concatenate([tips, np.zeros((*tips.shape[:2], extra))], axis=2)
-    what_for = mean_prediction(G, found.W, found.prior_sd)
+    objective = mean_prediction(G, found.W, found.prior_sd)
     start = np.arange(len(found.W)) < len(half)
-    selection = Selection(what_for, what_for.rows(found.W), start)
+    selection = Selection(objective, objective.rows(found.W), start)
     kind = (~start).astype(np.int64)
     fill(selection, len(requests), (Quota(kind, np.array([len(half), wanted])),))
     W = found.W[selection.chosen]
     names = tuple(f"{i}" for i in range(len(found.prior_sd)))
     variance = float(np.mean(Posterior(W, found.prior_sd, names).predicted_sd(G) ** 2))
-    return machine_rank(aim, W), variance
+    return machine_rank(criterion, W), variance

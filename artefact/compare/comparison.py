@@ -9,7 +9,7 @@ from artefact.layout import Blank, rivals
 from artefact.reach import Requests, joined
 from artefact.worth import (
     Criterion,
-    PlacementOptions,
+    TouchOptions,
     Visibility,
     chosen_poses,
     pose_quota,
@@ -56,9 +56,9 @@ class Rival:
     body: Standard | None = None
 
 
-def judged(
+def evaluated(
     name: str,
-    aim: Criterion,
+    criterion: Criterion,
     chosen: Requests,
     random: list[Requests],
     library: Visibility,
@@ -68,16 +68,18 @@ def judged(
 
     Args:
         name: What it is.
-        aim: Criterion.
+        criterion: Criterion.
         chosen: Its touches.
         random: Lots of touches taken at random on it, as many in each.
         library: Effects of the library that touches could show.
         body: What is touched; None for scatter that no body has.
     """
-    after = _posterior(aim, chosen)
-    over = after.predicted_sd(aim.tip_volume)
-    of_user = after.predicted_sd(aim.tip_user)
-    by_chance = [_rms(_posterior(aim, lot).predicted_sd(aim.tip_volume)) for lot in random]
+    after = _posterior(criterion, chosen)
+    over = after.predicted_sd(criterion.tip_volume)
+    of_user = after.predicted_sd(criterion.tip_user)
+    by_chance = [
+        _rms(_posterior(criterion, lot).predicted_sd(criterion.tip_volume)) for lot in random
+    ]
     return Rival(
         name=name,
         rms=_rms(over),
@@ -86,38 +88,38 @@ def judged(
         p95_user=float(np.quantile(of_user, 0.95)),
         rms_random=float(np.sqrt(np.mean(np.square(by_chance)))),
         estimable=after.degrees_of_freedom,
-        visible=library.shown(aim, chosen),
+        visible=library.shown(criterion, chosen),
         could_be_visible=len(library.effects),
         touches=chosen,
         body=body,
     )
 
 
-def _posterior(aim: Criterion, touches: Requests) -> Posterior:
-    return Posterior(aim.whitened(touches), aim.prior_sd, aim.model.names)
+def _posterior(criterion: Criterion, touches: Requests) -> Posterior:
+    return Posterior(criterion.whitened(touches), criterion.prior_sd, criterion.model.names)
 
 
 def _rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def before(aim: Criterion) -> tuple[float, float]:
+def prior_rms(criterion: Criterion) -> tuple[float, float]:
     """Root mean square of the expected deviation before any touch, mm: probed volume, user's.
 
     The set-up counts with what the machine's error ranges say of it, not as unknown.
     """
     return (
-        _rms(prior_sd_of_tip(aim.tip_volume, aim.model.prior_sd)),
-        _rms(prior_sd_of_tip(aim.tip_user, aim.model.prior_sd)),
+        _rms(prior_sd_of_tip(criterion.tip_volume, criterion.model.prior_sd)),
+        _rms(prior_sd_of_tip(criterion.tip_user, criterion.model.prior_sd)),
     )
 
 
 def compare(
-    aim: Criterion,
+    criterion: Criterion,
     all_poses: Array,
     poses: Array,
-    frame: Blank,
-    options: PlacementOptions,
+    blank: Blank,
+    options: TouchOptions,
     library: Visibility,
     rng: np.random.Generator,
 ) -> tuple[Rival, ...]:
@@ -128,27 +130,27 @@ def compare(
     The ideal scatter has points anywhere in the volume and any normal, and nothing is in its way.
 
     Args:
-        aim: Criterion.
+        criterion: Criterion.
         all_poses: Table poses that bodies choose from, (K, R), rad.
         poses: Table poses of the scatter.
-        frame: Base, blank and limits of the standard.
+        blank: Base, blank and limits of the standard.
         options: Numbers of touches and poses.
         library: Effects of the library that touches could show.
         rng: Source of the random numbers.
     """
     out = []
-    for name, body in rivals(aim.volume, frame, rng).items():
-        own = chosen_poses(aim.plain, body, all_poses, options)
-        tried = some_touches(aim, body, own, options, rng)
+    for name, body in rivals(criterion.volume, blank, rng).items():
+        own = chosen_poses(criterion.plain, body, all_poses, options)
+        tried = some_touches(criterion, body, own, options, rng)
         lots = random_lots(tried, options.touches, rng)
-        chosen = chosen_touches(aim, aim.purpose, tried, options)
-        out.append(judged(name, aim, chosen, lots, library, body))
-    tried = _scatter(aim, poses, rng)
+        chosen = chosen_touches(criterion, criterion.objective, tried, options)
+        out.append(evaluated(name, criterion, chosen, lots, library, body))
+    tried = _scatter(criterion, poses, rng)
     lots = random_lots(tried, options.touches, rng)
-    for name, what_for in (("I", aim.purposes["I"]), ("D", aim.purposes["D"])):
-        chosen = chosen_touches(aim, what_for, tried, options)
-        out.append(judged(f"ideal scatter, chosen by {name}", aim, chosen, lots, library))
-    out.append(judged("ideal scatter, at random", aim, lots[0], lots, library))
+    for name, objective in (("I", criterion.objectives["I"]), ("D", criterion.objectives["D"])):
+        chosen = chosen_touches(criterion, objective, tried, options)
+        out.append(evaluated(f"ideal scatter, chosen by {name}", criterion, chosen, lots, library))
+    out.append(evaluated("ideal scatter, at random", criterion, lots[0], lots, library))
     return tuple(out)
 
 
@@ -159,22 +161,22 @@ def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[R
 
 
 def chosen_touches(
-    aim: Criterion, what_for: DesignCriterion, tried: Requests, options: PlacementOptions
+    criterion: Criterion, objective: DesignCriterion, tried: Requests, options: TouchOptions
 ) -> Requests:
     """Touches chosen greedily and mended by exchange, with no quota but that of the poses."""
     count = min(options.touches, len(tried))
     quotas = (pose_quota(tried, options.touches),)
-    selection = Selection(what_for, aim.rows(tried))
+    selection = Selection(objective, criterion.rows(tried))
     fill(selection, count, quotas)
     exchange(selection, quotas, most=count // 4)
     return tried[selection.chosen]
 
 
-def _scatter(aim: Criterion, poses: Array, rng: np.random.Generator) -> Requests:
+def _scatter(criterion: Criterion, poses: Array, rng: np.random.Generator) -> Requests:
     """Points anywhere in the volume with any normal: no artefact, but what one could hope for."""
     parts = [
         random_touches(
-            aim.probing, aim.volume, np.stack([p, p], axis=-1), _TRIED // len(poses), rng
+            criterion.reach, criterion.volume, np.stack([p, p], axis=-1), _TRIED // len(poses), rng
         )
         for p in poses
     ]

@@ -1,37 +1,34 @@
 """What touches on a standard can and cannot know of a machine: one record for report and file."""
 
-import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.compare.alternatives import Alternative, alternatives, both, set_up, tried_in, ways
+from artefact.compare.alternatives import (
+    Alternative,
+    alternatives,
+    joined_rows,
+    other_setups,
+    setup_parameters,
+    touches_reached_in,
+)
 from artefact.reach import Requests
 from artefact.worth import Criterion
 from information.criteria import Posterior
 from information.identifiability import (
-    NEVER,
     Degree,
     EstimableCombination,
-    FreedomWords,
+    FreedomFamily,
     Identifiability,
     combinations,
     identifiability,
     in_families,
-    in_words,
-    short,
     supported_degrees,
 )
-from twin.files import write_whole
 from twin.frames import Array
-from twin.machine import Chain, Link
-from twin.units import DEG, shown
-
-FORMAT = "identifiability/1"
-"""Of the file."""
+from twin.machine import Chain
+from twin.model import Model
 
 
 @dataclass(frozen=True)
@@ -40,14 +37,12 @@ class Alone:
 
     Attributes:
         name: Of the parameter.
-        words: What it is.
         expected: Standard deviation before the touches.
         u: Standard uncertainty after them.
         unit: Base unit.
     """
 
     name: str
-    words: str
     expected: float
     u: float
     unit: str
@@ -59,10 +54,10 @@ class IdentifiabilityReport:
 
     Attributes:
         touches: Their number.
-        chain: The machine.
+        model: The machine and its expected errors.
         readings: Smallest and largest reading of every programmed axis in them, mm or rad.
         gauge: Rank, condition numbers, freedoms and groups, each freedom with what resolves it.
-        freedoms: The freedoms in words; shapes of the same error share a line.
+        freedoms: The freedoms, shapes of the same error together.
         combinations: Combinations of machine errors that are determined, the surest first.
         alone: Machine errors that are known for themselves, the surest first.
         degrees: Of every component error, to which degree the touches support it.
@@ -70,151 +65,70 @@ class IdentifiabilityReport:
     """
 
     touches: int
-    chain: Chain
+    model: Model
     readings: Mapping[str, tuple[float, float]]
     gauge: Identifiability
-    freedoms: tuple[FreedomWords, ...]
+    freedoms: tuple[FreedomFamily, ...]
     combinations: tuple[EstimableCombination, ...]
     alone: tuple[Alone, ...]
     degrees: tuple[Degree, ...]
     alternatives: tuple[Alternative, ...]
 
     @property
-    def words(self) -> str:
-        """The gist in one sentence."""
-        g = self.gauge
-        never = sum(f.resolved_by == NEVER for f in g.freedoms)
-        return (
-            f"{self.touches} touches see {g.rank} independent combinations of {g.parameters} "
-            f"parameters. Of the {len(g.freedoms)} that stay free, {never} are free on every "
-            f"workpiece and fixed by convention"
-        )
+    def chain(self) -> Chain:
+        """The machine."""
+        return self.model.chain
 
 
 def identifiability_report(
-    aim: Criterion, requests: Requests, rng: np.random.Generator
+    criterion: Criterion, requests: Requests, rng: np.random.Generator
 ) -> IdentifiabilityReport:
     """What some touches can know of the machine.
 
     Args:
-        aim: Machine, expected errors, noise.
+        criterion: Machine, expected errors, noise.
         requests: The touches.
         rng: Draws the touches that alternatives are tried with.
     """
-    model, touches = aim.model, aim.probing.touches(requests)
-    W = aim.whitened(requests)
-    more = tried_in(aim.probing, requests, rng)
-    richer = {"more touches at the same table poses": aim.whitened(more)}
-    for name, way in ways(aim).items():
-        second = tried_in(way, requests, rng)
+    model, touches = criterion.model, criterion.reach.touches(requests)
+    W = criterion.whitened(requests)
+    more = touches_reached_in(criterion.reach, requests, rng)
+    richer = {"more touches at the same table poses": criterion.whitened(more)}
+    for name, other in other_setups(criterion).items():
+        second = touches_reached_in(other, requests, rng)
         if len(second):
-            richer[name] = both(aim, requests, second, way).W
-    gauge = identifiability(W, aim.prior_sd, model.names, model.parameters, model.chain, richer)
+            richer[name] = joined_rows(criterion, requests, second, other).W
+    gauge = identifiability(
+        W, criterion.prior_sd, model.names, model.parameters, model.chain, richer
+    )
     units = [p.unit for _, p in model.parameters]
-    setup = set_up(aim)
-    names = [short(name) for name in model.names]
+    setup = setup_parameters(criterion)
     chain = model.chain
     return IdentifiabilityReport(
         touches=len(requests),
-        chain=chain,
+        model=model,
         readings={
             name: (float(touches.reading(name).min()), float(touches.reading(name).max()))
             for name in chain.programmed_axes
         },
         gauge=gauge,
-        freedoms=in_families(gauge.freedoms, chain),
-        combinations=combinations(W, aim.prior_sd, names, units, setup.tolist()),
-        alone=_alone(aim, W, setup.tolist()),
-        degrees=supported_degrees(model, touches, W, aim.noise),
-        alternatives=alternatives(aim, requests, rng),
+        freedoms=in_families(gauge.freedoms),
+        combinations=combinations(W, criterion.prior_sd, units, setup.tolist()),
+        alone=_alone(criterion, W, setup.tolist()),
+        degrees=supported_degrees(model, touches, W, criterion.noise),
+        alternatives=alternatives(criterion, requests, rng),
     )
 
 
-def _alone(aim: Criterion, W: Array, setup: Sequence[int]) -> tuple[Alone, ...]:
+def _alone(criterion: Criterion, W: Array, setup: Sequence[int]) -> tuple[Alone, ...]:
     """Machine errors that are known for themselves; the set-up is of no interest."""
-    known = Posterior(W, aim.prior_sd, aim.model.names)
+    known = Posterior(W, criterion.prior_sd, criterion.model.names)
     alone = set(known.alone)
     out = [
-        Alone(name, in_words(name, aim.model.chain), float(before), float(after), parameter.unit)
+        Alone(name, float(before), float(after), parameter.unit)
         for p, (name, before, after, (_, parameter)) in enumerate(
-            zip(known.names, known.prior_sd, known.sd, aim.model.parameters, strict=True)
+            zip(known.names, known.prior_sd, known.sd, criterion.model.parameters, strict=True)
         )
         if name in alone and p not in setup
     ]
     return tuple(sorted(out, key=lambda a: a.u / a.expected))
-
-
-def as_json(known: IdentifiabilityReport) -> dict[str, Any]:
-    """The record as plain data, units in the names of the keys."""
-    g = known.gauge
-    return {
-        "format": FORMAT,
-        "words": known.words,
-        "touches": known.touches,
-        "readings": dict(_reading(known.chain.link(a), known.readings[a]) for a in known.readings),
-        "parameters": g.parameters,
-        "rank": g.rank,
-        "condition": {
-            "columns_of_length_one": _rounded(g.condition),
-            "in_units_of_expected_sizes": _rounded(g.condition_prior),
-            "per_um_and_urad": _rounded(g.condition_raw),
-        },
-        "freedoms": [
-            {
-                "parameter": f.parameter,
-                "words": f.words,
-                "why": f.why,
-                "resolved_by": f.resolved_by,
-                "alike": [{"parameter": n, "per_unit": _rounded(v)} for n, v in f.alike],
-            }
-            for f in g.freedoms
-        ],
-        "groups": [asdict(group) for group in g.groups],
-        "combinations": [
-            {
-                "words": c.words,
-                "u": _rounded(c.u / shown(c.unit)[1]),
-                "unit": shown(c.unit)[0],
-                "prior_over_posterior": _rounded(c.gain),
-            }
-            for c in known.combinations
-        ],
-        "alone": [
-            {
-                "parameter": a.name,
-                "words": a.words,
-                "expected": _rounded(a.expected / shown(a.unit)[1]),
-                "u": _rounded(a.u / shown(a.unit)[1]),
-                "unit": shown(a.unit)[0],
-            }
-            for a in known.alone
-        ],
-        "degrees": [_degree(d) for d in known.degrees],
-        "alternatives": [asdict(a) for a in known.alternatives],
-    }
-
-
-def _reading(link: Link, limits: tuple[float, float]) -> tuple[str, list[float]]:
-    suffix, unit = ("_mm", 1.0) if link.kind == "linear" else ("_deg", DEG)
-    return link.name + suffix, [_rounded(v / unit) for v in limits]
-
-
-def _degree(degree: Degree) -> dict[str, Any]:
-    label, factor = shown(degree.unit)
-    return {
-        "parameter": degree.symbol,
-        "supported": list(degree.supported),
-        "largest": degree.largest,
-        "u": _rounded(degree.u / factor),
-        "unit": label,
-        "words": degree.words,
-    }
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.6g}")
-
-
-def write_identifiability(path: Path, known: IdentifiabilityReport) -> None:
-    """Write the record as a JSON file, whole or not at all."""
-    write_whole(path, json.dumps(as_json(known), indent=1, ensure_ascii=False) + "\n")

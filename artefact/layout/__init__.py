@@ -1,4 +1,8 @@
-"""Standards that could be made on a blank: sites, candidates, and artefacts that people have."""
+"""Standards that could be made on a blank: sites, the body they make, and other artefacts.
+
+In: a `Blank` with its limits. Out: `Site` candidates with smooth shapes, which of them stand beside
+each other, and whole standards. A further rival is one more entry in `rivals`.
+"""
 
 from artefact.layout.candidates import (
     CONTROL,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Base, Jet, Limits, graph_patch, overhang
+from artefact.body import Base, Limits, graph_patch, overhang
 from artefact.layout.sites import Blank, Site, patch_of_site
 from twin.errors import NotBuildable
 from twin.frames import Array
@@ -110,27 +110,19 @@ def strength(
     low = 0.0
     for _ in range(20):
         middle = 0.5 * (low + high)
-        if _largest_curvature(j, middle) * _MARGIN * limits.min_concave_radius > 1.0:
+        largest = float(j.scaled(middle).curvature[:, 0].max())
+        if largest * _MARGIN * limits.min_concave_radius > 1.0:
             high = middle
         else:
             low = middle
     return low
 
 
-def _largest_curvature(j: Jet, factor: float) -> float:
-    """Largest principal curvature of a height field scaled by a factor, positive = concave."""
-    hu, hv, huu, huv, hvv = (factor * d for d in (j.hu, j.hv, j.huu, j.huv, j.hvv))
-    w2 = 1.0 + hu**2 + hv**2
-    mean = ((1 + hv**2) * huu - 2 * hu * hv * huv + (1 + hu**2) * hvv) / (2.0 * w2**1.5)
-    gauss = (huu * hvv - huv**2) / w2**2
-    return float((mean + np.sqrt(np.maximum(mean**2 - gauss, 0.0))).max())
-
-
-def random_sites(frame: Blank, count: int, rng: np.random.Generator) -> list[Site]:
+def random_sites(blank: Blank, count: int, rng: np.random.Generator) -> list[Site]:
     """Sites all over a blank, each with a random shape, its column within the blank's outline.
 
     Args:
-        frame: Base, blank height and limits.
+        blank: Base, blank height and limits.
         count: Number of sites, shared out over the rings.
         rng: Source of the random numbers.
 
@@ -141,14 +133,14 @@ def random_sites(frame: Blank, count: int, rng: np.random.Generator) -> list[Sit
     for ring in RINGS:
         n = max(1, round(ring.share * count))
         azimuth = 2.0 * np.pi * (rng.permutation(n) + rng.random(n)) / n
-        sites += [_site(frame, ring, float(a), rng) for a in azimuth]
+        sites += [_site(blank, ring, float(a), rng) for a in azimuth]
     return sites
 
 
-def _site(frame: Blank, ring: Ring, azimuth: float, rng: np.random.Generator) -> Site:
+def _site(blank: Blank, ring: Ring, azimuth: float, rng: np.random.Generator) -> Site:
     """One site of a ring, as near to an azimuth as its column can stand."""
-    wide = min(frame.base.half_size) / 140.0
-    tall = frame.blank_height / 220.0
+    wide = min(blank.base.half_size) / 140.0
+    tall = blank.height / 220.0
     for turn in range(_TRIES):
         half = rng.uniform(*ring.half_size, 2) * min(wide, 1.0)
         site = Site(
@@ -160,10 +152,10 @@ def _site(frame: Blank, ring: Ring, azimuth: float, rng: np.random.Generator) ->
             heights=np.zeros((CONTROL, CONTROL)),
             lean=float(rng.choice((-1.0, 1.0)) * rng.uniform(*ring.lean)),
         )
-        if _is_within(site, frame.base):
-            heights = smooth_heights(site.half_size, frame.limits, rng)
+        if _is_within(site, blank.base):
+            heights = smooth_heights(site.half_size, blank.limits, rng)
             return replace(site, heights=np.round(heights, 6))
-    a, b = (2.0 * side for side in frame.base.half_size)
+    a, b = (2.0 * side for side in blank.base.half_size)
     raise NotBuildable(f"no column stands within the outline of a blank of {a:g} x {b:g} mm")
 
 
@@ -175,7 +167,7 @@ def _is_within(site: Site, base: Base) -> bool:
         return False
 
 
-def neighbours_fit(sites: list[Site], frame: Blank) -> NDArray[np.bool_]:
+def neighbours_fit(sites: list[Site], blank: Blank) -> NDArray[np.bool_]:
     """Which sites can stand beside each other, (S, S).
 
     The ball must have room over every face before the other column, taken as a box as tall as the
@@ -184,16 +176,16 @@ def neighbours_fit(sites: list[Site], frame: Blank) -> NDArray[np.bool_]:
 
     Args:
         sites: S sites.
-        frame: Base, ball radius and gap.
+        blank: Base, ball radius and gap.
     """
-    limits = frame.limits
+    limits = blank.limits
     needed = 2.0 * limits.ball_radius + limits.gap + 2.0
     faces = np.stack([_face(site, limits.ball_radius) for site in sites])  # (S, K, 3)
     out = np.ones((len(sites), len(sites)), dtype=bool)
     for j, site in enumerate(sites):
         T = site.T_artefact_patch
         local = (faces - T[:3, 3]) @ T[:3, :3]
-        top, depth = float(site.heights.max()), patch_of_site("trial", site, frame.base).depth
+        top, depth = float(site.heights.max()), patch_of_site("trial", site, blank.base).depth
         middle = np.array([0.0, 0.0, 0.5 * (top - depth)])
         half = np.array([*site.half_size, 0.5 * (top + depth)])
         beyond = np.abs(local - middle) - half

@@ -17,59 +17,59 @@ _TALLEST = 40.0  # mm that the one face may rise above its plane
 _BENEATH = 5.0  # mm above mid-base, where columns end
 
 
-def rivals(volume: Box, frame: Blank, rng: np.random.Generator) -> dict[str, Standard]:
+def rivals(volume: Box, blank: Blank, rng: np.random.Generator) -> dict[str, Standard]:
     """Four calibrated spheres, a five-sided block and one freeform face, all as large as allowed.
 
     Each fills the volume that the standard fills, on the same base.
 
     Args:
         volume: Box of the artefact frame, mm.
-        frame: Base, blank and limits of the standard.
+        blank: Base, blank and limits of the standard.
         rng: Draws the shape of the freeform face.
     """
     return {
-        "four calibrated spheres": _standard("SPHERES", frame, (), _four_spheres(volume, frame)),
-        "five-sided block": _standard("BLOCK", frame, _block(volume, frame)),
-        "one freeform face": _standard("FACE", frame, (_one_face(volume, frame, rng),)),
+        "four calibrated spheres": _standard("SPHERES", blank, (), _four_spheres(volume, blank)),
+        "five-sided block": _standard("BLOCK", blank, _block(volume, blank)),
+        "one freeform face": _standard("FACE", blank, (_one_face(volume, blank, rng),)),
     }
 
 
 def _standard(
     name: str,
-    frame: Blank,
+    blank: Blank,
     patches: tuple[FreeformPatch, ...],
     spheres: tuple[DatumSphere, ...] = (),
 ) -> Standard:
     return Standard(
         name=name,
         serial="",
-        material=frame.material,
-        base=frame.base,
+        material=blank.material,
+        base=blank.base,
         core=None,
         patches=patches,
         spheres=spheres,
         holes=(),
-        blank_height=frame.blank_height,
+        blank_height=blank.height,
     )
 
 
-def _four_spheres(volume: Box, frame: Blank) -> tuple[DatumSphere, ...]:
+def _four_spheres(volume: Box, blank: Blank) -> tuple[DatumSphere, ...]:
     """At the corners of the base, at heights spread over that of the volume."""
     heights = np.linspace(volume[0][2] + 25.0, volume[1][2], 4)[[0, 2, 1, 3]]
-    places = rim(frame.base, _FOOT + 3.0)
+    places = rim(blank.base, _FOOT + 3.0)
     found = []
     for i, (quarter, height) in enumerate(zip(range(4), heights, strict=True), 1):
         corner = np.array([np.cos((quarter + 0.5) * 90 * DEG), np.sin((quarter + 0.5) * 90 * DEG)])
         x, y = places[int(np.argmax(places @ corner))]
         centre = np.array([x, y, height])
-        top = frame.base.thickness
+        top = blank.base.thickness
         found.append(DatumSphere(f"SPH{i}", centre, _SPHERE, _STEM, _FOOT, top))
     return tuple(found)
 
 
-def _block(volume: Box, frame: Blank) -> tuple[FreeformPatch, ...]:
+def _block(volume: Box, blank: Blank) -> tuple[FreeformPatch, ...]:
     """Five plane faces: the top, and four sides that stand a little proud of it."""
-    half, low, high = volume[1][0], frame.base.thickness, volume[1][2]
+    half, low, high = volume[1][0], blank.base.thickness, volume[1][2]
     depth = high - 0.5 * low
     faces = [_plane("TOP", pose(t=np.array([0.0, 0.0, high])), (half, half), depth)]
     tall = 0.5 * (high - low) - _PROUD
@@ -87,10 +87,10 @@ def _plane(name: str, T: Array, half_size: tuple[float, float], depth: float) ->
     return graph_patch(name, T, half_size, np.zeros((4, 4)), (3, 3), depth)
 
 
-def _one_face(volume: Box, frame: Blank, rng: np.random.Generator) -> FreeformPatch:
+def _one_face(volume: Box, blank: Blank, rng: np.random.Generator) -> FreeformPatch:
     """One smooth face over the whole volume, as steep as the limits allow, in mid-height."""
     (x0, y0, z0), (x1, y1, z1) = volume
     half, middle = (0.5 * (x1 - x0), 0.5 * (y1 - y0)), 0.5 * (z0 + z1)
     place = pose(t=np.array([0.5 * (x0 + x1), 0.5 * (y0 + y1), middle]))
-    heights = smooth_heights(half, frame.limits, rng, tallest=_TALLEST)
+    heights = smooth_heights(half, blank.limits, rng, tallest=_TALLEST)
     return graph_patch("FACE", place, half, heights, depth=middle - _BENEATH)

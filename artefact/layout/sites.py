@@ -1,7 +1,7 @@
 """From a list of sites to a whole standard: columns, core, spheres and holes follow by rule."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -108,19 +108,19 @@ class Blank:
         base: Plate.
         fittings: Spheres and holes.
         material: What it is made of.
-        blank_height: Of the blank above the seat, mm.
+        height: Of the blank above the seat, mm.
         limits: Room that spheres and holes are given.
     """
 
     base: Base = field(default_factory=Base)
     fittings: Fittings = field(default_factory=Fittings)
     material: Material = STEEL
-    blank_height: float = 220.0
+    height: float = 220.0
     limits: Limits = field(default_factory=Limits)
 
 
 def standard_from_sites(
-    name: str, sites: Iterable[Site], frame: Blank | None = None, serial: str = ""
+    name: str, sites: Iterable[Site], blank: Blank | None = None, serial: str = ""
 ) -> Standard:
     """A whole standard from its sites: patches FF1 ..., columns, core, SPH1 ..., HOLE1 ...
 
@@ -132,7 +132,7 @@ def standard_from_sites(
     Args:
         name: Type of the standard.
         sites: Of the patches, in the order of their names.
-        frame: Base, fittings, material and limits; the defaults suit a 280 mm blank.
+        blank: Base, fittings, material and limits; the defaults suit a 280 mm blank.
         serial: Of the piece.
 
     Returns:
@@ -141,31 +141,24 @@ def standard_from_sites(
     Raises:
         NotBuildable: No site at all, or no free place for a sphere or a hole.
     """
-    frame = frame or Blank()
+    blank = blank or Blank()
     sites = list(sites)
     if not sites:
         raise NotBuildable(f"standard '{name}': no site for a patch")
-    patches = tuple(patch_of_site(f"FF{i}", site, frame.base) for i, site in enumerate(sites, 1))
+    patches = tuple(patch_of_site(f"FF{i}", site, blank.base) for i, site in enumerate(sites, 1))
     standard = Standard(
         name=name,
         serial=serial,
-        material=frame.material,
-        base=frame.base,
-        core=_core(patches, frame.base),
+        material=blank.material,
+        base=blank.base,
+        core=_core(patches, blank.base),
         patches=patches,
         spheres=(),
         holes=(),
-        blank_height=frame.blank_height,
+        blank_height=blank.height,
     )
-    spheres = _spheres(standard, frame)
-    return Standard(
-        **{key: getattr(standard, key) for key in _KEPT},
-        spheres=spheres,
-        holes=_holes(standard, spheres, frame),
-    )
-
-
-_KEPT = ("name", "serial", "material", "base", "core", "patches", "blank_height")
+    spheres = _spheres(standard, blank)
+    return replace(standard, spheres=spheres, holes=_holes(standard, spheres, blank))
 
 
 def patch_of_site(name: str, site: Site, base: Base) -> FreeformPatch:
@@ -216,10 +209,10 @@ def _core(patches: tuple[FreeformPatch, ...], base: Base) -> Core | None:
     return Core(radius + 4.0, radius, float(ends[:, 2].max()) + 1.0)
 
 
-def _spheres(standard: Standard, frame: Blank) -> tuple[DatumSphere, ...]:
-    fit, top = frame.fittings, frame.base.thickness
-    places = rim(frame.base, fit.foot_radius + 3.0)
-    around = fit.sphere_radius + 2.0 * frame.limits.ball_radius + frame.limits.gap
+def _spheres(standard: Standard, blank: Blank) -> tuple[DatumSphere, ...]:
+    fit, top = blank.fittings, blank.base.thickness
+    places = rim(blank.base, fit.foot_radius + 3.0)
+    around = fit.sphere_radius + 2.0 * blank.limits.ball_radius + blank.limits.gap
     options = []
     for number, height in enumerate(fit.sphere_heights, 1):
         centres = np.column_stack([places, np.full(len(places), height)])
@@ -238,15 +231,15 @@ def _spheres(standard: Standard, frame: Blank) -> tuple[DatumSphere, ...]:
 
 
 def _holes(
-    standard: Standard, spheres: tuple[DatumSphere, ...], frame: Blank
+    standard: Standard, spheres: tuple[DatumSphere, ...], blank: Blank
 ) -> tuple[MountingHole, ...]:
-    fit, base = frame.fittings, frame.base
+    fit, base = blank.fittings, blank.base
     places = rim(base, fit.bore_radius + 5.0)
     for s in spheres:
         # A screw and its key come from above, past the ball.
         apart = np.linalg.norm(places - s.centre[:2], axis=1)
         places = places[apart >= fit.bore_radius + max(s.radius, s.foot_radius) + 2.0]
-    heights = np.arange(base.thickness, frame.blank_height + 4.0, 4.0)
+    heights = np.arange(base.thickness, blank.height + 4.0, 4.0)
     places = places[_room(standard, places, heights) >= fit.bore_radius + 2.0]
     if len(places) < fit.hole_count:
         raise NotBuildable(

@@ -1,4 +1,8 @@
-"""Choosing patches, table poses and touches by what they tell of the machine."""
+"""Designs a standard: patches, their shapes, table poses and touches by what they tell.
+
+In: `ProbeReach`, `Blank`, workspace, population. Out: a `Placement`: the standard measured against
+every limit, its touches, the criterion they were chosen by, its rivals, and a certificate.
+"""
 
 from artefact.place.placement import Placement, PlacementOptions, place
 

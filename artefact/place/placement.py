@@ -7,13 +7,13 @@ user's poses (`information.selection.touch_selection`), and the finished body is
 every limit.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Base, Constraint, Standard, constraints
-from artefact.compare import Rival, before, compare, judged, random_lots
+from artefact.body import Base, Standard, constraints
+from artefact.compare import Rival, compare, evaluated, prior_rms, random_lots
 from artefact.layout import (
     Blank,
     Site,
@@ -22,14 +22,15 @@ from artefact.layout import (
     random_sites,
     standard_from_sites,
 )
-from artefact.place.shaping import shaped
+from artefact.place.shaping import with_optimised_shapes
 from artefact.reach import ProbeReach, Requests, joined
 from artefact.worth import (
     Criterion,
-    PlacementOptions,
+    CriterionOptions,
+    TouchOptions,
     chosen_poses,
     chosen_touches_on,
-    criterion,
+    criterion_for,
     each_at,
     error_shares,
     face_grid,
@@ -42,16 +43,39 @@ from artefact.worth import (
 from information.criteria import whitened
 from information.selection import Certificate, best_groups
 from sensitivity.first_order import Workspace
-from sensitivity.population import Distributions, Population
+from sensitivity.population import Population
 from twin.compute import Progress, silent
 from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
-from twin.machine import Ranges
+from twin.units import UM
 
 __all__ = ["Placement", "PlacementOptions", "place"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
 _REBUILDS = 8  # choices of sites tried before giving up
+
+
+@dataclass(frozen=True)
+class PlacementOptions:
+    """What is designed, how much is tried, and what for.
+
+    Attributes:
+        name: Type of the standard.
+        serial: Of the piece.
+        patches: Number of freeform patches.
+        sites: Number of random sites to choose from.
+        noise: Standard deviation of one touch, mm.
+        criterion: What sites, poses and touches are chosen for.
+        choice: How many touches at how many table poses, and their shares.
+    """
+
+    name: str = "FFS"
+    serial: str = ""
+    patches: int = 10
+    sites: int = 400
+    noise: float = 1.0 * UM
+    criterion: CriterionOptions = field(default_factory=lambda: CriterionOptions(potential=0.3))
+    choice: TouchOptions = field(default_factory=TouchOptions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +86,7 @@ class Placement:
         standard: Measured against every limit; every patch names the errors it is for.
         requests: The touches.
         criterion: What they were chosen by.
-        before: Expected deviation of the tool point before any touch, rms, mm: over the probed
+        prior_rms: Expected deviation of the tool point before any touch, rms, mm: over the probed
             volume, over the user's workspace.
         rivals: This standard first, then other artefacts at as many touches.
         certificate: How near the touches are to the best choice among all that could be made on the
@@ -72,7 +96,7 @@ class Placement:
     standard: Standard
     requests: Requests
     criterion: Criterion
-    before: tuple[float, float]
+    prior_rms: tuple[float, float]
     rivals: tuple[Rival, ...]
     certificate: Certificate
 
@@ -83,27 +107,26 @@ class Placement:
 
 
 def place(
-    probing: ProbeReach,
-    frame: Blank,
+    reach: ProbeReach,
+    blank: Blank,
     workspace: Workspace,
     rng: np.random.Generator,
-    ranges: Ranges | None = None,
+    population: Population | None = None,
     options: PlacementOptions | None = None,
     progress: Progress = silent,
-    distributions: Distributions | None = None,
 ) -> Placement:
     """Design a standard for a machine.
 
     Args:
-        probing: Machine, probe, set-up of the standard.
-        frame: Blank, datum features, material, limits.
+        reach: Machine, probe, set-up of the standard.
+        blank: Blank, datum features, material, limits.
         workspace: Where the user works: its poses are predicted, its rotary limits are those of the
             table poses.
         rng: Source of the random numbers.
-        ranges: Expected amplitudes of the errors; None for the default ones.
-        options: How much.
+        population: Machines that are expected, with the relations between their errors; None for
+            the ordinary ones.
+        options: How much is tried and chosen.
         progress: Told what is being done.
-        distributions: Shapes of the errors over the readings; None for the ordinary ones.
 
     Raises:
         NotBuildable: The blank is larger than the table, or no choice of sites meets every limit;
@@ -111,82 +134,88 @@ def place(
         NotReachable: The machine reaches too few touches on the standard.
     """
     options = options or PlacementOptions()
-    _check_blank(frame.base, probing)
-    population = Population(probing.chain, ranges or Ranges(), distributions or Distributions())
-    model = population.expected("w")
-    aim = criterion(
-        probing,
-        model,
-        frame,
+    choice = options.choice
+    _check_blank(blank.base, reach)
+    population = population or Population(reach.chain)
+    criterion = criterion_for(
+        reach,
+        population.expected("w"),
+        blank,
         workspace,
         options.noise,
         rng,
         options.criterion,
-        options.wishes,
+        choice.touches,
         population,
     )
     progress("placement", 1, 6)
-    all_poses = table_poses(aim, options.poses)
-    standard = _standard(aim.plain, frame, all_poses, options, rng)
+    all_poses = table_poses(criterion, choice.poses)
+    standard = _standard(criterion.plain, blank, all_poses, options, rng)
     progress("placement", 3, 6)
-    poses = chosen_poses(aim.plain, standard, all_poses, options)
-    standard = shaped(aim.plain, standard, poses, frame.limits, options, rng)
+    poses = chosen_poses(criterion.plain, standard, all_poses, choice)
+    standard = with_optimised_shapes(criterion.plain, standard, poses, blank.limits, choice, rng)
     progress("placement", 4, 6)
-    tried = touches_to_choose_from(aim, standard, poses, options)
-    chosen, nearness = chosen_touches_on(aim, standard, tried, options)
+    tried = touches_to_choose_from(criterion, standard, poses, choice)
+    chosen, nearness = chosen_touches_on(criterion, standard, tried, choice)
     requests = tried[chosen]
-    standard = _with_shares(aim, standard, requests)
+    standard = _with_shares(criterion, standard, requests)
     progress("placement", 5, 6)
-    free = random_touches(probing, aim.volume, aim.rotary, max(options.touches, _FREE), rng)
-    library = visibility(aim, free)
+    free = random_touches(
+        reach, criterion.volume, criterion.rotary, max(choice.touches, _FREE), rng
+    )
+    library = visibility(criterion, free)
     lots = random_lots(tried, len(requests), rng)
-    own = judged(f"standard {options.name}", aim, requests, lots, library, standard)
-    rivals = compare(aim, all_poses, poses, frame, options, library, rng)
+    own = evaluated(f"standard {options.name}", criterion, requests, lots, library, standard)
+    rivals = compare(criterion, all_poses, poses, blank, choice, library, rng)
     progress("placement", 6, 6)
     return Placement(
         standard=standard,
         requests=requests,
-        criterion=aim,
-        before=before(aim),
+        criterion=criterion,
+        prior_rms=prior_rms(criterion),
         rivals=(own, *rivals),
         certificate=nearness,
     )
 
 
-def _check_blank(base: Base, probing: ProbeReach) -> None:
+def _check_blank(base: Base, reach: ProbeReach) -> None:
     """Refuse a blank whose sides reach beyond the table; its corners may."""
-    if max(base.half_size) > probing.table_radius:
+    if max(base.half_size) > reach.table_radius:
         a, b = (2.0 * side for side in base.half_size)
         raise NotBuildable(
             f"a blank of {a:g} x {b:g} mm is larger than the table, diameter "
-            f"{2.0 * probing.table_radius:g} mm"
+            f"{2.0 * reach.table_radius:g} mm"
         )
 
 
 def _standard(
-    aim: Criterion, frame: Blank, poses: Array, options: PlacementOptions, rng: np.random.Generator
+    criterion: Criterion,
+    blank: Blank,
+    poses: Array,
+    options: PlacementOptions,
+    rng: np.random.Generator,
 ) -> Standard:
     """Choose sites until the whole body meets every limit."""
-    sites = random_sites(frame, options.sites, rng)
-    fits = neighbours_fit(sites, frame)
+    sites = random_sites(blank, options.sites, rng)
+    fits = neighbours_fit(sites, blank)
     # spread over the list without the rhythm of its grid
     few = poses[np.unique((np.arange(20) * 0.618034 % 1.0 * len(poses)).astype(np.int64))]
-    wanted = joined([_face_touches(f"{i}", site, frame.base, few) for i, site in enumerate(sites)])
-    wanted = wanted[aim.probing.is_reachable(wanted)]
+    wanted = joined([_face_touches(f"{i}", site, blank.base, few) for i, site in enumerate(sites)])
+    wanted = wanted[criterion.reach.is_reachable(wanted)]
     if not len(wanted):
         raise NotReachable(
             f"no face on any of {len(sites)} sites can be touched at a table pose with every axis "
             "within its travel"
         )
-    W, group = aim.rows(wanted), wanted.feature.astype(np.int64)
-    take = max(4, options.touches // options.patches)
-    limits = frame.limits
+    W, group = criterion.rows(wanted), wanted.feature.astype(np.int64)
+    take = max(4, options.choice.touches // options.patches)
+    limits = blank.limits
     refused = (
         f"between them the ball of radius {limits.ball_radius:g} mm has to pass with a gap of "
         f"{limits.gap:g} mm"
     )
     for _ in range(_REBUILDS):
-        chosen = best_groups(aim.purpose, W, group, options.patches, take, apart=fits)
+        chosen = best_groups(criterion.objective, W, group, options.patches, take, apart=fits)
         if len(chosen) < options.patches:
             raise NotBuildable(
                 f"only {len(chosen)} of {options.patches} patches fit on the blank; {refused}"
@@ -194,18 +223,18 @@ def _standard(
         order = sorted(chosen, key=lambda k: (-sites[k].height, sites[k].azimuth))
         try:
             standard = standard_from_sites(
-                options.name, [sites[k] for k in order], frame, options.serial
+                options.name, [sites[k] for k in order], blank, options.serial
             )
         except NotBuildable as error:
             refused = str(error)
             _forbid(fits, [chosen[-1]])
             continue
-        broken = [c for c in constraints(standard, frame.limits) if c.slack < 0.0]
+        broken = [c for c in constraints(standard, blank.limits) if c.slack < 0.0]
         if not broken:
             return standard
         refused = str(broken[0])
         for constraint in broken:
-            _blame(fits, constraint, order, chosen)
+            _blame(fits, constraint.features, order, chosen)
     raise NotBuildable(f"no choice of {options.patches} patches meets every limit; {refused}")
 
 
@@ -216,12 +245,11 @@ def _face_touches(name: str, site: Site, base: Base, poses: Array) -> Requests:
 
 
 def _blame(
-    fits: NDArray[np.bool_], constraint: Constraint, order: list[int], chosen: list[int]
+    fits: NDArray[np.bool_], features: tuple[str, ...], order: list[int], chosen: list[int]
 ) -> None:
     """Keep the sites that violate a limit from being chosen so again."""
     names = [f"FF{i}" for i in range(1, len(order) + 1)]
-    words = [constraint.subject, constraint.name.split()[-1]]
-    guilty = [order[names.index(word)] for word in words if word in names]
+    guilty = [order[names.index(name)] for name in features if name in names]
     if len(guilty) == 2 and guilty[0] != guilty[1]:
         fits[guilty[0], guilty[1]] = fits[guilty[1], guilty[0]] = False
     else:
@@ -234,11 +262,13 @@ def _forbid(fits: NDArray[np.bool_], sites: list[int]) -> None:
     fits[:, sites] = False
 
 
-def _with_shares(aim: Criterion, standard: Standard, requests: Requests) -> Standard:
+def _with_shares(criterion: Criterion, standard: Standard, requests: Requests) -> Standard:
     """The standard with the errors that each patch is for."""
     on_patch = np.isin(requests.feature, [p.name for p in standard.patches])
-    touches = aim.probing.touches(requests[on_patch])
-    W = whitened(aim.model.columns(touches), aim.model.prior_sd, aim.noise)
-    shares = error_shares(W, requests.feature[on_patch].tolist(), parameter_symbols(aim.model))
+    touches = criterion.reach.touches(requests[on_patch])
+    W = whitened(criterion.model.columns(touches), criterion.model.prior_sd, criterion.noise)
+    shares = error_shares(
+        W, requests.feature[on_patch].tolist(), parameter_symbols(criterion.model)
+    )
     patches = tuple(replace(p, errors=shares.get(p.name, ())) for p in standard.patches)
     return replace(standard, patches=patches)

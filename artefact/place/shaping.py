@@ -20,7 +20,7 @@ from scipy.optimize import linear_sum_assignment
 from artefact.body import FreeformPatch, Limits, Standard, constraints, graph_patch, unit
 from artefact.layout import CONTROL, STEEPEST, TALLEST, strength
 from artefact.reach import Requests, joined
-from artefact.worth import Criterion, PlacementOptions, each_at, face_grid, sphere_grid
+from artefact.worth import Criterion, TouchOptions, each_at, face_grid, sphere_grid
 from information.selection import Mask, Quota, heaviest, relaxed
 from twin.frames import Array, turn
 from twin.units import DEG
@@ -34,12 +34,12 @@ _SMOOTH = 0.1  # weight of bending against slopes; a length of the patch makes i
 _NEAR = 0.03  # gap of the relaxed optimum that will do
 
 
-def shaped(
-    aim: Criterion,
+def with_optimised_shapes(
+    criterion: Criterion,
     standard: Standard,
     poses: Array,
     limits: Limits,
-    options: PlacementOptions,
+    options: TouchOptions,
     rng: np.random.Generator,
 ) -> Standard:
     """A standard with the same sites, whose shapes serve the touches that are wanted there.
@@ -47,31 +47,31 @@ def shaped(
     Patches whose new shape breaks a limit keep the old one.
 
     Args:
-        aim: Criterion.
+        criterion: Criterion.
         standard: Within its limits.
         poses: Table poses, (K, R), rad.
         limits: Of slope, curvature, room.
         options: Number of touches and shares of the spheres.
         rng: Draws the poses that are tried at each place.
     """
-    slopes = wanted_slopes(aim, standard, poses, options, rng)
+    slopes = wanted_slopes(criterion, standard, poses, options, rng)
     patches = tuple(_reshaped(p, slopes[p.name], limits) for p in standard.patches)
     made = replace(standard, patches=patches)
     broken = [c for c in constraints(made, limits) if c.slack < 0.0]
-    words = {word for c in broken for word in (c.subject, c.name.split()[-1])}
-    if not words:
+    if not broken:
         return made
-    both = zip(standard.patches, patches, strict=True)
-    kept = tuple(old if old.name in words else new for old, new in both)
+    blamed = {name for c in broken for name in c.features}
+    pairs = zip(standard.patches, patches, strict=True)
+    kept = tuple(old if old.name in blamed else new for old, new in pairs)
     made = replace(standard, patches=kept)
     return standard if any(c.slack < 0.0 for c in constraints(made, limits)) else made
 
 
 def wanted_slopes(
-    aim: Criterion,
+    criterion: Criterion,
     standard: Standard,
     poses: Array,
-    options: PlacementOptions,
+    options: TouchOptions,
     rng: np.random.Generator,
 ) -> dict[str, Array]:
     """Slopes (dh/du, dh/dv) that touches are wanted with on every patch, heaviest first, (M, 2).
@@ -100,8 +100,8 @@ def wanted_slopes(
     spheres = [each_at(s, sphere_grid(_ON_SPHERE), some) for s in standard.spheres]
     tried = joined(parts + spheres)
     slope.append(np.zeros((sum(map(len, spheres)), 2)))
-    good = aim.probing.is_reachable(tried)
-    weight = _weights(aim, tried[good], [s.name for s in standard.spheres], options, rng)
+    good = criterion.reach.is_reachable(tried)
+    weight = _weights(criterion, tried[good], [s.name for s in standard.spheres], options, rng)
     feature, all_slopes = tried.feature[good], np.concatenate(slope)[good]
     found = {}
     for patch in standard.patches:
@@ -121,10 +121,10 @@ def _slopes() -> Array:
 
 
 def _weights(
-    aim: Criterion,
+    criterion: Criterion,
     tried: Requests,
     spheres: list[str],
-    options: PlacementOptions,
+    options: TouchOptions,
     rng: np.random.Generator,
 ) -> Array:
     """Fractions of touches that are nearly the best, (N,)."""
@@ -132,7 +132,9 @@ def _weights(
     most = np.array([options.touches, round(options.sphere_share[1] * options.touches)])
     quotas = (Quota(on_sphere.astype(np.int64), most),)
     start = heaviest(rng.random(len(tried)), options.touches, quotas)
-    return relaxed(aim.purpose, aim.rows(tried), options.touches, start, _NEAR, quotas).weight
+    return relaxed(
+        criterion.objective, criterion.rows(tried), options.touches, start, _NEAR, quotas
+    ).weight
 
 
 def _reshaped(patch: FreeformPatch, slopes: Array, limits: Limits) -> FreeformPatch:

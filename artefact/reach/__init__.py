@@ -1,6 +1,10 @@
-"""Which touches a machine can make on a standard."""
+"""Which touches a machine can make on a standard: angle, travel, room for the probe, free ways.
 
-from artefact.reach.first_contact import contact
+In: machine, probe and set-up (`ProbeReach`), a standard, wanted touches (`Requests`). Out: masks of
+those that can be made, the reason against each of the others, axis readings, and the touches as the
+twin's effects understand them. A new hindrance is one more look in `ProbeReach`.
+"""
+
 from artefact.reach.probe_clearance import (
     TABLE_RADIUS,
     TABLE_THICKNESS,
@@ -19,6 +23,5 @@ __all__ = [
     "Requests",
     "clearance",
     "clearance_on_table",
-    "contact",
     "joined",
 ]

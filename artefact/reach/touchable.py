@@ -8,8 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Meeting, Plate, Standard
-from artefact.reach.first_contact import contact
+from artefact.body import Meeting, Plate, Standard, contact
 from artefact.reach.probe_clearance import (
     TABLE_RADIUS,
     TABLE_THICKNESS,
@@ -109,19 +108,19 @@ class ProbeReach:
         Raises:
             NotReachable: The machine has not three independent linear axes at some pose.
         """
-        chain, stands = self.chain, self._stands(wanted)
+        chain, poses = self.chain, self._pose_kinematics(wanted)
         rotary = [chain.axis_index(name) for name in chain.rotary_axes]
         q = np.zeros((len(wanted), len(chain.axes)))
         q[:, rotary] = wanted.rotary
         ball = wanted.point + (self.radius + gap) * wanted.normal
         target = apply(self.setup.T_table_artefact, ball)
-        i = stands.index
-        way = (target - stands.tip[i])[..., None]
+        i = poses.index
+        way = (target - poses.tip[i])[..., None]
         linear = [chain.axis_index(name) for name in chain.linear_axes]
-        q[:, linear] = stands.q[i][:, linear] + (stands.inverse[i] @ way)[..., 0]
+        q[:, linear] = poses.q[i][:, linear] + (poses.inverse[i] @ way)[..., 0]
         return q
 
-    def _stands(self, wanted: Requests) -> "_PoseCaches":
+    def _pose_kinematics(self, wanted: Requests) -> "_PoseKinematics":
         """The table poses of touches, with all that depends on the pose alone."""
         chain = self.chain
         poses, index = np.unique(wanted.rotary, axis=0, return_inverse=True)
@@ -131,7 +130,7 @@ class ProbeReach:
         q = inverse_linear(chain, target, q, self.length)
         along = linear_directions(chain, q)
         unit = np.broadcast_to(np.eye(3), along.shape)
-        return _PoseCaches(
+        return _PoseKinematics(
             index=index.reshape(-1),
             q=q,
             tip=target,
@@ -193,8 +192,8 @@ class ProbeReach:
 
     def _lean(self, wanted: Requests) -> Array:
         """Cosine of the angle between normal and tool axis, (N,)."""
-        stands = self._stands(wanted)
-        axis = stands.T_table_tool[stands.index, :3, 2]
+        poses = self._pose_kinematics(wanted)
+        axis = poses.T_table_tool[poses.index, :3, 2]
         cosine: Array = np.einsum(
             "ni,ni->n", axis, turn(self.setup.T_table_artefact, wanted.normal)
         )
@@ -242,12 +241,12 @@ class ProbeReach:
 
     def _room(self, standard: Standard, wanted: Requests, gap: float) -> Clearance:
         """How near anything comes to the probe above its ball, and the table to the ball."""
-        stands = self._stands(wanted)
+        poses = self._pose_kinematics(wanted)
         place = self.setup.T_table_artefact
         centre = apply(place, wanted.point + (self.radius + gap) * wanted.normal)
         r = self.table_radius
         table = Plate((r, r), r, -self.table_thickness, 0.0)
-        T_table_tool = stands.T_table_tool[stands.index]
+        T_table_tool = poses.T_table_tool[poses.index]
         return clearance_on_table(
             standard, place, T_table_tool, centre, self.shape, table, enough=self.room
         )
@@ -284,8 +283,8 @@ class ProbeReach:
         zero = np.zeros((1, len(chain.axes)))
         along = linear_directions(chain, zero)[0].T @ table_to_tool(chain, zero)[0, :3, 2]
         best = int(np.argmax(np.abs(along)))
-        stands = self._stands(wanted)
-        up: Array = np.sign(along[best]) * stands.along[stands.index, :, best]
+        poses = self._pose_kinematics(wanted)
+        up: Array = np.sign(along[best]) * poses.along[poses.index, :, best]
         return up
 
 
@@ -294,7 +293,7 @@ def _met(what: Meeting, name: str) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class _PoseCaches:
+class _PoseKinematics:
     """K table poses that N touches are made at.
 
     Attributes:

@@ -1,9 +1,15 @@
-"""What touches on a standard are worth, and which of them to choose."""
+"""What touches on a standard are worth, and which of them to choose.
+
+In: machine with expected errors, blank, the user's workspace, wanted touches. Out: a `Criterion`
+that turns touches into rows of information, the best table poses and touches under quotas, the
+effects that touches could show, and the errors that each patch is for. A new criterion is an entry
+in `CRITERIA` and in `criterion_for`.
+"""
 
 from artefact.worth.attribution import error_shares, parameter_symbols
 from artefact.worth.effect_visibility import Visibility, visibility
 from artefact.worth.touch_choice import (
-    PlacementOptions,
+    TouchOptions,
     chosen_poses,
     chosen_touches_on,
     each_at,
@@ -14,18 +20,25 @@ from artefact.worth.touch_choice import (
     table_poses,
     touches_to_choose_from,
 )
-from artefact.worth.touch_criterion import CRITERIA, Criterion, criterion, random_touches
+from artefact.worth.touch_criterion import (
+    CRITERIA,
+    Criterion,
+    CriterionOptions,
+    criterion_for,
+    random_touches,
+)
 from artefact.worth.touch_curves import TouchCurve, touch_curve
 
 __all__ = [
     "CRITERIA",
     "Criterion",
-    "PlacementOptions",
+    "CriterionOptions",
     "TouchCurve",
+    "TouchOptions",
     "Visibility",
     "chosen_poses",
     "chosen_touches_on",
-    "criterion",
+    "criterion_for",
     "each_at",
     "error_shares",
     "face_grid",

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.reach import Requests
-from artefact.worth.potential import VISIBLE, freed, library, parts
+from artefact.worth.potential import VISIBLE, column_slices, library, residual_after
 from artefact.worth.touch_criterion import Criterion
 from twin.frames import Array
 from twin.model import Effect, columns
@@ -30,36 +30,36 @@ class Visibility:
     effects: tuple[Effect, ...]
     hidden: tuple[Effect, ...]
 
-    def shown(self, aim: Criterion, chosen: Requests) -> int:
+    def shown(self, criterion: Criterion, chosen: Requests) -> int:
         """How many of the effects some touches show."""
-        return int(np.sum(self.survival_in(aim, chosen) > VISIBLE))
+        return int(np.sum(self.survival_in(criterion, chosen) > VISIBLE))
 
-    def survival_in(self, aim: Criterion, chosen: Requests) -> Array:
+    def survival_in(self, criterion: Criterion, chosen: Requests) -> Array:
         """Share of the length of every effect's signature that survives in some touches, (E,)."""
-        return survival(aim, list(self.effects), chosen)
+        return survival(criterion, list(self.effects), chosen)
 
 
-def visibility(aim: Criterion, free: Requests) -> Visibility:
+def visibility(criterion: Criterion, free: Requests) -> Visibility:
     """Effects of the library that could be seen by touches without any artefact in the way.
 
     Args:
-        aim: Machine and geometric model.
+        criterion: Machine and geometric model.
         free: As many random points and normals as an artefact has touches, or more.
     """
-    touches = aim.probing.touches(free)
+    touches = criterion.reach.touches(free)
     tried = library(touches)
-    left = survival(aim, tried, free)
+    left = survival(criterion, tried, free)
     return Visibility(
         tuple(e for e, s in zip(tried, left, strict=True) if s > VISIBLE),
         tuple(e for e, s in zip(tried, left, strict=True) if s <= VISIBLE),
     )
 
 
-def survival(aim: Criterion, effects: list[Effect], chosen: Requests) -> Array:
+def survival(criterion: Criterion, effects: list[Effect], chosen: Requests) -> Array:
     """Share of the length of every effect's signature that the geometric model cannot imitate.
 
     Args:
-        aim: Machine and geometric model.
+        criterion: Machine and geometric model.
         effects: E effects of any numbers of parameters; the shares of their columns are averaged by
             their squares.
         chosen: The touches.
@@ -67,11 +67,11 @@ def survival(aim: Criterion, effects: list[Effect], chosen: Requests) -> Array:
     Returns:
         Shape (E,), 0 to 1; 0 for an effect that moves nothing here.
     """
-    touches = aim.probing.touches(chosen)
+    touches = criterion.reach.touches(chosen)
     C = columns(effects, touches)
-    left = freed(C, aim.whitened(chosen))
+    left = residual_after(C, criterion.whitened(chosen))
     out = np.zeros(len(effects))
-    for i, mine in enumerate(parts(effects)):
+    for i, mine in enumerate(column_slices(effects)):
         whole = float(np.sum(C[:, mine] ** 2))
         if whole > 0.0:
             out[i] = np.sqrt(np.sum(left[:, mine] ** 2) / whole)

@@ -42,13 +42,13 @@ def _tuned(effect: Effect, touches: Touches) -> Effect:
     return effect.tuned(*(inner.grid[len(inner.grid) // 2] for inner in effect.inner(touches)))
 
 
-def parts(effects: list[Effect]) -> list[slice]:
+def column_slices(effects: list[Effect]) -> list[slice]:
     """Columns of every effect among those of all."""
     edges = np.cumsum([0, *(len(e.parameters) for e in effects)]).tolist()
     return [slice(a, b) for a, b in pairwise(edges)]
 
 
-def freed(C: Array, W: Array) -> Array:
+def residual_after(C: Array, W: Array) -> Array:
     """Signatures (N, C) without what the rows of a model (N, P) can imitate of them."""
     length = np.maximum(np.linalg.norm(W, axis=0), 1e-300)
     U, s, _ = np.linalg.svd(W / length, full_matrices=False)
@@ -101,9 +101,9 @@ def potential(touches: Touches, reduced: Array, count: int) -> Potential:
     """
     tried = library(touches)
     C = columns(tried, touches)
-    left, n = freed(C, reduced), len(touches)
+    left, n = residual_after(C, reduced), len(touches)
     effects, names, mixes = [], [], []
-    for effect, mine in zip(tried, parts(tried), strict=True):
+    for effect, mine in zip(tried, column_slices(tried), strict=True):
         whole = float(np.sum(C[:, mine] ** 2))
         if whole <= 0.0:
             continue

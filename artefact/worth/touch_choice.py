@@ -6,12 +6,12 @@ import numpy as np
 
 from artefact.body import Standard, Surface
 from artefact.reach import Mask, ProbeReach, Requests, joined
-from artefact.worth.touch_criterion import Criterion, CriterionOptions
+from artefact.worth.touch_criterion import Criterion
 from information.selection import Certificate, Quota, best_groups, heaviest, relaxed, rounded
 from twin.compute import blocks
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
-from twin.units import DEG, UM
+from twin.units import DEG
 
 _PITCHES = (5, 9, 15)  # points each way on a face
 _CHOICE = (
@@ -26,56 +26,32 @@ _SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
 
 
 @dataclass(frozen=True)
-class PlacementOptions:
-    """How much is tried and how much is measured.
+class TouchOptions:
+    """How many touches are chosen, at how many table poses, and who gets which share.
 
     Attributes:
-        name: Type of the standard.
-        serial: Of the piece.
-        patches: Number of freeform patches.
         touches: Number of touches.
         poses: Number of table poses.
-        sites: Number of random sites to choose from.
-        noise: Standard deviation of one touch, mm.
-        criterion: What sites, poses and touches are chosen for
-        (`artefact.worth.touch_criterion.CRITERIA`).
         sphere_share: Part of the touches that goes to the datum spheres, at least and at most. They
             would take two thirds if they could, but a standard of spheres is no news, and faces
             are what a freeform standard calibrates.
         least_on_patch: Fewest touches on a patch, as a part of its even share.
-        potential: Share of the criterion that goes to showing effects of the library.
-        draws: Drawn machines over whose sizes of errors the criterion is averaged; 0 for none.
-        tail: Share of the drawn machines, the worst, that are averaged.
     """
 
-    name: str = "FFS"
-    serial: str = ""
-    patches: int = 10
     touches: int = 480
     poses: int = 30
-    sites: int = 400
-    noise: float = 1.0 * UM
-    criterion: str = "I"
     sphere_share: tuple[float, float] = (0.15, 0.45)
     least_on_patch: float = 0.4
-    potential: float = 0.3
-    draws: int = 0
-    tail: float = 1.0
-
-    @property
-    def wishes(self) -> CriterionOptions:
-        """What the criterion shall be beside its name."""
-        return CriterionOptions(self.potential, self.touches, self.draws, self.tail)
 
 
-def table_poses(aim: Criterion, wanted: int) -> Array:
+def table_poses(criterion: Criterion, wanted: int) -> Array:
     """Table poses to choose from: a grid of rotary readings in whole degrees, (K, R), rad.
 
     The values of each later axis are shifted from one value of the earlier ones to the next, so
     that the whole grid holds many different readings of each.
     """
-    chain, limits = aim.probing.chain, []
-    for name, (low, high) in zip(chain.rotary_axes, aim.rotary, strict=True):
+    chain, limits = criterion.reach.chain, []
+    for name, (low, high) in zip(chain.rotary_axes, criterion.rotary, strict=True):
         travel = chain.link(name).range
         limits.append((max(low, travel[0] + _OVERSHOOT), min(high, travel[1] - _OVERSHOOT)))
         if limits[-1][0] > limits[-1][1]:
@@ -130,54 +106,56 @@ def touches_at(standard: Standard, poses: Array, pitch: int) -> Requests:
     return joined(parts)
 
 
-def clear_touches(probing: ProbeReach, standard: Standard, wanted: Requests) -> Requests:
+def clear_touches(reach: ProbeReach, standard: Standard, wanted: Requests) -> Requests:
     """Those of the touches that machine and probe can make."""
-    wanted = wanted[probing.is_reachable(wanted)]
-    return wanted[probing.is_clear(standard, wanted)]
+    wanted = wanted[reach.is_reachable(wanted)]
+    return wanted[reach.is_clear(standard, wanted)]
 
 
 def chosen_poses(
-    aim: Criterion, standard: Standard, poses: Array, options: PlacementOptions
+    criterion: Criterion, standard: Standard, poses: Array, options: TouchOptions
 ) -> Array:
     """Table poses whose touches tell most, (K, R)."""
     tried = touches_at(standard, poses, pitch=3)
-    tried = tried[aim.probing.is_reachable(tried)]
-    tried = tried[aim.probing.has_room(standard, tried)]  # the way there is looked at later
+    tried = tried[criterion.reach.is_reachable(tried)]
+    tried = tried[criterion.reach.has_room(standard, tried)]  # the way there is looked at later
     if not len(tried):
         raise NotReachable("the machine reaches no touch on the standard at any table pose")
     seen, group = np.unique(np.round(tried.rotary, 9), axis=0, return_inverse=True)
     take = max(4, options.touches // options.poses)
-    chosen = best_groups(aim.purpose, aim.rows(tried), group.reshape(-1), options.poses, take)
+    chosen = best_groups(
+        criterion.objective, criterion.rows(tried), group.reshape(-1), options.poses, take
+    )
     picked: Array = seen[sorted(chosen)]
     return picked
 
 
 def touches_to_choose_from(
-    aim: Criterion, standard: Standard, poses: Array, options: PlacementOptions
+    criterion: Criterion, standard: Standard, poses: Array, options: TouchOptions
 ) -> Requests:
     """Touches that can be made at some poses, on grids as fine as a choice among them needs."""
-    tried = clear_touches(aim.probing, standard, touches_at(standard, poses, _PITCHES[0]))
+    tried = clear_touches(criterion.reach, standard, touches_at(standard, poses, _PITCHES[0]))
     for pitch in _PITCHES[1:]:
         if len(tried) >= _CHOICE * options.touches:
             break
-        tried = clear_touches(aim.probing, standard, touches_at(standard, poses, pitch))
+        tried = clear_touches(criterion.reach, standard, touches_at(standard, poses, pitch))
     return tried
 
 
 def some_touches(
-    aim: Criterion,
+    criterion: Criterion,
     standard: Standard,
     poses: Array,
-    options: PlacementOptions,
+    options: TouchOptions,
     rng: np.random.Generator,
 ) -> Requests:
     """Touches that can be made, drawn from the finest grid until a choice has enough."""
     tried = touches_at(standard, poses, _PITCHES[-1])
-    tried = tried[aim.probing.is_reachable(tried)]
+    tried = tried[criterion.reach.is_reachable(tried)]
     tried = tried[rng.permutation(len(tried))]
     found: list[Requests] = []
     for rows in blocks(len(tried), _DRAWN):
-        found.append(tried[rows][aim.probing.is_clear(standard, tried[rows])])
+        found.append(tried[rows][criterion.reach.is_clear(standard, tried[rows])])
         if sum(map(len, found)) >= _CHOICE * options.touches:
             break
     if sum(map(len, found)) < options.touches:
@@ -198,7 +176,7 @@ def pose_quota(tried: Requests, count: int) -> Quota:
     return Quota(pose, np.full(len(there), most))
 
 
-def shares(standard: Standard, tried: Requests, options: PlacementOptions) -> tuple[Quota, ...]:
+def shares(standard: Standard, tried: Requests, options: TouchOptions) -> tuple[Quota, ...]:
     """What every choice of touches keeps: of a table pose, of the spheres, of each patch.
 
     Where fewer touches can be made than a share asks for, all of them will do; where poses are too
@@ -237,7 +215,7 @@ def shares(standard: Standard, tried: Requests, options: PlacementOptions) -> tu
 
 
 def chosen_touches_on(
-    aim: Criterion, standard: Standard, tried: Requests, options: PlacementOptions
+    criterion: Criterion, standard: Standard, tried: Requests, options: TouchOptions
 ) -> tuple[Mask, Certificate]:
     """Single touches, and how near they are to the best that keep the same shares.
 
@@ -246,8 +224,8 @@ def chosen_touches_on(
     Returns:
         The choice, (N,), and its certificate.
     """
-    quotas, W, n = shares(standard, tried, options), aim.rows(tried), options.touches
+    quotas, W, n = shares(standard, tried, options), criterion.rows(tried), options.touches
     start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
-    best = relaxed(aim.purpose, W, n, start, _NEAR, quotas)
-    choice = rounded(aim.purpose, W, best.weight, n, most=n // 2, quotas=quotas)
+    best = relaxed(criterion.objective, W, n, start, _NEAR, quotas)
+    choice = rounded(criterion.objective, W, best.weight, n, most=n // 2, quotas=quotas)
     return choice.chosen, Certificate(len(W), n, choice.value, best.bound, shares=True)

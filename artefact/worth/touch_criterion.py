@@ -49,7 +49,7 @@ class Criterion:
     """Worth of touches on a machine.
 
     Attributes:
-        probing: Machine, probe, set-up.
+        reach: Machine, probe, set-up.
         model: Errors that are expected.
         prior_sd: Their standard deviations with the set-up free, (P,).
         noise: Standard deviation of one touch, mm.
@@ -58,12 +58,12 @@ class Criterion:
         tip_volume: Deviation of the tip per unit of every parameter at poses over the probed
             volume, (M, 3, P).
         tip_user: The same at poses over the user's workspace, (M, 3, P).
-        purposes: What touches can be chosen for, by the names in `CRITERIA`.
+        objectives: What touches can be chosen for, by the names in `CRITERIA`.
         name: The one that they are chosen for.
         potential: Effects that may be there or not, which touches shall show; None for none.
     """
 
-    probing: ProbeReach
+    reach: ProbeReach
     model: Model
     prior_sd: Array
     noise: float
@@ -71,41 +71,41 @@ class Criterion:
     volume: Box
     tip_volume: Array
     tip_user: Array
-    purposes: Mapping[str, DesignCriterion]
+    objectives: Mapping[str, DesignCriterion]
     name: str = "I"
     potential: Potential | None = None
 
     @property
-    def purpose(self) -> DesignCriterion:
+    def objective(self) -> DesignCriterion:
         """What touches are chosen for."""
-        return self.purposes[self.name]
+        return self.objectives[self.name]
 
     @property
     def plain(self) -> "Criterion":
         """The same criterion without potential terms, for choices that do not hang on them."""
         if self.potential is None:
             return self
-        plain = {name: one.primary or one for name, one in self.purposes.items()}
-        return replace(self, purposes=plain, potential=None)
+        plain = {name: one.primary or one for name, one in self.objectives.items()}
+        return replace(self, objectives=plain, potential=None)
 
     def whitened(self, wanted: Requests) -> Array:
         """Rows of touches in units of noise and prior, (N, P)."""
         out = np.empty((len(wanted), len(self.prior_sd)))
         for rows in blocks(len(wanted), _ROWS_A_BLOCK):
-            columns = self.model.columns(self.probing.touches(wanted[rows]))
+            columns = self.model.columns(self.reach.touches(wanted[rows]))
             out[rows] = whitened(columns, self.prior_sd, self.noise)
         return out
 
     def rows(self, wanted: Requests) -> Array:
         """Rows of touches in the directions that matter and in the potential terms, (N, R).
 
-        The same for every purpose.
+        The same for every objective.
         """
-        reduced = self.purpose.rows(self.whitened(wanted))
+        reduced = self.objective.rows(self.whitened(wanted))
         if self.potential is None:
             return reduced
         parts = [
-            self.potential.rows(self.probing.touches(wanted[rows]), reduced[rows])
+            self.potential.rows(self.reach.touches(wanted[rows]), reduced[rows])
             for rows in blocks(len(wanted), _ROWS_A_BLOCK)
         ]
         return np.concatenate([reduced, np.concatenate(parts)], axis=1)
@@ -113,82 +113,84 @@ class Criterion:
 
 @dataclass(frozen=True)
 class CriterionOptions:
-    """What a criterion shall be beside its name.
+    """What touches are chosen for.
 
     Attributes:
+        name: One of `CRITERIA`.
         potential: Share of the criterion that goes to showing effects of the library, from 0 (they
             are left out) to below 1, judged after touches taken at random. In a D-criterion they
             simply join the determinant, whatever the share.
-        touches: Number of touches that will be chosen.
-        draws: Number of drawn machines over whose sizes of errors the criterion is averaged; 0 for
+        drawn_machines: Number of drawn machines over whose sizes of errors the criterion is
+            averaged; 0 for
             the expected sizes alone.
-        tail: Share of the drawn machines, the worst, that are averaged; 1 for all.
+        worst_share: Share of the drawn machines, the worst, that are averaged; 1 for all.
     """
 
+    name: str = "I"
     potential: float = 0.0
-    touches: int = 480
-    draws: int = 0
-    tail: float = 1.0
+    drawn_machines: int = 0
+    worst_share: float = 1.0
 
     def __post_init__(self) -> None:
+        if self.name not in CRITERIA:
+            raise DesignError(f"criterion '{self.name}', expected one of {', '.join(CRITERIA)}")
         if not 0.0 <= self.potential < 1.0:
             raise DesignError(f"potential {self.potential:g}, expected from 0 to below 1")
-        if self.draws < 0:
-            raise DesignError(f"draws {self.draws}, expected 0 or more")
+        if self.drawn_machines < 0:
+            raise DesignError(f"drawn machines {self.drawn_machines}, expected 0 or more")
 
 
-def criterion(
-    probing: ProbeReach,
+def criterion_for(
+    reach: ProbeReach,
     model: Model,
-    frame: Blank,
+    blank: Blank,
     workspace: Workspace,
     noise: float,
     rng: np.random.Generator,
-    name: str = "I",
-    wishes: CriterionOptions | None = None,
+    options: CriterionOptions | None = None,
+    touches: int = 480,
     population: Population | None = None,
 ) -> Criterion:
     """Criterion of a machine, a blank and a user's workspace.
 
     Args:
-        probing: Machine, probe, set-up.
+        reach: Machine, probe, set-up.
         model: Errors that are expected, with their prior standard deviations.
-        frame: Blank of the standard: it bounds the probed volume.
+        blank: Blank of the standard: it bounds the probed volume.
         workspace: Where the user works; the limits of its rotary axes are those of table poses.
         noise: Standard deviation of one touch, mm.
         rng: Draws the poses.
-        name: One of `CRITERIA`.
-        wishes: Potential terms and drawn machines; None for neither.
+        options: What touches are chosen for; None for the I-criterion alone.
+        touches: Number of touches that will be chosen.
         population: From which machines are drawn, that of the model; None for the default one.
 
-    Raises:
-        DesignError: Another name.
     """
-    if name not in CRITERIA:
-        raise DesignError(f"criterion '{name}', expected one of {', '.join(CRITERIA)}")
-    wishes = wishes or CriterionOptions()
-    volume = _probed_volume(frame)
-    rotary = np.array([workspace.limit(n) for n in probing.chain.rotary_axes]).reshape(-1, 2)
-    tips = _tips(probing, model, volume, workspace, rng)
+    options = options or CriterionOptions()
+    volume = _probed_volume(blank)
+    rotary = np.array([workspace.limit(n) for n in reach.chain.rotary_axes]).reshape(-1, 2)
+    tips = _tips(reach, model, volume, workspace, rng)
     prior_sd = _with_free_setup(model)
-    scatter = random_touches(probing, volume, rotary, _SCATTER, rng)
-    touches = probing.touches(scatter)
-    W = whitened(model.columns(touches), prior_sd, noise)
+    scatter = random_touches(reach, volume, rotary, _SCATTER, rng)
+    free = reach.touches(scatter)
+    W = whitened(model.columns(free), prior_sd, noise)
     G = np.concatenate(tips)
-    purposes = five_criteria(G, W, prior_sd)
-    if wishes.draws:
-        scale = _scales(probing, model, population, wishes.draws, rng)
-        purposes = {key: robust(one, scale, wishes.tail) for key, one in purposes.items()}
+    objectives = five_criteria(G, W, prior_sd)
+    if options.drawn_machines:
+        scales = _scales(reach, model, population, options.drawn_machines, rng)
+        objectives = {
+            key: robust(one, scales, options.worst_share) for key, one in objectives.items()
+        }
     terms = None
-    if wishes.potential > 0.0:
-        reduced = purposes[name].rows(W)
-        terms = potential(touches, reduced, wishes.touches)
-        rows = np.concatenate([reduced, terms.rows(touches, reduced)], axis=1)[: wishes.touches]
-        purposes = {
-            key: _sharing(one, rows, len(terms), wishes.potential) for key, one in purposes.items()
+    if options.potential > 0.0:
+        reduced = objectives[options.name].rows(W)
+        terms = potential(free, reduced, touches)
+        rows = np.concatenate([reduced, terms.rows(free, reduced)], axis=1)[:touches]
+        objectives = {
+            key: _sharing(one, rows, len(terms), options.potential)
+            for key, one in objectives.items()
         }
     return Criterion(
-        probing=probing,
+        reach=reach,
         model=model,
         prior_sd=prior_sd,
         noise=noise,
@@ -196,23 +198,23 @@ def criterion(
         volume=volume,
         tip_volume=tips[0],
         tip_user=tips[1],
-        purposes=purposes,
-        name=name,
+        objectives=objectives,
+        name=options.name,
         potential=terms,
     )
 
 
-def _sharing(aim: DesignCriterion, rows: Array, count: int, share: float) -> DesignCriterion:
-    """A purpose of which potential terms have some share after touches taken at random."""
-    R = aim.size
-    value = aim.value(rows[:, :R].T @ rows[:, :R])
+def _sharing(objective: DesignCriterion, rows: Array, count: int, share: float) -> DesignCriterion:
+    """An objective of which potential terms have some share after touches taken at random."""
+    R = objective.size
+    value = objective.value(rows[:, :R].T @ rows[:, :R])
     M = np.eye(R + count) + rows.T @ rows
     hidden = float(np.trace(np.linalg.solve(M, np.eye(R + count))[R:, R:])) / count
-    return with_potential(aim, count, share / (1.0 - share) * value / hidden)
+    return with_potential(objective, count, share / (1.0 - share) * value / hidden)
 
 
 def _scales(
-    probing: ProbeReach,
+    reach: ProbeReach,
     model: Model,
     population: Population | None,
     draws: int,
@@ -223,7 +225,7 @@ def _scales(
     Raises:
         DesignError: The model is not that of the population.
     """
-    population = population or Population(probing.chain)
+    population = population or Population(reach.chain)
     if not set(model.names) <= set(population.model.names):
         raise DesignError("machines can be drawn for the errors of a population alone")
     scale = drawn_scales(population, draws, rng, model)
@@ -231,26 +233,26 @@ def _scales(
     return scale
 
 
-def _probed_volume(frame: Blank) -> Box:
+def _probed_volume(blank: Blank) -> Box:
     """Box that the standard fills, artefact frame, mm."""
-    half, top = frame.base.half_size, frame.blank_height
+    half, top = blank.base.half_size, blank.height
     return (
-        (-0.8 * half[0], -0.8 * half[1], frame.base.thickness),
+        (-0.8 * half[0], -0.8 * half[1], blank.base.thickness),
         (0.8 * half[0], 0.8 * half[1], 0.7 * top),
     )
 
 
 def _tips(
-    probing: ProbeReach, model: Model, volume: Box, workspace: Workspace, rng: np.random.Generator
+    reach: ProbeReach, model: Model, volume: Box, workspace: Workspace, rng: np.random.Generator
 ) -> tuple[Array, Array]:
     """Deviation of the tip per unit of every parameter: probed volume, user's workspace."""
-    chain = probing.chain
+    chain = reach.chain
     limits = {name: workspace.limit(name) for name in chain.rotary_axes}
-    corners = np.array(volume) + probing.setup.T_table_artefact[:3, 3]
+    corners = np.array(volume) + reach.setup.T_table_artefact[:3, 3]
     box: Box = (tuple(corners[0]), tuple(corners[1]))
-    probed = Workspace(chain, limits, probing.length, box)
+    probed = Workspace(chain, limits, reach.length, box)
     tips = []
-    for area, length in ((probed, probing.length), (workspace, workspace.length)):
+    for area, length in ((probed, reach.length), (workspace, workspace.length)):
         q = latin_hypercube(area, _POSES, rng)
         tips.append(model.tip_columns(at_poses(chain, q, length)))
     return tips[0], tips[1]
@@ -273,12 +275,12 @@ def _with_free_setup(model: Model) -> Array:
 
 
 def random_touches(
-    probing: ProbeReach, volume: Box, rotary: Array, count: int, rng: np.random.Generator
+    reach: ProbeReach, volume: Box, rotary: Array, count: int, rng: np.random.Generator
 ) -> Requests:
     """Touches with random points in a box and random normals, at random poses, all reachable.
 
     Args:
-        probing: Machine, probe, set-up.
+        reach: Machine, probe, set-up.
         volume: Box in the artefact frame, mm.
         rotary: Limits of every rotary axis (R, 2), from which readings are drawn evenly, rad.
         count: Number of touches; fewer where the machine reaches fewer.
@@ -296,10 +298,10 @@ def random_touches(
         normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
         rotary=rng.uniform(rotary[:, 0], rotary[:, 1], (tries, len(rotary))),
     )
-    reached = np.flatnonzero(probing.is_reachable(wanted))[:count]
+    reached = np.flatnonzero(reach.is_reachable(wanted))[:count]
     if not len(reached):
         raise NotReachable(
-            f"none of {tries} random touches looks within {probing.steepest / DEG:.1f} degrees of "
+            f"none of {tries} random touches looks within {reach.steepest / DEG:.1f} degrees of "
             "the tool axis with every axis within its travel"
         )
     return wanted[reached]

@@ -49,12 +49,12 @@ class TouchCurve:
 
 
 def touch_curve(
-    aim: Criterion, name: str, touches: Requests, counts: Sequence[int] = COUNTS
+    criterion: Criterion, name: str, touches: Requests, counts: Sequence[int] = COUNTS
 ) -> TouchCurve:
     """Error left after the best few of some touches, all of them, and each more than once.
 
     Args:
-        aim: Machine, noise, poses that are predicted.
+        criterion: Machine, noise, poses that are predicted.
         name: Of the artefact.
         touches: That it was designed with.
         counts: Numbers of touches to look at; the designed one is added.
@@ -66,11 +66,11 @@ def touch_curve(
         raise DesignError(f"{len(touches)} touches looked at by {list(counts)}, expected some")
     designed = len(touches)
     numbers = tuple(sorted({*counts, designed}))
-    areas = (aim.tip_volume, aim.tip_user)
-    rows = aim.whitened(touches)
-    predict = mean_prediction(np.concatenate(areas), rows, aim.prior_sd)
+    areas = (criterion.tip_volume, criterion.tip_user)
+    rows = criterion.whitened(touches)
+    predict = mean_prediction(np.concatenate(areas), rows, criterion.prior_sd)
     W = predict.rows(rows)
-    forms = [_form(aim, tip, predict.directions) for tip in areas]
+    forms = [_form(criterion, tip, predict.directions) for tip in areas]
     left = np.empty((2, len(numbers)))
     rounds, part = np.zeros_like(forms[0]), np.empty(0)
     selection = Selection(predict, W)
@@ -89,8 +89,8 @@ def touch_curve(
     return TouchCurve(name, designed, numbers, left[0], left[1])
 
 
-def _form(aim: Criterion, tip: Array, directions: Array) -> Array:
+def _form(criterion: Criterion, tip: Array, directions: Array) -> Array:
     """Mean square of the tool point's deviation in the directions that matter, (R, R), mm^2."""
-    scaled = (tip * aim.prior_sd).reshape(-1, len(aim.prior_sd)) @ directions
+    scaled = (tip * criterion.prior_sd).reshape(-1, len(criterion.prior_sd)) @ directions
     mean: Array = scaled.T @ scaled / len(tip)
     return mean

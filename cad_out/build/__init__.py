@@ -1,4 +1,8 @@
-"""Solid, STEP and STL of a standard, built in a process of its own."""
+"""Solid, STEP and triangles of a standard, built by the CAD kernel in a process of its own.
+
+In: a folder with `standard.toml`. Out: STEP file, triangles and facts in the same folder. Nothing
+here loads the kernel at import; `run_apart` serves any library that may crash.
+"""
 
 from cad_out.build.kernel import run_kernel
 from cad_out.build.mesh import (
@@ -12,7 +16,26 @@ from cad_out.build.mesh import (
     read_stl,
     write_stl,
 )
+from cad_out.build.part import as_part
 from cad_out.build.process import note_refusal, run_apart
 from cad_out.build.worker import FACTS, MESH, STANDARD, STEP
 
-__all__ = ["FACTS", "MESH", "STANDARD", "STEP", "Mesh", "chord_errors", "face_areas", "is_watertight", "manifold_volume", "mesh_volume", "note_refusal", "owners", "read_stl", "run_apart", "run_kernel", "write_stl"]
+__all__ = [
+    "FACTS",
+    "MESH",
+    "STANDARD",
+    "STEP",
+    "Mesh",
+    "as_part",
+    "chord_errors",
+    "face_areas",
+    "is_watertight",
+    "manifold_volume",
+    "mesh_volume",
+    "note_refusal",
+    "owners",
+    "read_stl",
+    "run_apart",
+    "run_kernel",
+    "write_stl",
+]

@@ -1,4 +1,8 @@
-"""What was built, measured anew from the files."""
+"""What was built, measured anew from the files against the design.
+
+In: a standard and the folder of its files. Out: a `Conformity` with every figure and its limit;
+`export_standard` moves the files to their names only if all are met.
+"""
 
 from cad_out.verify.conformity import Conformity, measure
 from cad_out.verify.export import export_standard

@@ -5,8 +5,8 @@ from datetime import datetime
 
 import numpy as np
 
-from artefact.body import Meeting, Standard
-from artefact.reach import Mask, contact
+from artefact.body import Meeting, Standard, contact
+from artefact.reach import Mask
 from probe_paths.campaign.disturbances import Disturbance
 from probe_paths.control import Clock, ReadProgram
 from probe_paths.language import Dialect

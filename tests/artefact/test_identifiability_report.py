@@ -6,18 +6,22 @@ import numpy as np
 import pytest
 
 from artefact.compare import alternatives as module
-from artefact.compare.alternatives import alternatives, both, machine_rank, set_up, tried_in, ways
-from artefact.compare.identifiability import (
-    as_json,
-    identifiability_report,
-    write_identifiability,
+from artefact.compare.alternatives import (
+    alternatives,
+    joined_rows,
+    machine_rank,
+    other_setups,
+    setup_parameters,
+    touches_reached_in,
 )
+from artefact.compare.identifiability import identifiability_report
 from artefact.layout.sites import Blank
 from artefact.reach.touchable import ProbeReach
-from artefact.worth.touch_criterion import criterion, random_touches
+from artefact.worth.touch_criterion import criterion_for, random_touches
 from information.identifiability.estimable_combinations import combinations
-from information.identifiability.separation import NEVER, SIDEWAYS
+from information.identifiability.freedoms import Resolution
 from probe_paths.plan.probe import Probe
+from report.words.identifiability_file import as_json, write_identifiability
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from twin.machine.chain import Axis, make_chain
@@ -32,7 +36,7 @@ SECOND_STYLUS, SECOND_SETUP = "a second stylus length", "a second set-up"
 
 
 @pytest.fixture(scope="module")
-def aim():
+def criterion():
     axes = {
         "X": Axis((-400.0, 400.0)),
         "Y": Axis((-300.0, 300.0)),
@@ -42,21 +46,23 @@ def aim():
     }
     chain = make_chain("table/table", "[w C' B' X' f Y Z (C1) t]", axes, (0.0, 0.0, -500.0))
     probe = Probe()
-    probing = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
+    reach = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     limits = {"B": (-90.0 * DEG, 20.0 * DEG), "C": (-180.0 * DEG, 180.0 * DEG)}
     workspace = Workspace(chain, limits, probe.length)
     rng = np.random.default_rng(3)
-    return criterion(probing, Population(chain).model, Blank(), workspace, 1.0 * UM, rng)
+    return criterion_for(reach, Population(chain).model, Blank(), workspace, 1.0 * UM, rng)
 
 
 @pytest.fixture(scope="module")
-def requests(aim):
-    return random_touches(aim.probing, aim.volume, aim.rotary, TOUCHES, np.random.default_rng(4))
+def requests(criterion):
+    return random_touches(
+        criterion.reach, criterion.volume, criterion.rotary, TOUCHES, np.random.default_rng(4)
+    )
 
 
 @pytest.fixture(scope="module")
-def known(aim, requests):
-    return identifiability_report(aim, requests, np.random.default_rng(5))
+def known(criterion, requests):
+    return identifiability_report(criterion, requests, np.random.default_rng(5))
 
 
 def test_a_second_stylus_shows_the_tilts_of_the_ram_and_a_second_set_up_shows_nothing(known):
@@ -71,75 +77,83 @@ def test_a_second_stylus_shows_the_tilts_of_the_ram_and_a_second_set_up_shows_no
     assert set(gained.values()) == {0}
     by = [f.resolved_by for f in known.gauge.freedoms]
     assert by.count(SECOND_STYLUS) == 2 * SHAPES
-    assert by.count(SIDEWAYS) == 2 * SHAPES  # ECY and ECZ turn about the spindle's line
-    assert by.count(NEVER) + 4 * SHAPES == len(known.gauge.freedoms)
+    how = [f.resolution for f in known.gauge.freedoms]
+    assert how.count(Resolution.SIDEWAYS) == 2 * SHAPES  # ECY and ECZ turn about the spindle's line
+    assert how.count(Resolution.NEVER) + 4 * SHAPES == len(known.gauge.freedoms)
     assert known.gauge.rank + len(known.gauge.freedoms) == known.gauge.parameters
 
 
-def test_rank_of_the_machine_is_that_of_its_rows_freed_of_set_ups_and_tools(aim, requests):
+def test_rank_of_the_machine_is_that_of_its_rows_freed_of_set_ups_and_tools(criterion, requests):
     rng = np.random.default_rng(6)
-    for name, way in list(ways(aim).items())[:2]:
-        second = tried_in(way, requests, rng)[:TOUCHES]
-        W = both(aim, requests, second, way).W
-        P = len(aim.prior_sd)
-        nuisance = np.concatenate([set_up(aim), np.arange(P, W.shape[1])])
+    for name, other in list(other_setups(criterion).items())[:2]:
+        second = touches_reached_in(other, requests, rng)[:TOUCHES]
+        W = joined_rows(criterion, requests, second, other).W
+        P = len(criterion.prior_sd)
+        nuisance = np.concatenate([setup_parameters(criterion), np.arange(P, W.shape[1])])
         length = np.linalg.norm(W, axis=0)
         scaled = np.where(length > 1e-9 * length.max(), W / np.maximum(length, 1e-300), 0.0)
         free, rest = scaled[:, nuisance], np.delete(scaled, nuisance, axis=1)
         left = rest - free @ np.linalg.lstsq(free, rest, rcond=1e-10)[0]
         s = np.linalg.svd(left, compute_uv=False)
-        assert machine_rank(aim, W) == int(np.sum(s > 1e-8 * s[0])), name
+        assert machine_rank(criterion, W) == int(np.sum(s > 1e-8 * s[0])), name
 
 
-def test_touches_in_a_second_set_up_have_their_own_six_numbers(aim, requests):
-    name, way = next((n, w) for n, w in ways(aim).items() if n.startswith(SECOND_SETUP))
-    first, second = requests[:50], tried_in(way, requests, np.random.default_rng(7))[:50]
-    found = both(aim, first, second, way)
-    P, of_w = len(aim.prior_sd), set_up(aim, "w")
+def test_touches_in_a_second_set_up_have_their_own_six_numbers(criterion, requests):
+    name, other = next(
+        (n, w) for n, w in other_setups(criterion).items() if n.startswith(SECOND_SETUP)
+    )
+    first, second = (
+        requests[:50],
+        touches_reached_in(other, requests, np.random.default_rng(7))[:50],
+    )
+    found = joined_rows(criterion, first, second, other)
+    P, of_w = len(criterion.prior_sd), setup_parameters(criterion, "w")
     assert len(of_w) == 6
     assert found.W.shape == (100, P + 6), name
     assert not found.W[50:, of_w].any()
     assert not found.W[:50, P:].any()
     assert np.abs(found.W[50:, P:]).max() > 0.0
-    np.testing.assert_array_equal(found.prior_sd[P:], aim.prior_sd[of_w])
+    np.testing.assert_array_equal(found.prior_sd[P:], criterion.prior_sd[of_w])
 
 
-def test_a_stylus_that_reaches_nothing_is_said(aim, requests, monkeypatch):
+def test_a_stylus_that_reaches_nothing_is_said(criterion, requests, monkeypatch):
     monkeypatch.setattr(module, "STYLUS", 5000.0)
     monkeypatch.setattr(module, "SETUPS", {})
-    (only,) = alternatives(aim, requests, np.random.default_rng(8))
+    (only,) = alternatives(criterion, requests, np.random.default_rng(8))
     assert not only.is_possible
     assert (
         only.words == f"{SECOND_STYLUS}: the machine reaches 0 touches, {TOUCHES // 2} are wanted"
     )
 
 
-def test_combinations_know_nothing_of_the_set_up(aim, requests):
+def test_combinations_know_nothing_of_the_set_up(criterion, requests):
     """Against the textbook: no prior at all on the set-up, ones on the rest."""
-    W = aim.whitened(requests)
-    free = set_up(aim)
+    W = criterion.whitened(requests)
+    free = setup_parameters(criterion)
     unit = ["mm"] * W.shape[1]
-    found = combinations(W, aim.prior_sd, aim.model.names, unit, free.tolist())
+    found = combinations(W, criterion.prior_sd, unit, free.tolist())
     kept = np.setdiff1d(np.arange(W.shape[1]), free)
     U, s, _ = np.linalg.svd(W[:, free], full_matrices=False)
     U = U[:, s > 1e-9 * s[0]]
     A = W[:, kept] - U @ (U.T @ W[:, kept])
     covariance = np.linalg.inv(np.eye(len(kept)) + A.T @ A)
     for c in found[:10]:
-        weights = (c.weights * aim.prior_sd)[kept]
+        weights = (c.weights * criterion.prior_sd)[kept]
         assert not c.weights[free].any()
         assert c.u == pytest.approx(np.sqrt(weights @ covariance @ weights), rel=1e-6)
     assert [c.gain for c in found] == sorted((c.gain for c in found), reverse=True)
 
 
-def test_errors_known_for_themselves(aim, requests, known):
-    W = aim.whitened(requests)
+def test_errors_known_for_themselves(criterion, requests, known):
+    W = criterion.whitened(requests)
     left = np.sqrt(np.diag(np.linalg.inv(np.eye(W.shape[1]) + W.T @ W)))
-    setup = set(set_up(aim).tolist())
-    expected = {n for p, n in enumerate(aim.model.names) if left[p] ** 2 < 0.1 and p not in setup}
+    setup = set(setup_parameters(criterion).tolist())
+    expected = {
+        n for p, n in enumerate(criterion.model.names) if left[p] ** 2 < 0.1 and p not in setup
+    }
     assert {a.name for a in known.alone} == expected
     for a in known.alone:
-        share = left[aim.model.names.index(a.name)]
+        share = left[criterion.model.names.index(a.name)]
         assert a.u == pytest.approx(share * a.expected, rel=1e-6)
 
 
@@ -151,7 +165,7 @@ def test_the_file_says_what_the_record_says(known, tmp_path):
     assert data["format"] == "identifiability/1"
     assert data["rank"] == known.gauge.rank
     assert len(data["freedoms"]) == len(known.gauge.freedoms)
-    assert sum(line.shapes for line in known.freedoms) == len(known.gauge.freedoms)
+    assert sum(family.count for family in known.freedoms) == len(known.gauge.freedoms)
     words = [f["words"] for f in data["freedoms"]]
     assert "set-up rotation about Z (EC0w) = - zero position of C (EC0C)" in words
     assert data["readings"]["B_deg"][0] == pytest.approx(-90.0, abs=3.0)

@@ -1,19 +1,25 @@
 """The first placement: buildable, touchable, the same for a seed, and better than chance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from artefact.body.first_contact import contact
 from artefact.body.limits import Limits, check
 from artefact.body.patch import Meeting
 from artefact.body.standard import Base
 from artefact.layout.sites import Blank
 from artefact.place.placement import PlacementOptions, place
-from artefact.reach.first_contact import contact
 from artefact.reach.probe_clearance import ProbeShape, clearance
 from artefact.reach.touchable import ProbeReach
-from artefact.worth.touch_choice import table_poses
+from artefact.worth.touch_choice import TouchOptions, table_poses
+from artefact.worth.touch_criterion import CriterionOptions
 from information.criteria.posterior import Posterior
 from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.dependence import Group, grouped
+from sensitivity.population.sampling import Population
+from sensitivity.population.scales import drawn_scales
 from twin.errors import DesignError, NotBuildable, NotReachable
 from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import table_to_tool, tip
@@ -22,7 +28,8 @@ from twin.units import DEG, NM
 
 LENGTH = 160.0
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
-OPTIONS = PlacementOptions(name="trial", patches=8, touches=160, poses=12, sites=90)
+CHOICE = TouchOptions(touches=160, poses=12)
+OPTIONS = PlacementOptions(name="trial", patches=8, sites=90, choice=CHOICE)
 
 
 @pytest.fixture(scope="module")
@@ -54,13 +61,13 @@ def workspace(chain):
 
 
 @pytest.fixture(scope="module")
-def probing(chain):
+def reach(chain):
     return ProbeReach(chain, Setup("a"), PROBE, LENGTH)
 
 
 @pytest.fixture(scope="module")
-def placement(probing, workspace):
-    return place(probing, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
+def placement(reach, workspace):
+    return place(reach, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
 
 
 def test_the_standard_meets_every_limit(placement):
@@ -102,9 +109,9 @@ def test_touches_are_spread_over_poses_and_spheres(placement):
     assert len(np.unique(np.round(keys, 6), axis=0)) == 160  # no touch twice
 
 
-def test_every_touch_can_be_made(placement, probing, chain):
+def test_every_touch_can_be_made(placement, reach, chain):
     requests, standard = placement.requests, placement.standard
-    q = probing.readings(requests)
+    q = reach.readings(requests)
     ball = requests.point + 3.0 * requests.normal
     np.testing.assert_allclose(tip(chain, q, LENGTH), ball, rtol=0, atol=NM)
     for i, name in enumerate(chain.axes):
@@ -122,8 +129,8 @@ def test_every_touch_can_be_made(placement, probing, chain):
 
 def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
     own = placement.own
-    assert own.rms < 0.02 * placement.before[0]
-    assert own.rms_user < 0.05 * placement.before[1]
+    assert own.rms < 0.02 * placement.prior_rms[0]
+    assert own.rms_user < 0.05 * placement.prior_rms[1]
     assert own.rms < 0.9 * own.rms_random
     assert own.rms < own.p95
     by_name = {r.name: r for r in placement.rivals}
@@ -142,23 +149,25 @@ def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
 
 
 def test_certificate_is_of_the_choice(placement):
-    found, aim = placement.certificate, placement.criterion
-    rows = aim.rows(placement.requests)
+    found, criterion = placement.certificate, placement.criterion
+    rows = criterion.rows(placement.requests)
     assert found.count == 160
-    assert found.value == pytest.approx(aim.purpose.value(rows.T @ rows), rel=1e-6)
+    assert found.value == pytest.approx(criterion.objective.value(rows.T @ rows), rel=1e-6)
     assert 0.5 < found.efficiency <= 1.0
 
 
 def test_figures_are_those_of_the_information(placement):
-    aim = placement.criterion
-    posterior = Posterior(aim.whitened(placement.requests), aim.prior_sd, aim.model.names)
-    rms = np.sqrt(np.mean(posterior.predicted_sd(aim.tip_volume) ** 2))
+    criterion = placement.criterion
+    posterior = Posterior(
+        criterion.whitened(placement.requests), criterion.prior_sd, criterion.model.names
+    )
+    rms = np.sqrt(np.mean(posterior.predicted_sd(criterion.tip_volume) ** 2))
     assert placement.own.rms == pytest.approx(rms, rel=1e-12)
-    both = np.concatenate([aim.tip_volume, aim.tip_user])
-    plain = aim.plain
+    both = np.concatenate([criterion.tip_volume, criterion.tip_user])
+    plain = criterion.plain
     rows = plain.rows(placement.requests)
     mean_square = np.mean(posterior.predicted_sd(both) ** 2)
-    assert plain.purpose.value(rows.T @ rows) == pytest.approx(mean_square, rel=1e-6)
+    assert plain.objective.value(rows.T @ rows) == pytest.approx(mean_square, rel=1e-6)
 
 
 def test_every_patch_says_what_it_is_for(placement, chain):
@@ -174,30 +183,30 @@ def test_every_patch_says_what_it_is_for(placement, chain):
     assert len(named) >= 8  # patches are for different errors
 
 
-def test_the_same_seed_gives_the_same_standard(placement, probing, workspace):
-    again = place(probing, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
+def test_the_same_seed_gives_the_same_standard(placement, reach, workspace):
+    again = place(reach, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
     np.testing.assert_array_equal(again.requests.point, placement.requests.point)
     for one, other in zip(again.standard.patches, placement.standard.patches, strict=True):
         np.testing.assert_array_equal(one.heights, other.heights)
 
 
-def test_too_many_patches_for_a_blank_are_refused(probing, workspace):
-    options = PlacementOptions(patches=16, touches=160, poses=12, sites=60)
+def test_too_many_patches_for_a_blank_are_refused(reach, workspace):
+    options = PlacementOptions(patches=16, sites=60, choice=CHOICE)
     small = Blank(base=Base(half_size=(70.0, 70.0), corner_radius=10.0))
     with pytest.raises(NotBuildable, match="patches"):
-        place(probing, small, workspace, np.random.default_rng(1), options=options)
+        place(reach, small, workspace, np.random.default_rng(1), options=options)
 
 
-def test_a_blank_larger_than_the_table_is_refused(probing, workspace):
+def test_a_blank_larger_than_the_table_is_refused(reach, workspace):
     large = Blank(base=Base(half_size=(180.0, 140.0)))
     with pytest.raises(NotBuildable, match="360 x 280 mm is larger than the table, diameter 320"):
-        place(probing, large, workspace, np.random.default_rng(1), options=OPTIONS)
+        place(reach, large, workspace, np.random.default_rng(1), options=OPTIONS)
 
 
-def test_limits_that_nothing_meets_are_named(probing, workspace):
+def test_limits_that_nothing_meets_are_named(reach, workspace):
     light = Blank(limits=Limits(max_mass=5.0))
     with pytest.raises(NotBuildable, match=r"no choice of 8 patches .*mass is .* limit 5\.000 kg"):
-        place(probing, light, workspace, np.random.default_rng(1), options=OPTIONS)
+        place(reach, light, workspace, np.random.default_rng(1), options=OPTIONS)
 
 
 def test_a_standard_beyond_the_travel_is_refused(chain, workspace):
@@ -208,28 +217,53 @@ def test_a_standard_beyond_the_travel_is_refused(chain, workspace):
         place(far, Blank(), workspace, np.random.default_rng(1), options=OPTIONS)
 
 
-def test_an_unknown_criterion_is_refused(probing, workspace):
+def test_an_unknown_criterion_is_refused(reach, workspace):
     with pytest.raises(DesignError, match="criterion 'T', expected one of I, G, D, A, E"):
         place(
-            probing,
+            reach,
             Blank(),
             workspace,
             np.random.default_rng(1),
-            options=PlacementOptions(criterion="T"),
+            options=PlacementOptions(criterion=CriterionOptions("T")),
         )
 
 
-def test_poses_keep_room_to_be_approached(probing, chain):
-    class Aim:
+def test_poses_keep_room_to_be_approached(reach, chain):
+    class Criterion:
         rotary = np.array([(-360.0 * DEG, 360.0 * DEG), (-110.0 * DEG, 30.0 * DEG)])
 
-    Aim.probing = probing
-    poses = table_poses(Aim, 18)
+    Criterion.reach = reach
+    poses = table_poses(Criterion, 18)
     assert 80 <= len(poses) <= 140
     assert poses[:, 1].min() >= -104.0 * DEG - 1e-9
     assert poses[:, 1].max() <= 24.0 * DEG + 1e-9
     np.testing.assert_allclose(poses / DEG, np.round(poses / DEG), atol=1e-9)
     assert len(np.unique(poses[:, 1])) > 20  # many different readings of B
-    Aim.rotary = np.array([(0.0, 0.0), (-109.0 * DEG, -108.0 * DEG)])
+    Criterion.rotary = np.array([(0.0, 0.0), (-109.0 * DEG, -108.0 * DEG)])
     with pytest.raises(NotReachable, match="no room to approach"):
-        table_poses(Aim, 18)
+        table_poses(Criterion, 18)
+
+
+class ScalesAreDrawn(Exception):
+    """Placement has come as far as the sizes of the errors."""
+
+
+def test_groups_of_errors_reach_the_placement(reach, workspace, chain, monkeypatch):
+    """A machine that is drawn for the criterion has the errors of a group equally large."""
+    names, drawn = ("EXX", "EYY", "EZZ"), []
+
+    def recorded(population, count, rng, model):
+        drawn.append((model.names, drawn_scales(population, count, rng, model)))
+        raise ScalesAreDrawn
+
+    monkeypatch.setattr("artefact.worth.touch_criterion.drawn_scales", recorded)
+    options = replace(OPTIONS, criterion=CriterionOptions(drawn_machines=6))
+    for groups in ([Group(names, correlation=1.0)], [Group(names, correlation=0.0)]):
+        population = Population(chain, dependence=grouped(groups))
+        with pytest.raises(ScalesAreDrawn):
+            place(reach, Blank(), workspace, np.random.default_rng(3), population, options)
+    spread = []
+    for parameters, scale in drawn:
+        columns = [[n in p for p in parameters].index(True) for n in names]
+        spread.append(np.ptp(scale[:, columns], axis=1).max())
+    assert spread[0] < 1e-12 < 0.1 < spread[1]

@@ -84,13 +84,13 @@ def test_sites_cover_the_blank():
     lean = np.array([s.lean for s in sites]) / DEG
     assert np.abs(lean).max() > 90.0
     assert 0.3 < np.mean(lean > 0.0) < 0.7  # to both sides
-    small = random_sites(Blank(blank_height=110.0), 100, np.random.default_rng(4))
+    small = random_sites(Blank(height=110.0), 100, np.random.default_rng(4))
     assert max(s.height for s in small) < 0.6 * max(s.height for s in sites)
 
 
 def test_readings_are_those_of_the_inverse():
     setup = Setup("b", pose(fixed_xyz(np.array([0.01, -0.02, 0.5])), np.array([5.0, -6.0, 7.0])))
-    probing = ProbeReach(HEAD, setup, PROBE, 160.0)
+    reach = ProbeReach(HEAD, setup, PROBE, 160.0)
     touches = wanted()
     for gap in (0.0, 5.0, -3.0):
         ball = touches.point + (3.0 + gap) * touches.normal
@@ -98,11 +98,11 @@ def test_readings_are_those_of_the_inverse():
         q[:, [HEAD.axis_index("C"), HEAD.axis_index("B")]] = touches.rotary
         T = setup.T_table_artefact
         expected = inverse_linear(HEAD, ball @ T[:3, :3].T + T[:3, 3], q, 160.0)
-        np.testing.assert_allclose(probing.readings(touches, gap), expected, rtol=0, atol=NM)
+        np.testing.assert_allclose(reach.readings(touches, gap), expected, rtol=0, atol=NM)
 
 
 def test_a_touch_from_behind_or_beyond_the_travel_is_not_reachable():
-    probing = ProbeReach(HEAD, Setup("a"), PROBE, 160.0)
+    reach = ProbeReach(HEAD, Setup("a"), PROBE, 160.0)
     up = Requests(
         np.full(4, "FF1"),
         np.array([[0.0, 0.0, 50.0]] * 3 + [[900.0, 0.0, 50.0]]),
@@ -110,12 +110,12 @@ def test_a_touch_from_behind_or_beyond_the_travel_is_not_reachable():
         np.zeros((4, 2)),
     )
     # 1.3 rad are 74.5 degrees, just within 75; the last point lies beyond the travel of X
-    assert probing.is_reachable(up).tolist() == [True, False, True, False]
+    assert reach.is_reachable(up).tolist() == [True, False, True, False]
     tilted = Requests(up.feature, up.point, up.normal, np.tile([0.0, 20.0 * DEG], (4, 1)))
     # the head leans by 20 degrees about y: its axis comes nearer to the third normal
-    assert probing.is_reachable(tilted).tolist() == [True, False, True, False]
+    assert reach.is_reachable(tilted).tolist() == [True, False, True, False]
     away = Requests(up.feature, up.point, up.normal, np.tile([0.0, -20.0 * DEG], (4, 1)))
-    assert probing.is_reachable(away).tolist() == [True, False, False, False]
+    assert reach.is_reachable(away).tolist() == [True, False, False, False]
 
 
 def test_lots_of_touches_are_joined_in_order():

@@ -10,9 +10,10 @@ import pytest
 from artefact.body.limits import Limits
 from artefact.brief.project_file import read_project
 from artefact.place.placement import PlacementOptions
+from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
 from matstd.cli import main
-from matstd.wanted import frame, placement_options, probing
+from matstd.from_project import blank, placement_options, probe_reach
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
 
@@ -191,8 +192,8 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
     stated = read_project(path)
     path.write_text(re.sub(r"(?s)\[blank\].*?(?=\[setup\.a\])", "", text))
     left_out = read_project(path)
-    assert frame(left_out) == frame(stated)
-    assert probing(left_out).table_radius == probing(stated).table_radius == 160.0
+    assert blank(left_out) == blank(stated)
+    assert probe_reach(left_out).table_radius == probe_reach(stated).table_radius == 160.0
     for key, value in {
         "base_mm": "[240.0, 200.0]",
         "height_mm": "180.0",
@@ -205,12 +206,12 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
         text = re.sub(rf"(?m)^{key} = [^#\n]*", f"{key} = {value} ", text)
     path.write_text(text)
     project = read_project(path)
-    made = frame(project)
+    made = blank(project)
     assert made.base.half_size == (120.0, 100.0)
-    assert made.blank_height == 180.0
+    assert made.height == 180.0
     assert max(made.fittings.sphere_heights) < 180.0
     assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0)
-    assert probing(project).table_radius == 130.0
+    assert probe_reach(project).table_radius == 130.0
 
 
 def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
@@ -218,23 +219,22 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert placement_options(read_project(path)) == PlacementOptions(
-        name="FFS-600U", serial="001", patches=8, touches=240
+        name="FFS-600U", serial="001", patches=8, choice=TouchOptions(touches=240)
     )
     plain = re.sub(
         r"(?m)^(criterion|potential|drawn_machines|worst_share|poses = 30).*\n", "", text
     )
     assert "potential" not in re.sub("#.*", "", plain)
     path.write_text(plain)
-    assert placement_options(read_project(path)).wishes == CriterionOptions(0.3, 240)
+    assert placement_options(read_project(path)).criterion == CriterionOptions("I", 0.3)
     for criterion in CRITERIA:
         wanted = text.replace('criterion = "I"', f'criterion = "{criterion}"')
         for key, value in (("drawn_machines", "8"), ("worst_share", "0.5"), ("potential", "0.1")):
             wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
         path.write_text(wanted.replace("poses = 30 ", "poses = 12 "))
         options = placement_options(read_project(path))
-        assert options.criterion == criterion
-        assert options.poses == 12
-        assert options.wishes == CriterionOptions(0.1, 240, 8, 0.5)
+        assert options.choice == TouchOptions(touches=240, poses=12)
+        assert options.criterion == CriterionOptions(criterion, 0.1, 8, 0.5)
 
 
 def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:

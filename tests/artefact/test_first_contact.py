@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from artefact.body.first_contact import contact
 from artefact.body.patch import Meeting
 from artefact.body.standard import Standard
-from artefact.reach.first_contact import contact
 from twin.units import NM, UM
 
 BALL = 3.0
@@ -52,10 +52,10 @@ def test_edge_travel_against_a_fine_sampling_of_the_edge(standard):
     outward = patch.T_artefact_patch[:3, 0]
     edges = 0
     for _ in range(20):
-        aim = patch.point(np.array([[a, rng.uniform(-0.7, 0.7) * b]]))[0]
+        target = patch.point(np.array([[a, rng.uniform(-0.7, 0.7) * b]]))[0]
         d = -(patch.direction + rng.normal(size=3) * 0.2)
         d /= np.linalg.norm(d)
-        start = aim - 15.0 * d + rng.uniform(1.0, 0.6 * BALL) * outward
+        start = target - 15.0 * d + rng.uniform(1.0, 0.6 * BALL) * outward
         to_edge = edge - start
         along = to_edge @ d
         across2 = (to_edge**2).sum(axis=1) - along**2
@@ -176,8 +176,8 @@ def test_random_shots_agree_with_a_cloud_of_the_whole_surface(standard):
     d = rng.normal(size=(count, 3))
     d[:, 2] = -np.abs(d[:, 2])
     d /= np.linalg.norm(d, axis=1, keepdims=True)
-    aim = rng.uniform([-110, -110, 40], [110, 110, 150], (count, 3))
-    start = aim - 250.0 * d
+    target = rng.uniform([-110, -110, 40], [110, 110, 150], (count, 3))
+    start = target - 250.0 * d
     found = contact(standard, start, d, BALL)
     assert not np.any(found.meeting == Meeting.UNRESOLVED)
     slack = pitch**2 / (2.0 * BALL)  # how much deeper a ball sinks between the nodes of the cloud

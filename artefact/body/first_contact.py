@@ -4,17 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import (
-    DatumSphere,
-    FreeformPatch,
-    Mask,
-    Meeting,
-    Standard,
-    entry,
-    rows,
-    sphere_entry,
-    unit,
-)
+from artefact.body.datum import DatumSphere
+from artefact.body.freeform import FreeformPatch
+from artefact.body.patch import Mask, Meeting, rows, sphere_entry, unit
+from artefact.body.solids import entry
+from artefact.body.standard import Standard
 from twin.frames import Array, apply, turn
 from twin.units import NM
 

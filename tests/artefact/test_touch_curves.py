@@ -6,7 +6,7 @@ import pytest
 from artefact.layout.sites import Blank
 from artefact.reach.probe_clearance import ProbeShape
 from artefact.reach.touchable import ProbeReach
-from artefact.worth.touch_criterion import criterion, random_touches
+from artefact.worth.touch_criterion import criterion_for, random_touches
 from artefact.worth.touch_curves import TouchCurve, touch_curve
 from information.criteria.posterior import Posterior
 from report.plots.touch_curve_picture import draw_touch_curves
@@ -28,63 +28,67 @@ ALGEBRA = 1e-6  # relative: trace of a form against the sum over poses
 
 
 @pytest.fixture(scope="module")
-def aim():
+def criterion():
     area = Workspace(
         MILL, {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}, 160.0
     )
-    probing = ProbeReach(MILL, Setup("a"), PROBE, 160.0)
+    reach = ProbeReach(MILL, Setup("a"), PROBE, 160.0)
     model = Population(MILL).model
-    return criterion(probing, model, Blank(), area, 1.0 * UM, np.random.default_rng(4))
+    return criterion_for(reach, model, Blank(), area, 1.0 * UM, np.random.default_rng(4))
 
 
 @pytest.fixture(scope="module")
-def touches(aim):
+def touches(criterion):
     rng = np.random.default_rng(9)
-    return random_touches(aim.probing, aim.volume, aim.rotary, 120, rng)
+    return random_touches(criterion.reach, criterion.volume, criterion.rotary, 120, rng)
 
 
-def left(aim, W):
+def left(criterion, W):
     """Root mean square of what stays unknown at the poses, from the covariance itself."""
-    after = Posterior(W, aim.prior_sd, aim.model.names)
+    after = Posterior(W, criterion.prior_sd, criterion.model.names)
     return [
-        np.sqrt(np.mean(after.predicted_sd(tip) ** 2)) for tip in (aim.tip_volume, aim.tip_user)
+        np.sqrt(np.mean(after.predicted_sd(tip) ** 2))
+        for tip in (criterion.tip_volume, criterion.tip_user)
     ]
 
 
-def test_all_touches_leave_what_the_comparison_says(aim, touches):
-    curve = touch_curve(aim, "scatter", touches, (60, 240))
+def test_all_touches_leave_what_the_comparison_says(criterion, touches):
+    curve = touch_curve(criterion, "scatter", touches, (60, 240))
     assert curve.counts == (60, 120, 240)
-    np.testing.assert_allclose(curve.at_design, left(aim, aim.whitened(touches)), rtol=ALGEBRA)
+    np.testing.assert_allclose(
+        curve.at_design, left(criterion, criterion.whitened(touches)), rtol=ALGEBRA
+    )
 
 
-def test_twice_the_touches_are_half_the_variance_of_the_noise(aim, touches):
-    curve = touch_curve(aim, "scatter", touches, (240,))
-    expected = left(aim, np.sqrt(2.0) * aim.whitened(touches))
+def test_twice_the_touches_are_half_the_variance_of_the_noise(criterion, touches):
+    curve = touch_curve(criterion, "scatter", touches, (240,))
+    expected = left(criterion, np.sqrt(2.0) * criterion.whitened(touches))
     np.testing.assert_allclose([curve.rms[-1], curve.rms_user[-1]], expected, rtol=ALGEBRA)
 
 
-def test_more_touches_never_leave_more(aim, touches):
-    curve = touch_curve(aim, "scatter", touches)
+def test_more_touches_never_leave_more(criterion, touches):
+    curve = touch_curve(criterion, "scatter", touches)
     assert curve.counts == (50, 70, 100, 120, 140, 200, 300, 400, 550, 750, 1000)
     assert np.all(np.diff(curve.rms**2 + curve.rms_user**2) < 0.0)
     # many touches: noise alone is left of what can be seen, so it goes with the square root at best
     assert curve.rms[-1] > 0.99 * curve.rms[-2] * np.sqrt(750 / 1000)
 
 
-def test_the_first_touches_are_the_good_ones(aim, touches):
-    curve = touch_curve(aim, "scatter", touches, (60,))
+def test_the_first_touches_are_the_good_ones(criterion, touches):
+    curve = touch_curve(criterion, "scatter", touches, (60,))
     rng = np.random.default_rng(1)
     by_chance = [
-        np.hypot(*left(aim, aim.whitened(touches[rng.permutation(120)[:60]]))) for _ in range(5)
+        np.hypot(*left(criterion, criterion.whitened(touches[rng.permutation(120)[:60]])))
+        for _ in range(5)
     ]
     assert np.hypot(curve.rms[0], curve.rms_user[0]) < min(by_chance)
 
 
-def test_no_touches_are_refused(aim, touches):
+def test_no_touches_are_refused(criterion, touches):
     with pytest.raises(DesignError, match="0 touches"):
-        touch_curve(aim, "nothing", touches[:0])
+        touch_curve(criterion, "nothing", touches[:0])
     with pytest.raises(DesignError, match="expected some"):
-        touch_curve(aim, "scatter", touches, (0, 10))
+        touch_curve(criterion, "scatter", touches, (0, 10))
 
 
 def test_the_picture_holds_the_curves_and_marks_the_design():

@@ -5,6 +5,7 @@ from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, Project
 from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
 from artefact.reach import ProbeReach
+from artefact.worth import CriterionOptions, TouchOptions
 from probe_paths.plan import Probe
 from twin.units import DEG, KG_M3
 
@@ -18,7 +19,7 @@ def probe(project: Project) -> Probe:
     return Probe(project.probe_radius, project.probe_length)
 
 
-def probing(project: Project) -> ProbeReach:
+def probe_reach(project: Project) -> ProbeReach:
     """Machine, probe, table and place of the standard."""
     tool = probe(project)
     return ProbeReach(
@@ -30,16 +31,16 @@ def probing(project: Project) -> ProbeReach:
     )
 
 
-def frame(project: Project) -> Blank:
+def blank(project: Project) -> Blank:
     """Blank, fittings, material and limits of the standard."""
-    wanted, blank, limits = project.standard, project.blank, project.limits
-    a, b = blank.base_mm
-    low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * blank.height_mm
+    wanted, limits = project.standard, project.limits
+    (a, b), height = project.blank.base_mm, project.blank.height_mm
+    low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * height
     return Blank(
         base=Base((0.5 * a, 0.5 * b), CORNER_RADIUS, BASE_THICKNESS),
         fittings=Fittings(sphere_heights=(low, round(0.5 * (low + high), 1), round(high, 1))),
         material=Material(wanted.material, wanted.density_kg_m3 * KG_M3, wanted.expansion_per_K),
-        blank_height=blank.height_mm,
+        height=height,
         limits=Limits(
             min_concave_radius=limits.min_concave_radius_mm,
             max_slope=limits.max_slope_deg * DEG,
@@ -57,11 +58,12 @@ def placement_options(project: Project) -> PlacementOptions:
         name=wanted.name,
         serial=wanted.serial,
         patches=wanted.patches,
-        touches=wanted.touches,
-        poses=wanted.poses,
         noise=project.noise,
-        criterion=wanted.criterion,
-        potential=wanted.potential,
-        draws=wanted.drawn_machines,
-        tail=wanted.worst_share,
+        criterion=CriterionOptions(
+            name=wanted.criterion,
+            potential=wanted.potential,
+            drawn_machines=wanted.drawn_machines,
+            worst_share=wanted.worst_share,
+        ),
+        choice=TouchOptions(touches=wanted.touches, poses=wanted.poses),
     )
