@@ -7,7 +7,7 @@ later knows it at the touches only.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from datetime import datetime
 
 import numpy as np
@@ -21,7 +21,7 @@ from twin.record import Setup, Touches
 
 Disturbance = Callable[[Touches], Contribution]
 
-_SHARED = ("chain", "setups", "setup", "temperature", "spindle_rpm", "force")
+_PER_TOUCH = ("q", "length", "radius", "point", "normal", "time", "approach", "feature", "pose")
 
 
 def effects_over_record(
@@ -75,19 +75,15 @@ def joined_touches(parts: Sequence[Touches]) -> Touches:
         index.append(numbers[part.setup])
     first = parts[0]
     speeds = [p.spindle_rpm for p in parts if p.spindle_rpm is not None]
-    return Touches(
-        chain=first.chain,
+    return replace(
+        first,
         setups=tuple(setups.values()),
         setup=np.concatenate(index),
         temperature={
             s: np.concatenate([p.temperature[s] for p in parts]) for s in first.temperature
         },
         spindle_rpm=np.concatenate(speeds) if len(speeds) == len(parts) else None,
-        **{
-            f.name: np.concatenate([getattr(p, f.name) for p in parts])
-            for f in fields(Touches)
-            if f.name not in _SHARED
-        },
+        **{name: np.concatenate([getattr(p, name) for p in parts]) for name in _PER_TOUCH},
     )
 
 
