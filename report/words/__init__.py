@@ -1,5 +1,6 @@
 """Sentences made from results."""
 
+from report.words.artefact_words import criterion_words
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
@@ -14,6 +15,7 @@ from report.words.probe_words import ordering_words
 
 __all__ = [
     "comparison_sentence",
+    "criterion_words",
     "microns",
     "named_value",
     "ordering_words",
