@@ -4,7 +4,6 @@ Each stage is one call into one room; nothing is computed here.
 """
 
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,8 @@ from cad_out.verify import export_standard
 from diagnosis.answer import probed_volume, prove
 from diagnosis.files import write_identification
 from diagnosis.fit import fit_run
-from matstd.wanted import blank, placement_options, probe, probe_reach
+from matstd.from_project import blank, placement_options, probe, probe_reach
+from matstd.streams import streams
 from probe_paths.campaign import VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import PlanOptions, TouchPlan, plan_touches
@@ -27,17 +27,15 @@ from sensitivity.first_order import Workspace
 from sensitivity.montecarlo import Crew
 from sensitivity.population import Population, drawn_errors
 from sensitivity.study import run_study, write_study
+from twin.compute import Progress
 from twin.files import errors_toml, write_run, write_whole
 from twin.model import contribution
 
 PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""
 
-Stage = Callable[[str, int, int], None]
-"""Told the name of a stage, what is done and how much there is."""
 
-
-def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -> Design:
+def design(project: Project, folder: Path, progress: Progress, crew: Crew = None) -> Design:
     """Run all stages and write their files into a folder.
 
     Args:
@@ -49,28 +47,28 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     Raises:
         DesignError: A stage that cannot do its work; its message says which constraint binds.
     """
-    rng_study, rng_place, rng_proof, rng_maps, rng_known = _generators(project)
+    rng = streams(project.seed)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
-    placement = _placement(project, workspace, rng_place, progress)
+    placement = _placement(project, workspace, rng.placement, progress)
     write_standard(folder / "standard.toml", placement.standard)
     progress("what can be told apart", 0, 1)
-    known = identifiability_report(placement.criterion, placement.requests, rng_known)
+    known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
     write_identifiability(folder / "identifiability.json", known)
     study = run_study(
         population,
         workspace,
-        project.poses,
-        project.draws,
-        rng_study,
-        progress,
-        project.tolerance,
-        project.digits,
-        crew,
+        poses=project.poses,
+        draws=project.draws,
+        rng=rng.study,
+        progress=progress,
+        tolerance=project.tolerance,
+        digits=project.digits,
+        crew=crew,
     )
     write_study(study, folder / "sensitivity")
-    maps = draw_maps(study, folder / "sensitivity", rng_maps)
+    maps = draw_maps(study, folder / "sensitivity", rng.maps)
     maps += draw_path(study, folder / "sensitivity")
     progress("STEP and STL", 0, 1)
     conformity = export_standard(placement.standard, folder)
@@ -81,7 +79,7 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     machines = []
     for seed in range(project.machines):
         progress("proof on the twin", seed, project.machines)
-        machines.append(_prove(project, population, placement, paths, seed, rng_proof.spawn(1)[0]))
+        machines.append(_prove(project, population, placement, paths, seed, rng.proof.spawn(1)[0]))
     first = machines[0]
     write_whole(folder / "errors.toml", errors_toml(first.errors))
     write_run(folder / "run.csv", first.campaign.run, "machine.toml")
@@ -101,13 +99,8 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     )
 
 
-def _generators(project: Project) -> list[np.random.Generator]:
-    """Random numbers of study, placement, proof, maps, other ways to measure."""
-    return np.random.default_rng(project.seed).spawn(5)
-
-
 def _placement(
-    project: Project, workspace: Workspace, rng: np.random.Generator, progress: Stage
+    project: Project, workspace: Workspace, rng: np.random.Generator, progress: Progress
 ) -> Placement:
     """Standard and touches for the project's machine."""
     return place(

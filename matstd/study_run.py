@@ -5,18 +5,17 @@ from pathlib import Path
 import numpy as np
 
 from artefact.brief import Project
+from matstd.streams import streams
 from report.maps import draw_maps, draw_path
 from report.pages import write_study_page
+from report.words import study_words
 from sensitivity.first_order import Workspace
 from sensitivity.montecarlo import Crew
-from sensitivity.study import Study, run_study, write_study
+from sensitivity.study import run_study, write_study
 from twin.compute import Progress
 from twin.errors import BadFile
 from twin.files import read_poses
 from twin.frames import Array
-from twin.units import UM
-
-_SHOWN = 5  # parameters with the largest shares
 
 
 def study_project(
@@ -38,21 +37,21 @@ def study_project(
         BadFile: Poses of several tool lengths.
     """
     workspace, poses = _where(project, poses_file)
-    rng_study, rng_maps = (np.random.default_rng(project.seed).spawn(4)[i] for i in (0, 3))
+    rng = streams(project.seed)
     study = run_study(
         project.population,
         workspace,
-        poses,
-        project.draws,
-        rng_study,
-        progress,
-        project.tolerance,
-        project.digits,
-        crew,
+        poses=poses,
+        draws=project.draws,
+        rng=rng.study,
+        progress=progress,
+        tolerance=project.tolerance,
+        digits=project.digits,
+        crew=crew,
     )
     progress("maps", 0, 1)
     write_study(study, folder)
-    shown = draw_maps(study, folder, rng_maps) + draw_path(study, folder)
+    shown = draw_maps(study, folder, rng.maps) + draw_path(study, folder)
     remarks = write_study_page(study, folder, shown, str(project.path))
     return [*remarks, *study_words(study)]
 
@@ -67,21 +66,3 @@ def _where(project: Project, poses_file: str | None) -> tuple[Workspace, int | A
         span = f"{lengths.min():g} to {lengths.max():g}"
         raise BadFile(poses_file, "tool_length_mm", span, "one tool length for a study")
     return Workspace(chain, project.workspace, float(lengths[0]) or length), q
-
-
-def study_words(study: Study) -> list[str]:
-    """The study in a few lines."""
-    v = study.volumetric
-    lines = [
-        v.statement,
-        f"volumetric error over {len(study.q)} poses: mean {v.mean.mean() / UM:.1f} µm, "
-        f"P95 {v.p95.mean() / UM:.1f} µm, at the worst pose {v.p95.max() / UM:.1f} µm",
-    ]
-    if v.tolerance < float("inf"):
-        lines.append(
-            f"beyond {v.tolerance / UM:g} µm: on average {v.exceedance.mean():.1%} "
-            f"of the machines, {v.exceedance.max():.1%} at the worst pose"
-        )
-    ranked = ", ".join(f"{name} {share:.1%}" for name, share in study.ranking()[:_SHOWN])
-    lines.append(f"largest shares of the variance: {ranked}")
-    return lines

@@ -1,4 +1,64 @@
-"""The only home of drawings, pages and prose."""
+"""The only home of drawings, pages and prose.
+
+In come the results of the rooms below (a study, a standard with its touches, a comparison, a
+diagnosis, a whole design run), which carry numbers, enumerations and names. Out go sentences, PNG
+pictures, and HTML pages that stand alone. Nothing is decided here: what is a number in a sentence
+is a number in a result.
+
+    style   paper, colours and labels of every picture
+    words   sentences, for pages and for the console
+    maps    sensitivities and volumetric error over a workspace or along a path
+    plots   plans, proofs, residuals, effects
+    scenes  pictures in three dimensions, rendered in a process of their own
+    pages   HTML, one template a page in `pages/templates`
+
+A new picture is a function that takes a result and a path (`maps`, `plots` or `scenes`) and is
+called by the page that shows it; a new sentence is a function in `words`.
+"""
+
+from report.maps import draw_maps, draw_path
+from report.pages import (
+    Design,
+    Proven,
+    write_compare_page,
+    write_design_page,
+    write_diagnosis_page,
+    write_study_page,
+)
+from report.plots import (
+    draw_fall,
+    draw_on_standard,
+    draw_over_variables,
+    write_order_picture,
+    write_proof_picture,
+    write_touches_picture,
+)
+from report.scenes import Scene, draw_standard, draw_values, draw_volumes
+from report.words import comparison_sentence, study_words, verdict_sentence
 
 PARTS = ("style", "words", "maps", "plots", "scenes", "pages")
 """From bottom to top: each imports only from those before it."""
+
+__all__ = [
+    "Design",
+    "Proven",
+    "Scene",
+    "comparison_sentence",
+    "draw_fall",
+    "draw_maps",
+    "draw_on_standard",
+    "draw_over_variables",
+    "draw_path",
+    "draw_standard",
+    "draw_values",
+    "draw_volumes",
+    "study_words",
+    "verdict_sentence",
+    "write_compare_page",
+    "write_design_page",
+    "write_diagnosis_page",
+    "write_order_picture",
+    "write_proof_picture",
+    "write_study_page",
+    "write_touches_picture",
+]

@@ -2,8 +2,10 @@
 
 import ast
 import importlib
+import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -41,6 +43,31 @@ MAX_LINES = 400
 MAX_CODE = 60
 FACE = range(3, 31)
 """Names of a face."""
+
+UNIT = re.compile(r"µm|µrad|°|\b(?:mm|min|degC)\b")
+CARDS = {"formula", "units", "typical", "source", "summary"}
+"""Fields of the card of a kind of effect (`Kind`): text that is data, shown as it is."""
+EXCUSED = {
+    "twin/files/run_columns.py": "remarks of a reader on single lines, like its refusals",
+    "twin/files/run_checks.py": "kinds of unit mistakes, put into one line of refusal",
+    "twin/foreign/machine_draft.py": "comments of a machine file that is written",
+    "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
+    "artefact/place/placement.py": "what a refusal appends to the limit that binds",
+    "artefact/reach/touchable.py": "reason that a refusal counts",
+    "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
+    "diagnosis/fit/unit_mistakes.py": "refusal, and the same where it is only suspected",
+}
+"""Files below `report` with units in prose outside a `raise` all the same, and why."""
+UNSAID = {
+    "sensitivity/first_order/workspace.py",
+    "sensitivity/montecarlo/tally.py",
+    "sensitivity/shares/workspace_regions.py",
+    "information/identifiability/parameter_words.py",
+    "artefact/compare/alternatives.py",
+    "diagnosis/residual/partial_residuals.py",
+    "diagnosis/residual/run_remarks.py",
+}
+"""Files whose sentences belong into `report/words`."""
 
 FILES = [f for room in ALLOWED for f in sorted((ROOT / room).rglob("*.py"))]
 IDS = [f.relative_to(ROOT).as_posix() for f in FILES]
@@ -142,6 +169,71 @@ def test_faces_are_short_and_true(name: str) -> None:
     assert len(set(face.__all__)) == len(face.__all__)
     for listed in face.__all__:
         assert getattr(face, listed) is not None, listed
+
+
+@pytest.mark.parametrize("room", PARTS)
+def test_parts_are_complete(room: str) -> None:
+    """What a room lists as its parts are its folders, and the installed packages are all there."""
+    folders = {f.parent.name for f in (ROOT / room).glob("*/__init__.py")}
+    assert set(PARTS[room]) == folders
+    packages = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    listed = packages["tool"]["setuptools"]["packages"]
+    assert {room, *(f"{room}.{part}" for part in folders)} <= set(listed)
+
+
+@pytest.mark.parametrize("name", FACES)
+def test_no_module_bears_the_name_of_what_its_face_exports(name: str) -> None:
+    """`from part import word` would give the module or the function, as imports happened to run."""
+    modules = {f.stem for f in (ROOT / name.replace(".", "/")).glob("*.py")}
+    assert not modules & set(importlib.import_module(name).__all__)
+
+
+def text_of(node: ast.AST) -> str:
+    """A string constant, or the fixed letters of an f-string; "" for anything else."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return node.value
+    if isinstance(node, ast.JoinedStr):
+        return "".join(text_of(v) or "{}" for v in node.values)
+    return ""
+
+
+def prose_with_units(tree: ast.Module) -> list[tuple[str, int]]:
+    """Texts of three words and more that name a unit, but for docstrings, refusals and cards."""
+    passed: set[int] = set()
+    for node in ast.walk(tree):
+        is_docstring = isinstance(node, ast.Expr) and bool(text_of(node.value))
+        is_card = isinstance(node, ast.keyword) and node.arg in CARDS
+        if isinstance(node, ast.Raise) or is_docstring or is_card:
+            passed |= {id(n) for n in ast.walk(node)}
+        elif isinstance(node, ast.JoinedStr):
+            passed |= {id(n) for n in ast.walk(node) if n is not node}
+    found = [(text_of(n), n.lineno) for n in ast.walk(tree) if id(n) not in passed and text_of(n)]
+    return [(text, line) for text, line in found if UNIT.search(text) and len(text.split()) > 2]
+
+
+@pytest.mark.parametrize("file", FILES, ids=IDS)
+def test_prose_lives_in_the_report(file: Path) -> None:
+    """Results below `report` carry numbers and names; sentences with units are made there."""
+    name = file.relative_to(ROOT).as_posix()
+    if name.split("/")[0] not in BELOW:
+        return
+    found = prose_with_units(TREES[file])
+    if name in EXCUSED:
+        assert found, f"{name} has no prose any more: take it off the list"
+    elif name not in UNSAID:
+        assert not found, f"{name}: {found}"
+
+
+@pytest.mark.parametrize("folder", ["examples", "benchmarks"])
+def test_examples_and_benchmarks_enter_by_faces(folder: str) -> None:
+    for file in sorted((ROOT / folder).rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in PARTS:
+                name = str(node.module)
+                assert name in VOCABULARY or is_package(name), f"{file}:{node.lineno}: {name}"
+                listed = set(getattr(importlib.import_module(name), "__all__", ()))
+                for alias in node.names:
+                    assert name in VOCABULARY or alias.name in listed, f"{file}: {alias.name}"
 
 
 def test_folders_are_small() -> None:

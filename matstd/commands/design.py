@@ -2,7 +2,7 @@
 
 import argparse
 
-from matstd.crew import add_scheduler
+from matstd.workers import add_scheduler
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,8 +16,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from artefact.brief import read_project
-    from matstd.crew import hired
     from matstd.folder import results_folder
+    from matstd.workers import connected
 
     project = read_project(args.project)
     with results_folder(args.output, args.force) as folder:
@@ -25,7 +25,7 @@ def run(args: argparse.Namespace) -> int:
         from matstd.design import design
         from report.pages import write_design_page
 
-        with stages() as progress, hired(args.scheduler) as crew:
+        with stages() as progress, connected(args.scheduler) as crew:
             made = design(project, folder, progress, crew)
             progress("report", 0, 1)
             remarks = write_design_page(made, folder)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.crew import add_scheduler
+from matstd.workers import add_scheduler
 
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler")
 
@@ -69,15 +69,15 @@ def _table(args: argparse.Namespace) -> int:
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
     from artefact.brief import read_project
-    from matstd.crew import hired
     from matstd.folder import results_folder
+    from matstd.workers import connected
 
     project = read_project(args.source, _settings(args))
     with results_folder(args.output, args.force) as folder:
         from matstd.console import stages
         from matstd.study_run import study_project
 
-        with stages() as progress, hired(args.scheduler) as crew:
+        with stages() as progress, connected(args.scheduler) as crew:
             told = study_project(project, args.poses, folder, progress, crew)
     for line in told:
         print(line)

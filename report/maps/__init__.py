@@ -1,8 +1,12 @@
-"""Pictures of sensitivities over a workspace."""
+"""Pictures of sensitivities and volumetric error: over a workspace, and along a trajectory.
+
+Each takes a `Study` and a folder, and returns files with captions; none computes more than what it
+draws. A new map goes into the list in `study_maps.draw_maps`.
+"""
 
 from report.maps.correlation_picture import draw_ties
-from report.maps.maps import draw_maps, unsampled
 from report.maps.rotary_picture import level
+from report.maps.study_maps import draw_maps
 from report.maps.trajectory_pictures import draw_path
 
 __all__ = [
@@ -10,5 +14,4 @@ __all__ = [
     "draw_path",
     "draw_ties",
     "level",
-    "unsampled",
 ]

@@ -1,4 +1,8 @@
-"""Self-contained HTML pages."""
+"""HTML pages, each in one file that loads nothing from anywhere.
+
+`write_page` renders a template of `templates/`; a module for each page turns a result into the
+numbers, rows and pictures that its template shows.
+"""
 
 from report.pages.compare_page import write_compare_page
 from report.pages.design_page import write_design_page

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from report.maps import level, unsampled
+from report.maps import level
 from report.pages.page import write_page
 from report.scenes import Scene, draw_volumes
+from report.words import unsampled
 from sensitivity.shares import region_words, regions
 from sensitivity.study import Study, Volume, has_volume, volume
 from twin.errors import DesignError

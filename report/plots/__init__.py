@@ -1,4 +1,8 @@
-"""Pictures of plans, residuals and effects."""
+"""Pictures of plans and proofs, of residuals, and of the effects that were found.
+
+Each takes a result (`TouchPlan`, `Proof`, `Fit`, `Diagnosis`) and the path of a PNG, which is
+written whole or not at all.
+"""
 
 from report.plots.effect_pictures import draw_candidates, draw_effect, draw_fall, draw_rivals
 from report.plots.form_pictures import draw_form, is_form

@@ -1,4 +1,8 @@
-"""Sentences made from results."""
+"""Sentences made from results, for pages and for the console; nothing parses them.
+
+A module for each room below: what a result says in numbers and names is told here in words with
+units, values with their uncertainty.
+"""
 
 from report.words.artefact_words import criterion_words
 from report.words.diagnosis_words import (
@@ -12,6 +16,7 @@ from report.words.diagnosis_words import (
     verdict_sentence,
 )
 from report.words.probe_words import ordering_words
+from report.words.sensitivity_words import study_words, unsampled
 
 __all__ = [
     "comparison_sentence",
@@ -22,6 +27,8 @@ __all__ = [
     "rivals_words",
     "sizes",
     "stated_noise",
+    "study_words",
+    "unsampled",
     "values",
     "verdict_sentence",
 ]

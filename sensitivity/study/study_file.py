@@ -16,7 +16,7 @@ from twin.units import UM, URAD
 
 
 def write_study(study: Study, folder: str | Path) -> None:
-    """Write the data of a study into a folder; `report.maps.maps.draw_maps` draws it.
+    """Write the data of a study into a folder; `report.maps.study_maps.draw_maps` draws it.
 
     `poses.csv` (readings and statistics of the volumetric error with their standard errors by
     sampling), `sensitivity.csv` (S a column a parameter), `shares.csv` (of the variance of the

@@ -13,7 +13,7 @@ from artefact.place.placement import PlacementOptions
 from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
 from matstd.cli import main
-from matstd.wanted import blank, placement_options, probe_reach
+from matstd.from_project import blank, placement_options, probe_reach
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
 

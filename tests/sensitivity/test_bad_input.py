@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from report.maps.maps import draw_maps
+from report.maps.study_maps import draw_maps
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study

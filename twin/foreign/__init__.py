@@ -6,7 +6,7 @@ there, a machine whose travels are those of the data. The sign of a deviation is
 and said to the user: what a machine did wrong is the negative of what its controller sees.
 """
 
-from twin.foreign.machine_text import machine_text
+from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
 from twin.foreign.points import joined_points, linear_machine, points_run, read_points
 from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning

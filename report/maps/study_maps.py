@@ -11,6 +11,7 @@ from report.maps.regions_picture import draw_regions
 from report.maps.rotary_picture import draw_rotary
 from report.maps.sensitivity_pictures import maps_of_S, overview
 from report.style import INK, axis_title, figure, nothing, plain, reading_label, save, series
+from report.words import unsampled
 from sensitivity.shares import region_totals, regions
 from sensitivity.study import Study
 from twin.frames import Array
@@ -105,16 +106,6 @@ def _regions(study: Study, rng: np.random.Generator | None) -> tuple[Figure, str
         f"standard error (Monte Carlo: {totals.machines} pairs of random machines, seed "
         f"{totals.seed}, at {totals.poses} poses of every region); these make more than 100 % "
         "together, because the errors interact in a length."
-    )
-
-
-def unsampled(study: Study) -> str:
-    """What has to stand beside a volumetric error that was not sampled."""
-    mean, worst = study.tail
-    return (
-        "Without sampling, to first order and as if errors were normally distributed: the 95 % "
-        f"quantile that was sampled at {len(study.q)} poses differs from it by {100.0 * mean:+.1f} "
-        f"% on average, {100.0 * worst:+.1f} % at worst."
     )
 
 

@@ -22,7 +22,7 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def hired(address: str | None) -> Iterator[Crew]:
+def connected(address: str | None) -> Iterator[Crew]:
     """The workers at an address; nobody but this process without one.
 
     Raises:

@@ -1,0 +1,31 @@
+"""Random numbers of a project: one stream for each use, by name."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Streams(NamedTuple):
+    """Independent streams of one seed.
+
+    The order is part of the results: a stream depends on its place in it, so a new one goes to the
+    end.
+
+    Attributes:
+        study: Random machines of the sensitivity study.
+        placement: Candidates and restarts of the search for standard and touches.
+        proof: Machines that are probed and identified, their noise, poses that judge them.
+        maps: Random machines that show what errors do to the length of the deviation.
+        other_setups: Poses at which other ways to measure are weighed.
+    """
+
+    study: np.random.Generator
+    placement: np.random.Generator
+    proof: np.random.Generator
+    maps: np.random.Generator
+    other_setups: np.random.Generator
+
+
+def streams(seed: int) -> Streams:
+    """The streams of a seed."""
+    return Streams(*np.random.default_rng(seed).spawn(len(Streams._fields)))
