@@ -4,7 +4,7 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
-from report.words.artefact_words import criterion_words
+from report.words.artefact_words import criterion_words, percent
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
@@ -24,6 +24,7 @@ __all__ = [
     "microns",
     "named_value",
     "ordering_words",
+    "percent",
     "rivals_words",
     "sizes",
     "stated_noise",

@@ -15,16 +15,17 @@ def criterion_words(wanted: StandardTable) -> str:
     """What touches were chosen for."""
     words = [_CRITERIA[wanted.criterion]]
     if wanted.drawn_machines:
-        which = "" if wanted.worst_share == 1.0 else f"the worst {_percent(wanted.worst_share)} of "
+        which = "" if wanted.worst_share == 1.0 else f"the worst {percent(wanted.worst_share)} of "
         words.append(f"averaged over {which}{wanted.drawn_machines} drawn machines")
     if wanted.potential and wanted.criterion == "D":
         words.append("with the effects of the library beside them")
     elif wanted.potential:
         words.append(
-            f"with a share of {_percent(wanted.potential)} for showing effects of the library"
+            f"with a share of {percent(wanted.potential)} for showing effects of the library"
         )
     return ", ".join(words)
 
 
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.1f} %" if share < 0.1 else f"{100.0 * share:.0f} %"
+def percent(value: float) -> str:
+    """A share in percent."""
+    return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"
