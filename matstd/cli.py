@@ -56,11 +56,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _users_fault(error: Exception) -> Exception | None:
     """A failure inside effects that the user wrote, as one line; None if it is our own."""
-    from twin.library import fault, users_files, users_lines
+    from twin.library import users_fault, users_files, users_lines
 
     for path in users_files().values():
         if users_lines(error, path):
-            return fault(error, path, "file", "a formula that holds for every touch")
+            return users_fault(error, path, "file", "a formula that holds for every touch")
     return None
 
 

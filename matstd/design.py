@@ -10,11 +10,10 @@ import numpy as np
 
 from artefact.body import write_standard
 from artefact.brief import Project
-from artefact.compare import identifiability_report, write_identifiability
+from artefact.compare import identifiability_report
 from artefact.place import Placement, place
 from cad_out.verify import export_standard
 from diagnosis.answer import probed_volume, prove
-from diagnosis.files import write_identification
 from diagnosis.fit import fit_run
 from matstd.from_project import blank, placement_options, probe, probe_reach
 from matstd.streams import streams
@@ -23,6 +22,7 @@ from probe_paths.emit import make_programs
 from probe_paths.plan import PlanOptions, TouchPlan, plan_touches
 from report.maps import draw_maps, draw_path
 from report.pages import Design, Proven
+from report.words import write_identifiability, write_identification
 from sensitivity.first_order import Workspace
 from sensitivity.montecarlo import Crew
 from sensitivity.population import Population, drawn_errors

@@ -9,7 +9,7 @@ from diagnosis.fit import MIN_TOUCHES
 from twin.errors import DesignError, NotEnoughData
 from twin.files import read_run
 from twin.library import (
-    is_seen,
+    is_visible,
     kinds,
     load_installed_effects,
     load_user_effects,
@@ -88,7 +88,7 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
             raise DesignError(f"--add {name}: is in the model already, expected another effect")
         if effect.name in {e.name for e in out}:
             raise DesignError(f"--add {name}: given twice, expected every effect once")
-        if not is_seen(effect, run.touches):
+        if not is_visible(effect, run.touches):
             raise DesignError(
                 f"--add {name}: moves nothing at these touches, expected an effect that does"
             )

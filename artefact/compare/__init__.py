@@ -9,7 +9,6 @@ from artefact.compare.identifiability import (
     Alone,
     IdentifiabilityReport,
     identifiability_report,
-    write_identifiability,
 )
 
 __all__ = [
@@ -21,5 +20,4 @@ __all__ = [
     "identifiability_report",
     "prior_rms",
     "random_lots",
-    "write_identifiability",
 ]

@@ -13,7 +13,7 @@ import numpy as np
 from artefact.reach import ProbeReach, Requests
 from artefact.worth import Criterion
 from information.criteria import Posterior, mean_prediction, whitened
-from information.identifiability import seen
+from information.identifiability import rank_analysis
 from information.selection import Quota, Selection, fill
 from twin.errors import DesignError
 from twin.frames import Array, fixed_xyz, pose
@@ -126,7 +126,7 @@ def machine_rank(criterion: Criterion, W: Array) -> int:
     """Combinations of machine errors that rows see, set-ups and tools being unknown."""
     P = len(criterion.prior_sd)
     nuisance = np.concatenate([setup_parameters(criterion), np.arange(P, W.shape[1])])
-    return seen(W).rank - seen(W[:, nuisance]).rank
+    return rank_analysis(W).rank - rank_analysis(W[:, nuisance]).rank
 
 
 def alternatives(

@@ -19,7 +19,15 @@ from diagnosis.evidence import (
     quiet,
 )
 from diagnosis.fit import Fit, GrossErrors, Prior
-from diagnosis.residual import Region, Structure, find_structure, regions, remarks
+from diagnosis.residual import (
+    Region,
+    Remark,
+    SearchEnded,
+    Structure,
+    find_structure,
+    regions,
+    remarks,
+)
 from diagnosis.search import (
     LISTED,
     MOST_SETS,
@@ -34,7 +42,7 @@ from diagnosis.search import (
 from twin.compute import one_blas_thread
 from twin.library import ordinary_model, proposals
 from twin.model import Effect, Model
-from twin.record import Run, counted_once
+from twin.record import Run, without_copies
 
 DEPENDENCES = 2
 """Patterns, one after the other, of which `depends_on` tells."""
@@ -67,7 +75,7 @@ def diagnose(
     Example:
         ``diagnose(read_run("run.csv")).verdict`` is one of three phrases.
     """
-    run = counted_once(run)
+    run = without_copies(run)
     start = model or ordinary_model(run.touches.chain)
     belief = prior or Prior.of_effects(start.effects)
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
@@ -119,16 +127,12 @@ def _result(
     )
 
 
-def _remarks(fit: Fit, final: SearchState) -> tuple[str, ...]:
+def _remarks(fit: Fit, final: SearchState) -> tuple[Remark, ...]:
     """What else a user should know, the search's own limit included."""
     out = remarks(fit)
     if not final.search.budget.is_spent:
         return out
-    cut = (
-        f"the search was ended after {MOST_SETS:.0f} sets of effects: what is named passed every "
-        "test, but another set may explain more"
-    )
-    return (*out, cut)
+    return (*out, SearchEnded(MOST_SETS))
 
 
 def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
@@ -255,7 +259,7 @@ def _dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
         for variable in structure.variables:
             known = out.get(variable)
             if known is None or structure.p_value < known.p_value:
-                out[variable] = Dependence(variable, structure.p_value, structure.words)
+                out[variable] = Dependence(variable, structure.p_value, structure)
     return tuple(out.values())
 
 

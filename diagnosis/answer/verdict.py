@@ -7,7 +7,7 @@ from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.fit import Fit, Reported
-from diagnosis.residual import Region, Structure
+from diagnosis.residual import Region, Remark, Structure
 from twin.model import Effect
 from twin.record import Run
 
@@ -25,7 +25,7 @@ class Step:
     """The model with one effect more than the step before; the first has none.
 
     Attributes:
-        effect: What was added, with its inner parameters; None for the model to begin with.
+        effect: What was added, with its inner parameters; None for the starting model.
         fit: The model fitted with it.
         p_value: Probability by chance, grid and number of candidates paid for; 1 for the first.
         reported: Its parameters as a user reads them, from the last fit.
@@ -47,7 +47,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """What one effect of the library by itself would do for the model to begin with; mm."""
+    """What one effect of the library by itself would do for the starting model; mm."""
 
     effect: str
     kind: str
@@ -57,19 +57,19 @@ class Candidate:
     log_odds: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Dependence:
     """A variable on which a residual depends.
 
     Attributes:
         variable: Column of the run file.
         p_value: Probability by chance.
-        words: How, in words.
+        structure: The pattern that it belongs to.
     """
 
     variable: str
     p_value: float
-    words: str
+    structure: Structure
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,16 +78,16 @@ class Diagnosis:
 
     Attributes:
         run: The measurements.
-        verdict: In one of three phrases.
+        verdict: One of three.
         steps: The error falling, effect by effect.
         candidates: Library effects by themselves, best first.
-        structure: What the residual of the model to begin with varies with.
+        structure: What the residual of the starting model varies with.
         left: What the residual of the last step varies with; empty unless unexplained.
         depends_on: Variables of `structure`, or of `left` where the verdict is unexplained.
         where: Regions where the same residual fails, drawn by what the found effects explain.
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
-        remarks: What else a user should know, one line each.
+        remarks: What else a user should know.
     """
 
     run: Run
@@ -100,11 +100,11 @@ class Diagnosis:
     where: tuple[Region, ...]
     detectable: tuple[Detectable, ...]
     plans: tuple[Plan, ...]
-    remarks: tuple[str, ...]
+    remarks: tuple[Remark, ...]
 
     @property
     def start(self) -> Fit:
-        """The model to begin with."""
+        """The starting model."""
         return self.steps[0].fit
 
     @property

@@ -6,7 +6,6 @@ from diagnosis.files.diagnosis_file import (
     write_diagnosis,
     write_residuals,
 )
-from diagnosis.files.identification_file import write_identification
 from diagnosis.files.model_file import SavedModel, check_machine, read_model
 from diagnosis.files.model_writer import write_model
 
@@ -17,7 +16,6 @@ __all__ = [
     "read_model",
     "write_comparison",
     "write_diagnosis",
-    "write_identification",
     "write_model",
     "write_residuals",
 ]

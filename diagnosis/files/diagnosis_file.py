@@ -1,6 +1,8 @@
 """diagnosis.json ("diagnosis/1") and comparison.json: results for other programs."""
 
 import json
+from collections.abc import Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +10,7 @@ import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Plan, Step
 from diagnosis.fit import file_unit
-from diagnosis.residual import Comparison, GroupResidual
+from diagnosis.residual import Comparison, Condition, GroupResidual, Region, Side
 from twin.files import reading_columns, write_whole
 from twin.record import Touches
 from twin.units import UM
@@ -17,8 +19,13 @@ FORMAT = "diagnosis/1"
 COMPARISON = "comparison/1"
 
 
-def diagnosis_table(result: Diagnosis) -> dict[str, Any]:
-    """Everything of `diagnosis.json`, in the units that stand in its names."""
+def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str, Any]:
+    """Everything of `diagnosis.json`, in the units that stand in its names.
+
+    Args:
+        result: The diagnosis.
+        remarks: Its remarks as sentences.
+    """
     return {
         "format": FORMAT,
         "touches": len(result.run),
@@ -39,17 +46,25 @@ def diagnosis_table(result: Diagnosis) -> dict[str, Any]:
         "depends_on": [{"variable": d.variable, "p_value": d.p_value} for d in result.depends_on],
         "detectable": [_detectable(d) for d in result.detectable],
         "next_measurement": [_plan(p) for p in result.plans],
-        "remarks": list(result.remarks),
+        "remarks": list(remarks),
     }
 
 
-def write_diagnosis(path: str | Path, result: Diagnosis) -> None:
-    """Write `diagnosis.json`, whole or not at all."""
-    write_whole(path, _text(diagnosis_table(result)))
+def write_diagnosis(path: str | Path, result: Diagnosis, remarks: Sequence[str] = ()) -> None:
+    """Write `diagnosis.json`, whole or not at all; arguments as of `diagnosis_table`."""
+    write_whole(path, _text(diagnosis_table(result, remarks)))
 
 
-def comparison_table(found: Comparison) -> dict[str, Any]:
-    """Everything of `comparison.json`, in the units that stand in its names."""
+def comparison_table(
+    found: Comparison, structure: Sequence[str] = (), remarks: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Everything of `comparison.json`, in the units that stand in its names.
+
+    Args:
+        found: The comparison.
+        structure: Sentences on what its residual varies with, in the order of `found.structure`.
+        remarks: Its remarks as sentences.
+    """
     worst = found.worst
     noise = found.fit.noise
     return {
@@ -73,18 +88,23 @@ def comparison_table(found: Comparison) -> dict[str, Any]:
         "gross_errors": [int(line) for line in found.run.line[found.fit.gross.rows]],
         "where": _where(found.where),
         "depends_on": [
-            {"variables": list(s.variables), "p_value": s.p_value, "words": s.words}
-            for s in found.structure
+            {"variables": list(s.variables), "p_value": s.p_value} | ({"words": w} if w else {})
+            for s, w in zip_longest(found.structure, structure)
         ],
         "poses": [_group(g) for g in found.poses],
         "features": [_group(g) for g in found.features],
-        "remarks": list(found.remarks),
+        "remarks": list(remarks),
     }
 
 
-def write_comparison(path: str | Path, found: Comparison) -> None:
-    """Write `comparison.json`, whole or not at all."""
-    write_whole(path, _text(comparison_table(found)))
+def write_comparison(
+    path: str | Path,
+    found: Comparison,
+    structure: Sequence[str] = (),
+    remarks: Sequence[str] = (),
+) -> None:
+    """Write `comparison.json`, whole or not at all; arguments as of `comparison_table`."""
+    write_whole(path, _text(comparison_table(found, structure, remarks)))
 
 
 def write_residuals(path: str | Path, found: Comparison) -> None:
@@ -141,10 +161,24 @@ def _step(step: Step) -> dict[str, Any]:
     }
 
 
-def _where(found: Any) -> list[dict[str, Any]]:
+def conditions_text(conditions: Sequence[Condition]) -> str:
+    """Conditions as a file has them: `B_deg >= 60 and 0 <= time_s < 2400`."""
+    parts = []
+    for name in dict.fromkeys(c.variable for c in conditions):
+        own = {c.side: c.bound for c in conditions if c.variable == name}
+        if Side.IS in own:
+            parts.append(f"{name} = {own[Side.IS]}")
+        elif len(own) == 2:
+            parts.append(f"{own[Side.FROM]:.6g} <= {name} < {own[Side.BELOW]:.6g}")
+        else:
+            parts += [f"{name} {side.value} {bound:.6g}" for side, bound in own.items()]
+    return " and ".join(parts)
+
+
+def _where(found: Sequence[Region]) -> list[dict[str, Any]]:
     return [
         {
-            "region": region.conditions,
+            "region": conditions_text(region.conditions),
             "mean_um": _um(region.mean),
             "mean_u_um": _um(region.u),
             "rms_um": _um(region.rms),

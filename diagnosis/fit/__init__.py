@@ -8,7 +8,7 @@ from diagnosis.fit.inner import continuous_inner, shifted, spacing
 from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
 from diagnosis.fit.noise import PRIOR_DOF
 from diagnosis.fit.prior import Prior
-from diagnosis.fit.unit_mistakes import mixed_units
+from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 
 __all__ = [
     "MIN_POSES",
@@ -20,17 +20,19 @@ __all__ = [
     "GrossErrors",
     "InstantEstimate",
     "LeftOut",
+    "MistakenUnit",
     "Prior",
     "Reported",
+    "UnitMistake",
     "continuous_inner",
     "estimable",
     "file_unit",
     "fit_run",
     "inner_unit",
     "left_out",
-    "mixed_units",
     "reported",
     "shifted",
     "solve",
     "spacing",
+    "unit_mistake",
 ]

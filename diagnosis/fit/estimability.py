@@ -22,20 +22,20 @@ class Combination:
     unit the value is.
 
     Attributes:
-        words: Its dominant parameters, the leading one first.
         value: Estimate, base unit of the leading parameter.
         u: Standard uncertainty of the value.
         gain: Prior over posterior standard deviation.
         unit: Base unit of the leading parameter.
         weights: Weight of every parameter, (P,).
+        importance: Weights in units of what is expected of each parameter, (P,).
     """
 
-    words: str
     value: float
     u: float
     gain: float
     unit: str
     weights: Array
+    importance: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,14 +104,14 @@ def _combinations(fit: Fit, W: Array) -> tuple[Combination, ...]:
     units = [p.unit for _, p in fit.parameters]
     return tuple(
         Combination(
-            words=c.words,
             value=float(c.weights @ fit.theta),
             u=float(np.linalg.norm(fit.spread.T @ c.weights)),
             gain=c.gain,
             unit=c.unit,
             weights=c.weights,
+            importance=c.importance,
         )
-        for c in combinations(W, fit.prior.sd, fit.names, units, free)
+        for c in combinations(W, fit.prior.sd, units, free)
     )
 
 

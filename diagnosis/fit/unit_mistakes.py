@@ -1,6 +1,7 @@
 """Deviations or uncertainties in another unit than their column says: a factor of a thousand."""
 
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 
@@ -28,26 +29,82 @@ FINEST, COARSEST = 0.02 * UM, 30.0 * UM
 """Standard uncertainties (mm) that touches on a machine tool stay between."""
 
 
+class MistakenUnit(Enum):
+    """What looks like another unit than µm."""
+
+    DEVIATIONS_IN_NM = "deviations in nm"
+    BOTH_IN_NM = "deviations and uncertainties in nm"
+    DEVIATIONS_IN_MM = "deviations in mm"
+    BOTH_IN_MM = "deviations and uncertainties in mm"
+    UNCERTAINTIES_IN_NM = "uncertainties in nm"
+    UNCERTAINTIES_IN_MM = "uncertainties in mm"
+
+
 @dataclass(frozen=True, slots=True)
-class Sizes:
-    """Typical sizes in a run once the standard has been placed best, mm.
+class UnitMistake:
+    """What looks like another unit, with typical sizes once the standard has been placed best, mm.
 
     Attributes:
+        what: Which column, and which unit it looks like.
         measured: Of the deviations.
         expected: Of the deviations of such a machine before it was probed: what its model predicts,
             and the spread that the parameters have.
         stated: Of the standard uncertainty of a touch.
+        scatter: Of the touches about the model.
     """
 
+    what: MistakenUnit
     measured: float
     expected: float
     stated: float
+    scatter: float
 
 
-def typical_sizes(fit: Fit) -> Sizes:
-    """Sizes of what was measured and of what was to be expected, freed of the set-ups alike.
+def unit_mistake(fit: Fit) -> UnitMistake | None:
+    """What looks like another unit than the column says; None for an honest run.
 
-    Medians, so that chips do not count. Only rows in use.
+    Judged by two yardsticks, since either alone misleads: a very good machine has small deviations,
+    and an uncertainty may be stated wrongly.
+
+    Args:
+        fit: Any fit.
+    """
+    measured, expected, stated = _typical_sizes(fit)
+    what = _mistaken(fit, measured, expected, stated)
+    if what is None:
+        return None
+    return UnitMistake(
+        what=what,
+        measured=measured,
+        expected=expected,
+        stated=stated,
+        scatter=stated * fit.noise.factor,
+    )
+
+
+def _mistaken(fit: Fit, measured: float, expected: float, stated: float) -> MistakenUnit | None:
+    """Which unit is mistaken, by typical sizes in mm."""
+    if measured == 0.0:
+        return None
+    if measured > LARGE * np.hypot(expected, min(stated, COARSEST)):
+        both = stated > COARSEST
+        return MistakenUnit.BOTH_IN_NM if both else MistakenUnit.DEVIATIONS_IN_NM
+    if SMALL * measured < expected and measured < QUIET * stated:
+        return MistakenUnit.DEVIATIONS_IN_MM
+    if TINY * measured < expected and stated < FINEST:
+        return MistakenUnit.BOTH_IN_MM
+    if measured < QUIET * stated:
+        return MistakenUnit.UNCERTAINTIES_IN_NM
+    if stated < FINEST and fit.noise.factor > LOUD:
+        return MistakenUnit.UNCERTAINTIES_IN_MM
+    return None
+
+
+def _typical_sizes(fit: Fit) -> tuple[float, float, float]:
+    """What was measured, what was to be expected, and the uncertainty that is stated, mm.
+
+    The first two are freed of the set-ups alike. Medians, so that chips do not count; only rows in
+    use.
     """
     rows, machine = fit.used, len(fit.model.parameters)
     X, u = fit.X[rows], fit.u[rows]
@@ -56,52 +113,8 @@ def typical_sizes(fit: Fit) -> Sizes:
     freed = np.column_stack([deviation, deviation - fit.y[rows], X[:, :machine]])
     freed -= Q @ (Q.T @ freed)
     variance = freed[:, 1] ** 2 + (freed[:, 2:] ** 2).sum(axis=1)
-    return Sizes(
+    return (
         robust_scale(freed[:, 0] * u),
         float(np.sqrt(np.median(variance * u**2))) / max(fit.widened, 1.0),
         float(np.median(fit.run.u[rows])),
     )
-
-
-def mixed_units(fit: Fit) -> list[str]:
-    """What looks like another unit, in words; empty for an honest run.
-
-    Judged by two yardsticks, since either alone misleads: a very good machine has small deviations,
-    and an uncertainty may be stated wrongly.
-
-    Args:
-        fit: Any fit.
-    """
-    s = typical_sizes(fit)
-    if s.measured == 0.0:
-        return []
-    is_small, is_tiny = SMALL * s.measured < s.expected, TINY * s.measured < s.expected
-    usual = f"{_shown(s.measured)}, a machine like this shows {_shown(s.expected)}"
-    if s.measured > LARGE * np.hypot(s.expected, min(s.stated, COARSEST)):
-        what = "deviations and uncertainties" if s.stated > COARSEST else "deviations"
-        return [
-            f"typical deviations are {usual}: the {what} look like nm in a column of µm, or "
-            "set-up, probe or machine are others than stated"
-        ]
-    if is_small and s.measured < QUIET * s.stated:
-        return [
-            f"typical deviations are {usual}, and a touch is stated to be uncertain by "
-            f"{_shown(s.stated)}: the deviations look like mm in a column of µm"
-        ]
-    if is_tiny and s.stated < FINEST:
-        return [
-            f"typical deviations are {usual}, and a touch is stated to be uncertain by "
-            f"{_shown(s.stated)}: deviations and uncertainties look like mm in columns of µm"
-        ]
-    stated = f"a touch is stated to be uncertain by {_shown(s.stated)}"
-    if s.measured < QUIET * s.stated:
-        return [f"{stated}, but typical deviations are {usual}: u_um looks like nm"]
-    if s.stated < FINEST and fit.noise.factor > LOUD:
-        found = _shown(s.stated * fit.noise.factor)
-        return [f"{stated}, but touches scatter by {found} about the model: u_um looks like mm"]
-    return []
-
-
-def _shown(size: float) -> str:
-    """`12 µm`, two digits."""
-    return f"{float(f'{size / UM:.2g}'):g} µm"

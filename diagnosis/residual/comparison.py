@@ -8,12 +8,12 @@ import numpy as np
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
 from diagnosis.residual.failing_regions import Region, regions
-from diagnosis.residual.run_remarks import remarks
+from diagnosis.residual.run_remarks import Remark, remarks
 from diagnosis.residual.structure import Structure, find_structure
 from twin.compute import one_blas_thread
 from twin.frames import Array
 from twin.model import Model
-from twin.record import Run, counted_once
+from twin.record import Run, without_copies
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Comparison:
             and of the prediction where it was made without this run.
         structure: What the residual varies with, the most certain first.
         where: Regions where the model fails.
-        remarks: What else a user should know, one line each.
+        remarks: What else a user should know.
     """
 
     fit: Fit
@@ -55,7 +55,7 @@ class Comparison:
     u: Array
     structure: tuple[Structure, ...]
     where: tuple[Region, ...]
-    remarks: tuple[str, ...]
+    remarks: tuple[Remark, ...]
 
     @property
     def run(self) -> Run:
@@ -150,7 +150,7 @@ def compare(
     Raises:
         NotEnoughData: So few touches that nothing can be said.
     """
-    run = counted_once(run)
+    run = without_copies(run)
     if estimates is None:
         fit = fit_run(run, model)
         u = run.u

@@ -1,18 +1,23 @@
-"""Regions where a model fails, in words: boxes of a few conditions, honest about chance."""
+"""Regions where a model fails: boxes of a few conditions, honest about chance.
+
+A user who reads "wrong by 8 µm where B > 60 deg" knows where to look. Every condition on one
+variable, and every pair of them, is a box; its worth is the likelihood that a mean (or a scatter)
+of its own gains, less what it costs to choose it among so many. The best box is drawn on one half
+of the table poses and judged on the other, its touches are set aside, and the next is looked for.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import Enum
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import fdtrc, ndtr
 
 from diagnosis.fit import BoolArray, Fit
 from diagnosis.residual.patterns import variables
 from twin.frames import Array
-from twin.words import condition
-
-Limit = tuple[str, float, float]
-"""A column with its lower and upper end; one of them may be infinite."""
 
 CHANCE = 1e-3
 """Probability that noise is said to have a region."""
@@ -27,13 +32,29 @@ CUTS = 16
 """Thresholds that are tried for a variable."""
 
 
+class Side(Enum):
+    """On which side of its bound a condition holds; the values are those of the files."""
+
+    BELOW = "<"
+    FROM = ">="
+    IS = "="
+
+
+class Condition(NamedTuple):
+    """One condition on a column of the run file: `B_deg >= 60`, `feature = pad4`."""
+
+    variable: str
+    side: Side
+    bound: float | str
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Region:
     """Touches that a model predicts wrongly: on average, or worse than others with both signs.
 
     Attributes:
-        limits: Lower and upper end of every column that bounds it, in the column's unit; of a
-            label such as `feature = pad4` the column is 1 where that is so, else 0.
+        conditions: All of them hold in it; bounds in the unit of the column, at most one of each
+            side for a column.
         rows: Touches in it, (N,).
         mean: Mean residual over those poses that had no say in drawing the region, mm.
         rms: Root mean square residual over the same poses, mm.
@@ -42,22 +63,12 @@ class Region:
         u: Standard uncertainty of the mean, from the noise, mm.
     """
 
-    limits: tuple[Limit, ...]
+    conditions: tuple[Condition, ...]
     rows: BoolArray
     mean: float
     rms: float
     p_value: float
     u: float
-
-    @property
-    def conditions(self) -> str:
-        """Conditions on columns of the run file, `B_deg >= 60 and time_s < 2400`."""
-        return " and ".join(_condition(*limit) for limit in self.limits)
-
-    @property
-    def words(self) -> str:
-        """The same as a reader says it, `B > 60 deg and time < 40 min`."""
-        return " and ".join(condition(*limit) for limit in self.limits)
 
 
 def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, ...]:
@@ -82,12 +93,12 @@ def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, 
         Friedman and Fisher, Bump hunting in high-dimensional data, Statistics and Computing 9
         (1999) 123-143.
     """
-    known = {k: v for k, v in _explaining(fit).items() if np.ptp(v) > 0.0}
+    known = {k: v for k, v in _explaining(fit).items() if (v != v[0]).any()}
     draws, judges = _halves(fit) if cured is None else (fit.used, fit.used)
     offers = _offers(known, draws)
     if not offers:
         return ()
-    inside = np.stack([_within(known, limit) for limit in offers])
+    inside = np.stack([_holds(known[c.variable], c) for c in offers])
     u = fit.u if cured is None else cured.u
     z = _even(fit) / u
     drawing = z if cured is None else (fit.residual - cured.residual) / u
@@ -161,7 +172,7 @@ _BY_SIZE = _Kind(_size_worth, _size_chance)
 
 def _judged(
     fit: Fit,
-    limits: Sequence[Limit],
+    conditions: Sequence[Condition],
     noise: Array,
     who: tuple[BoolArray, BoolArray],
     kind: _Kind,
@@ -176,19 +187,27 @@ def _judged(
     r = fit.residual[seen]
     rms = float(np.sqrt(np.mean(r**2)))
     u = float(np.sqrt(np.sum(noise[seen] ** 2)) / len(r))
-    return Region(_joined(limits), rows, float(r.mean()), rms, p, u)
+    return Region(
+        conditions=_tightest(conditions),
+        rows=rows,
+        mean=float(r.mean()),
+        rms=rms,
+        p_value=p,
+        u=u,
+    )
 
 
-def _explaining(fit: Fit) -> dict[str, Array]:
-    """Variables that a user can find on the machine; temperatures only where time is not known."""
-    known = variables(fit.run.touches)
+def _explaining(fit: Fit) -> dict[str, NDArray[Any]]:
+    """Variables and labels that a user can find on the machine, (N,) each.
+
+    Temperatures only where time is not known: they follow it.
+    """
+    known: dict[str, NDArray[Any]] = dict(variables(fit.run.touches))
     if "time_s" in known:
         known = {k: v for k, v in known.items() if not k.startswith("T_")}
     t = fit.run.touches
     setups = np.array([s.name for s in t.setups])[t.setup]
-    for column, labels in (("feature", t.feature), ("setup", setups)):
-        known |= {f"{column} = {k}": (labels == k).astype(float) for k in np.unique(labels)}
-    return known
+    return known | {"feature": t.feature, "setup": setups}
 
 
 def _halves(fit: Fit) -> tuple[BoolArray, BoolArray]:
@@ -201,22 +220,24 @@ def _halves(fit: Fit) -> tuple[BoolArray, BoolArray]:
     return fit.used & odd, fit.used & ~odd
 
 
-def _offers(known: dict[str, Array], draws: BoolArray) -> list[Limit]:
+def _offers(known: dict[str, NDArray[Any]], draws: BoolArray) -> list[Condition]:
     """Every condition on one column that is tried."""
-    out: list[Limit] = []
+    out: list[Condition] = []
     for name, values in known.items():
-        if " = " in name:
-            out.append((name, 0.5, np.inf))
+        if values.dtype.kind == "U":
+            out += [Condition(name, Side.IS, str(label)) for label in np.unique(values)]
             continue
         for cut in _cuts(values[draws]):
-            out += [(name, -np.inf, cut), (name, cut, np.inf)]
+            out += [Condition(name, Side.BELOW, cut), Condition(name, Side.FROM, cut)]
     return out
 
 
-def _within(known: dict[str, Array], limit: Limit) -> BoolArray:
+def _holds(values: NDArray[Any], condition: Condition) -> BoolArray:
     """Touches that meet a condition, (N,)."""
-    name, low, high = limit
-    return np.asarray((known[name] >= low) & (known[name] < high))
+    if condition.side is Side.IS:
+        return np.asarray(values == condition.bound)
+    below = values < condition.bound
+    return np.asarray(below if condition.side is Side.BELOW else ~below)
 
 
 def _best_box(
@@ -284,21 +305,12 @@ def _round_between(low: float, high: float) -> float:
     return high
 
 
-def _joined(limits: Sequence[Limit]) -> tuple[Limit, ...]:
-    """Conditions with those on one column joined to the tightest."""
-    out: dict[str, Limit] = {}
-    for name, low, high in limits:
-        _, lowest, highest = out.get(name, (name, -np.inf, np.inf))
-        out[name] = (name, max(low, lowest), min(high, highest))
-    return tuple(out.values())
-
-
-def _condition(name: str, low: float, high: float) -> str:
-    """One range of a column, as a file has it."""
-    if " = " in name:
-        return name if low > -np.inf else name.replace(" = ", " != ")
-    if np.isinf(low):
-        return f"{name} < {high:.6g}"
-    if np.isinf(high):
-        return f"{name} >= {low:.6g}"
-    return f"{low:.6g} <= {name} < {high:.6g}"
+def _tightest(conditions: Sequence[Condition]) -> tuple[Condition, ...]:
+    """Conditions of which none follows from another, column by column, lower bounds first."""
+    out = []
+    for name in dict.fromkeys(c.variable for c in conditions):
+        own = [c for c in conditions if c.variable == name]
+        for side, tightest in ((Side.IS, min), (Side.FROM, max), (Side.BELOW, min)):
+            bounds = [c.bound for c in own if c.side is side]
+            out += [Condition(name, side, tightest(bounds))] if bounds else []
+    return tuple(out)

@@ -1,9 +1,13 @@
-"""What a user should know about a run besides the verdict, one clear line each."""
+"""What a user should know about a run besides the verdict: one record for each thing noticed.
+
+Records carry the numbers; the sentences are made in `report`.
+"""
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.fit import MIN_POSES, Fit, mixed_units
-from twin.units import UM
+from diagnosis.fit import MIN_POSES, Fit, UnitMistake, unit_mistake
 
 FEW_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""
@@ -11,91 +15,161 @@ FEW_DOF = 30.0
 DOUBTFUL = 2.0
 """Error of held-out touches over the stated noise from which few touches leave all open."""
 
-LISTED = 20
-"""Gross errors whose lines are told."""
+FEWEST_REPLICATES = 10
+"""Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
 
 
-def remarks(fit: Fit) -> tuple[str, ...]:
+@dataclass(frozen=True, slots=True)
+class ReaderRemark:
+    """What the reader of the run file noticed, in its own words."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class FewTouches:
+    """Fewer touches than parameters: the prior decides the rest."""
+
+    touches: int
+    parameters: int
+
+
+@dataclass(frozen=True, slots=True)
+class FewDegreesOfFreedom:
+    """Hardly any degrees of freedom are left for the noise."""
+
+    dof: float
+
+
+@dataclass(frozen=True, slots=True)
+class HeldOutInDoubt:
+    """With few degrees of freedom: the held-out error, in units of the stated noise."""
+
+    ratio: float
+
+
+@dataclass(frozen=True, slots=True)
+class FewPoses:
+    """So few table poses that errors of the rotary axes can hardly be seen."""
+
+    poses: int
+
+
+@dataclass(frozen=True, slots=True)
+class WorseThanReplicates:
+    """Residuals over the scatter of replicates, with the replicates' degrees of freedom."""
+
+    ratio: float
+    dof: int
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseMisstated:
+    """Scatter about the model, and the standard uncertainty stated, mm."""
+
+    found: float
+    stated: float
+
+
+@dataclass(frozen=True, slots=True)
+class OutliersKept:
+    """More touches stand out than accidents can explain; none was left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutliersLeftOut:
+    """Gross errors that were left out.
+
+    Attributes:
+        lines: Of the run file, what stands out most first.
+        largest: Largest distance from what the other touches predict, outwards positive, mm.
+    """
+
+    lines: tuple[int, ...]
+    largest: float
+
+
+@dataclass(frozen=True, slots=True)
+class PriorWidened:
+    """Factor by which the machine's errors exceed their stated distributions."""
+
+    factor: float
+
+
+@dataclass(frozen=True, slots=True)
+class SearchEnded:
+    """The search was ended after so many sets of effects."""
+
+    sets: float
+
+
+Remark = (
+    UnitMistake
+    | ReaderRemark
+    | FewTouches
+    | FewDegreesOfFreedom
+    | HeldOutInDoubt
+    | FewPoses
+    | WorseThanReplicates
+    | NoiseMisstated
+    | OutliersKept
+    | OutliersLeftOut
+    | PriorWidened
+    | SearchEnded
+)
+
+
+def remarks(fit: Fit) -> tuple[Remark, ...]:
     """Everything noteworthy in a fit: units, what the reader of the file noticed, the rest."""
-    units = mixed_units(fit)
-    out = [*units, *fit.run.remarks, *_touches(fit)]
-    out += ([] if units else _noise(fit)) + _gross(fit)
+    units = unit_mistake(fit)
+    out: list[Remark] = [] if units is None else [units]
+    out += [ReaderRemark(text) for text in fit.run.remarks]
+    out += _touches(fit)
+    out += ([] if units else _noise(fit)) + _outliers(fit)
     if fit.widened > 1.0:
-        out.append(
-            f"the machine's errors are about {fit.widened:.1f} times their stated distributions; "
-            "the prior was widened by that"
-        )
+        out.append(PriorWidened(fit.widened))
     return tuple(out)
 
 
-def _touches(fit: Fit) -> list[str]:
-    """Too few touches or poses, and what is still possible."""
-    out = []
+def _touches(fit: Fit) -> list[Remark]:
+    """Too few touches or poses."""
+    out: list[Remark] = []
     n, p = int(fit.used.sum()), len(fit.parameters)
     if n < p:
-        out.append(
-            f"{n} touches for {p} parameters: the prior decides the rest; single parameters are "
-            "not known, only what they do together where it was probed"
-        )
+        out.append(FewTouches(n, p))
     if fit.solution.dof < FEW_DOF:
-        out.append(
-            f"{fit.solution.dof:.0f} degrees of freedom are left for the noise: only large effects "
-            "can be seen; the stated uncertainty is leant on"
-        )
-        stated = float(np.sqrt(np.mean(fit.run.u**2)))
-        if fit.test_rms > DOUBTFUL * stated:
-            out.append(
-                f"the error of held-out touches is {fit.test_rms / stated:.1f} times the stated "
-                "noise, with too few touches to say whether anything is missing: probe more"
-            )
+        out.append(FewDegreesOfFreedom(fit.solution.dof))
+        ratio = fit.test_rms / float(np.sqrt(np.mean(fit.run.u**2)))
+        if ratio > DOUBTFUL:
+            out.append(HeldOutInDoubt(ratio))
     t = fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[fit.used], axis=0))
     if poses < MIN_POSES:
-        out.append(
-            f"{poses} table pose{'s' if poses > 1 else ''} only: errors of the rotary axes "
-            f"{'can hardly' if poses > 1 else 'cannot'} be seen, and touches are held out in "
-            "blocks instead of by pose"
-        )
+        out.append(FewPoses(poses))
     return out
 
 
-def _noise(fit: Fit) -> list[str]:
+def _noise(fit: Fit) -> list[Remark]:
     """Noise that is not what the file states."""
     noise = fit.noise
-    u = float(np.median(fit.run.u)) / UM
-    if noise.replicates is not None and noise.replicates_dof >= 10:
+    if noise.replicates is not None and noise.replicates_dof >= FEWEST_REPLICATES:
         ratio = noise.factor / noise.replicates
         if ratio > 1.0 + 3.0 * (0.5 / noise.replicates_dof) ** 0.5:
-            return [
-                f"residuals are {ratio:.2f} times as large as the scatter of {noise.replicates_dof}"
-                " replicates: the model lacks something"
-            ]
+            return [WorseThanReplicates(ratio, noise.replicates_dof)]
     if noise.is_wrongly_stated:
-        return [
-            f"touches scatter by {noise.factor * u:.2f} µm about the model; {u:.2f} µm is stated"
-        ]
+        u = float(np.median(fit.run.u))
+        return [NoiseMisstated(noise.factor * u, u)]
     return []
 
 
-def _gross(fit: Fit) -> list[str]:
-    """Touches that were left out."""
+def _outliers(fit: Fit) -> list[Remark]:
+    """Touches that were left out, or should have been if they were not so many."""
     gross = fit.gross
     if gross.too_many:
-        return [
-            "more touches stand out than accidents can explain: all were kept, and the residual "
-            "is treated as structure"
-        ]
+        return [OutliersKept()]
     rows = np.flatnonzero(gross.rows)
     if len(rows) == 0:
         return []
     rows = rows[np.argsort(-np.abs(gross.score[rows]))]
-    size = fit.residual[rows[np.argmax(np.abs(fit.residual[rows]))]] / UM
-    side = "outside" if size > 0 else "inside"
-    lines = ", ".join(str(line) for line in fit.run.line[rows[:LISTED]])
-    more = f" and {len(rows) - LISTED} more" if len(rows) > LISTED else ""
-    return [
-        f"{len(rows)} gross error{'s were' if len(rows) > 1 else ' was'} left out, "
-        f"{'the largest ' if len(rows) > 1 else ''}{abs(size):.1f} µm {side} what the other "
-        "touches predict: "
-        f"line{'s' if len(rows) > 1 else ''} {lines}{more}"
-    ]
+    largest = float(fit.residual[rows[np.argmax(np.abs(fit.residual[rows]))]])
+    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest)]

@@ -1,7 +1,14 @@
-"""Tests for structure left in a residual: is it noise, and if not, what does it vary with?"""
+"""Tests for structure left in a residual: is it noise, and if not, what does it vary with?
+
+Four kinds of test, of which each sees what the others miss: smooth functions of every recorded
+variable and pair, in several directions; waves in time; neighbours in time and on the standard that
+agree without any shape; gross errors that lie together. The probability of each is corrected for
+the number of all, so that white noise is said to have structure once in a thousand runs.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -15,7 +22,6 @@ from diagnosis.residual.quadratic import ratio_probability
 from diagnosis.residual.waves import Wave, best_wave
 from twin.frames import Array
 from twin.record import IntArray, Touches
-from twin.words import listed, noun, span
 
 CHANCE = 1e-3
 """Probability, all tests together, that white noise is said to have structure."""
@@ -27,29 +33,36 @@ FAR = 1e4
 """Distance (mm) by which different features are held apart in the search for neighbours."""
 
 
+class Shape(Enum):
+    """Kinds of patterns that are looked for."""
+
+    SMOOTH = "smooth"
+    WAVE = "wave"
+    NEIGHBOURS = "neighbours"
+    CROWD = "crowd"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure:
     """One test of a residual for one kind of pattern.
 
     Attributes:
-        shape: "smooth", "wave", "neighbours" or "crowd".
+        shape: What kind of pattern it is.
         variables: What the pattern varies with.
         direction: Along what it acts.
         p_value: Probability in white noise, corrected for all the tests made.
         evidence: Log evidence for the pattern against noise alone.
         columns: Projected features scaled to their most likely size, (N + P, K): a prior of one
             each; None for tests that name no pattern.
-        words: In words.
         period: Of a wave, s; zero for everything else.
     """
 
-    shape: str
+    shape: Shape
     variables: tuple[str, ...]
     direction: str
     p_value: float
     evidence: float
     columns: Array | None
-    words: str
     period: float = 0.0
 
 
@@ -127,30 +140,20 @@ def _as_structure(pattern: Pattern, tested: _Tested, count: int) -> Structure:
     best = int(np.argmin(tested.p))
     p = min(1.0, float(tested.p[best]) * count)
     return Structure(
-        "smooth",
-        pattern.variables,
-        pattern.direction,
-        p,
-        float(tested.evidence.max()),
-        None,
-        _words(pattern.variables, pattern.direction),
+        shape=Shape.SMOOTH,
+        variables=pattern.variables,
+        direction=pattern.direction,
+        p_value=p,
+        evidence=float(tested.evidence.max()),
+        columns=None,
     )
-
-
-def _words(names: tuple[str, ...], direction: str) -> str:
-    """`varies with X and Y, along Z`."""
-    return f"varies with {listed([noun(name) for name in names])}, along {_along(direction)}"
-
-
-def _along(direction: str) -> str:
-    return "the normal" if direction == "normal" else direction
 
 
 def _with_columns(
     effects: EffectSet, known: Iterable[Pattern], found: Structure, rows: IntArray
 ) -> Structure:
     """A structure with its projected, scaled columns, ready to stand in a model as a nuisance."""
-    for pattern in known if found.shape == "smooth" else ():
+    for pattern in known if found.shape is Shape.SMOOTH else ():
         if (pattern.variables, pattern.direction) == (found.variables, found.direction):
             tested = _tested(effects, pattern, rows)
             best = int(np.argmax(tested.evidence))
@@ -173,10 +176,27 @@ def _wave_structure(effects: EffectSet, wave: Wave, count: int) -> Structure:
     fall = -np.log(max(1.0 - wave.drop / effects.objective, 1e-9))
     gained = 0.5 * n * fall - np.log1p(wave.drop) - np.log(max(wave.count, 1))
     p = min(1.0, wave.p_value * count)
-    words = f"a wave in time, every {span(wave.period)}, along {_along(wave.direction)}"
-    C = effects.complement.project(wave.columns) if p < CHANCE else None
-    along = wave.direction
-    return Structure("wave", ("time_s",), along, p, float(gained), C, words, wave.period)
+    return Structure(
+        shape=Shape.WAVE,
+        variables=("time_s",),
+        direction=wave.direction,
+        p_value=p,
+        evidence=float(gained),
+        columns=effects.complement.project(wave.columns) if p < CHANCE else None,
+        period=wave.period,
+    )
+
+
+def _without_columns(shape: Shape, variables: tuple[str, ...], p: float) -> Structure:
+    """A test that names no pattern."""
+    return Structure(
+        shape=shape,
+        variables=variables,
+        direction="normal",
+        p_value=p,
+        evidence=-np.inf,
+        columns=None,
+    )
 
 
 def _neighbours(effects: EffectSet) -> list[Structure]:
@@ -194,9 +214,7 @@ def _neighbours(effects: EffectSet) -> list[Structure]:
     for variables, left, right in _neighbour_pairs(touches):
         mean = -float(np.einsum("np,np->", Q[left], Q[right]))
         score = (float(r[left] @ r[right]) - mean) / np.sqrt(max(len(left), 1))
-        p = float(ndtr(-score))
-        words = f"neighbours in {listed([noun(v) for v in variables])} agree"
-        out.append(Structure("neighbours", variables, "normal", p, -np.inf, None, words))
+        out.append(_without_columns(Shape.NEIGHBOURS, variables, float(ndtr(-score))))
     return out
 
 
@@ -204,11 +222,7 @@ def _crowds(complement: ResidualSpace) -> list[Structure]:
     """Do gross errors lie together?"""
     allowed = complement.used | complement.gross
     found = crowds(complement.touches, allowed, complement.gross)
-    out = []
-    for names, p in found.items():
-        words = f"gross errors crowd together in {listed([noun(n) for n in names])}"
-        out.append(Structure("crowd", names, "normal", p, -np.inf, None, words))
-    return out
+    return [_without_columns(Shape.CROWD, names, p) for names, p in found.items()]
 
 
 def _neighbour_pairs(touches: Touches) -> list[tuple[tuple[str, ...], IntArray, IntArray]]:

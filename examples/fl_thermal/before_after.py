@@ -30,7 +30,7 @@ def held_out(result: Diagnosis) -> dict[str, tuple[float, ...]]:
     """RMS error of every probe on the held-out rows, µm, by step; every row counts, as it is."""
     touches, out = result.run.touches, {}
     for step in result.steps:
-        name = "model to begin with" if step.effect is None else f"+ {step.effect.name}"
+        name = "starting model" if step.effect is None else f"+ {step.effect.name}"
         rows = [(result.run.split == "test") & (touches.feature == probe) for probe in PROBES]
         out[name] = tuple(float(np.sqrt(np.mean(step.fit.residual[r] ** 2))) / UM for r in rows)
     return out

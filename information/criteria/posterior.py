@@ -11,18 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from information.identifiability import Freedom, Identifiability, identifiability
 from twin.errors import ShapeMismatch
 from twin.frames import Array
-
-__all__ = [
-    "Freedom",
-    "Identifiability",
-    "Posterior",
-    "identifiability",
-    "prior_sd_of_tip",
-    "whitened",
-]
 
 
 def whitened(rows: Array, prior_sd: Array, u: Array | float) -> Array:

@@ -1,4 +1,4 @@
-"""Which parameters the touches tie together: correlations after the fit, groups and pairs in words.
+"""Which parameters the touches tie together: correlations after the fit, groups and pairs.
 
 Two parameters whose estimates rise and fall together (r near +1) are known by their difference;
 where one falls as the other rises (r near -1) by their sum; difference and sum of both in units of
@@ -16,8 +16,6 @@ from twin.frames import Array
 STRONG = 0.9
 """Absolute correlation from which two parameters are called tied."""
 
-_FULL = 0.9995  # rounds to 1.000
-
 
 @dataclass(frozen=True)
 class Pair:
@@ -27,13 +25,11 @@ class Pair:
         first: Index of one.
         second: Index of the other.
         r: Their correlation.
-        words: What that means.
     """
 
     first: int
     second: int
     r: float
-    words: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,17 +75,11 @@ def ties(covariance: Array, names: Sequence[str], strong: float = STRONG) -> Tie
     r = correlation(covariance)
     rows, columns = np.nonzero(np.triu(np.abs(r) >= strong, 1))
     order = np.argsort(-np.abs(r[rows, columns]), kind="stable")
-    pairs = tuple(_pair(int(rows[k]), int(columns[k]), r, names) for k in order)
+    pairs = tuple(
+        Pair(i, j, float(r[i, j]))
+        for i, j in zip(rows[order].tolist(), columns[order].tolist(), strict=True)
+    )
     return Ties(tuple(names), r, pairs, _groups(pairs, r))
-
-
-def _pair(i: int, j: int, r: Array, names: Sequence[str]) -> Pair:
-    value = float(r[i, j])
-    known, sign = ("difference", ">") if value > 0.0 else ("sum", "<")
-    # nothing is known to be tied for good: a full one is never shown
-    number = f"r = {value:+.3f}" if abs(value) < _FULL else f"r {sign} {np.sign(value) * 0.999:.3f}"
-    words = f"{names[i]} and {names[j]} ({number}): only their {known} is known"
-    return Pair(i, j, value, words)
 
 
 def _groups(pairs: Sequence[Pair], r: Array) -> tuple[tuple[int, ...], ...]:

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from information.identifiability.parameter_words import in_words
 from twin.effects import HigherOrder
 from twin.frames import Array
 from twin.machine import Family, Link, Symbol
 from twin.model import Model, columns
 from twin.record import Touches
-from twin.units import shown
 
 HIGHEST = 8
 """Highest degree that is tried."""
@@ -32,7 +30,6 @@ class Degree:
         largest: Largest of them; 0 where there is none.
         u: Standard uncertainty of the coefficient of that degree, mm or rad; 0 where there is none.
         unit: Base unit of u.
-        words: The same in words.
     """
 
     symbol: str
@@ -40,7 +37,6 @@ class Degree:
     largest: int
     u: float
     unit: str
-    words: str
 
 
 def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) -> tuple[Degree, ...]:
@@ -73,11 +69,11 @@ def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) ->
         shared = rest.T @ C
         M = np.eye(rest.shape[1]) + rest.T @ rest
         A = C.T @ C - shared.T @ np.linalg.solve(M, shared)
-        out.append(_degree(symbol, link, A, size, model))
+        out.append(_degree(symbol, link, A, size))
     return tuple(out)
 
 
-def _degree(symbol: Symbol, link: Link, A: Array, size: Array, model: Model) -> Degree:
+def _degree(symbol: Symbol, link: Link, A: Array, size: Array) -> Degree:
     """Degrees that an information A supports, in units of the expected sizes."""
     each = 2 if link.kind == "rotary" else 1
     left = np.ones((HIGHEST, HIGHEST))  # of degree k + 1 in column k, with n + 1 degrees free
@@ -91,9 +87,8 @@ def _degree(symbol: Symbol, link: Link, A: Array, size: Array, model: Model) -> 
         last = supported[-1] - 1
         u = float(left[last, last] * size[each * last])
     largest = max(supported, default=0)
-    words = _words(symbol, link, supported, u, model)
     unit = "rad" if symbol.is_angular else "mm"
-    return Degree(symbol.name, supported, largest, u, unit, words)
+    return Degree(symbol=symbol.name, supported=supported, largest=largest, u=u, unit=unit)
 
 
 def _run(is_supported: NDArray[np.bool_]) -> tuple[int, ...]:
@@ -109,16 +104,3 @@ def _run(is_supported: NDArray[np.bool_]) -> tuple[int, ...]:
         if n > first:
             return tuple(range(first + 1, n + 1))
     return ()
-
-
-def _words(symbol: Symbol, link: Link, supported: tuple[int, ...], u: float, model: Model) -> str:
-    """`straightness of X in Y (EYX): degrees 2 to 5, the last to 0.4 µm`."""
-    what = in_words(f"geometric({symbol.name},)", model.chain).strip()
-    kind = "harmonic" if link.kind == "rotary" else "degree"
-    if not supported:
-        return f"{what}: no {kind}"
-    label, factor = shown("rad" if symbol.is_angular else "mm")
-    first, last = supported[0], supported[-1]
-    if first == last:
-        return f"{what}: {kind} {last} to {u / factor:.2g} {label}"
-    return f"{what}: {kind}s {first} to {last}, the last to {u / factor:.2g} {label}"

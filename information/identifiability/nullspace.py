@@ -62,7 +62,7 @@ class RankAnalysis:
         return rows / np.where(loud, self.length, 1.0)
 
 
-def seen(W: Array) -> RankAnalysis:
+def rank_analysis(W: Array) -> RankAnalysis:
     """What rows (N, P) see of their parameters."""
     P = W.shape[1]
     length = np.linalg.norm(W, axis=0)

@@ -1,10 +1,10 @@
-"""What touches can and cannot separate, in the words of a metrologist.
+"""What touches can and cannot separate: rank, condition, gauge freedoms, confounded groups.
 
 A gauge freedom is a direction of parameter space that no touch notices: the constants of an axis
 and the set-up of the standard, the tilt of a ram and its straightness at one tool length. They come
 from the null space of the rows, by `information.identifiability.nullspace`, and are checked, one
-by one, against
-richer touches that could have been made: another stylus length, another set-up, the whole travel.
+by one, against richer touches that could have been made: another stylus length, another set-up, the
+whole travel.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,26 +12,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from information.identifiability.freedom_words import (
-    TURNS,
+from information.identifiability.freedoms import (
     Freedom,
     Parameters,
-    equation,
+    Reason,
+    Resolution,
+    Term,
     reason,
-    terms,
 )
-from information.identifiability.nullspace import INVISIBLE, condition, groups, seen, sparse
+from information.identifiability.nullspace import (
+    INVISIBLE,
+    condition,
+    groups,
+    rank_analysis,
+    sparse,
+)
 from twin.frames import Array
 from twin.machine import Chain, Family, Symbol
 from twin.units import UM, URAD
-
-__all__ = ["NEVER", "SIDEWAYS", "Freedom", "Group", "Identifiability", "identifiability"]
-
-NEVER = "nothing that touches a workpiece; it is fixed by convention"
-"""What resolves a freedom that is one of the machine and not of the touches."""
-
-SIDEWAYS = "a second stylus that reaches sideways, off the line of the spindle"
-"""What resolves an error that turns about that line; tools on the line never feel it."""
 
 _KEPT = 1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
 
@@ -43,12 +41,10 @@ class Group:
     Attributes:
         members: Names.
         known: Number of their combinations that the touches see; the rest is gauge.
-        words: The same in words.
     """
 
     members: tuple[str, ...]
     known: int
-    words: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,15 +88,16 @@ def identifiability(
         W: Whitened rows, shape (N, P).
         prior_sd: Shape (P,).
         names: Of the parameters.
-        parameters: The same with their effects (`Model.parameters`), for words and conventions.
-        chain: The machine, for words; None to do without.
+        parameters: The same with their effects (`Model.parameters`), for units, conventions and
+            reasons.
+        chain: The machine, for reasons; None to do without.
         richer: Rows of touches that could be made instead, by what they are called, cheapest first;
             columns as those of W, and after them those of set-ups and tools of their own.
     """
-    found = seen(W)
+    found = rank_analysis(W)
     null = found.null
     more = {name: _without_own(R, W.shape[1]) for name, R in (richer or {}).items()}
-    never = seen(np.concatenate([W, *more.values()])).null if more else None
+    never = rank_analysis(np.concatenate([W, *more.values()])).null if more else None
     order = sorted(range(len(names)), key=lambda p: _convention(parameters, p))
     units = [p.unit for _, p in parameters] or ["1"] * len(names)
     freedoms = []
@@ -108,13 +105,17 @@ def identifiability(
         size = np.abs(z).max()
         base = -z * prior_sd / prior_sd[lead]
         others = [k for k in np.argsort(-np.abs(z), kind="stable").tolist() if k != lead and z[k]]
-        alike = tuple((names[k], float(base[k])) for k in others)
-        words = why = ""
-        if chain is not None:
-            words = equation(names[lead], units[lead], terms(others, base, names, units), chain)
-            why = reason([lead, *others], parameters, chain)
-        by = _resolved_by(z / size, more, why)
-        freedoms.append(Freedom(names[lead], alike, words, why, by))
+        why = reason([lead, *others], parameters, chain) if chain is not None else None
+        resolution, by = _resolved_by(z / size, more, why)
+        freedom = Freedom(
+            parameter=names[lead],
+            unit=units[lead],
+            alike=tuple(Term(names[k], units[k], float(base[k])) for k in others),
+            reason=why,
+            resolution=resolution,
+            resolved_by=by,
+        )
+        freedoms.append(freedom)
     per_unit = np.array([URAD if u == "rad" else UM for u in units])
     raw = W / np.where(prior_sd > 0.0, prior_sd, 1.0) * per_unit
     return Identifiability(
@@ -156,14 +157,17 @@ def _without_own(W: Array, P: int) -> Array:
     return left
 
 
-def _resolved_by(z: Array, richer: Mapping[str, Array], why: str) -> str:
+def _resolved_by(
+    z: Array, richer: Mapping[str, Array], why: Reason | None
+) -> tuple[Resolution, str]:
     """The first of the richer touches, freed of what is their own, in which a direction shows."""
     for name, W in richer.items():
         if np.linalg.norm(W @ z) > _KEPT * np.linalg.norm(W, axis=0).max():
-            return name
-    if richer and why == TURNS:
-        return SIDEWAYS
-    return NEVER if richer else ""
+            return Resolution.TOUCHES, name
+    if not richer:
+        return Resolution.UNTRIED, ""
+    # tools on the line of the spindle never feel what turns about it
+    return (Resolution.SIDEWAYS if why is Reason.TURNS else Resolution.NEVER), ""
 
 
 def _groups(null: Array, names: Sequence[str]) -> tuple[Group, ...]:
@@ -174,10 +178,5 @@ def _groups(null: Array, names: Sequence[str]) -> tuple[Group, ...]:
             continue
         size = np.linalg.svd(null[:, group], compute_uv=False)
         known = len(group) - int(np.sum(size > 1e-9 * size[0]))
-        members = tuple(names[p] for p in group)
-        out.append(
-            Group(
-                members, known, f"{len(group)} parameters, {known} combinations of which are seen"
-            )
-        )
+        out.append(Group(tuple(names[p] for p in group), known))
     return tuple(sorted(out, key=lambda g: -len(g.members)))

@@ -38,9 +38,12 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import stages
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
+    from report.words import remark_sentence, structure_words
     from twin.library import ordinary_model
 
-    run, saved = read_inputs(args.run_file, args.model, args.effects, "so that it flatters it")
+    run, saved = read_inputs(
+        args.run_file, args.model, args.effects, "so the agreement is optimistic"
+    )
     model = saved.model if saved else ordinary_model(run.touches.chain)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         found = compare(
@@ -49,7 +52,12 @@ def run(args: argparse.Namespace) -> int:
             saved.estimates if saved else None,
             lambda share, doing: show(doing, int(100 * share), 100),
         )
-        write_comparison(folder / "comparison.json", found)
+        write_comparison(
+            folder / "comparison.json",
+            found,
+            [structure_words(s) for s in found.structure],
+            [remark_sentence(r) for r in found.remarks],
+        )
         write_residuals(folder / "residuals.csv", found)
         if not args.no_report:
             from report.pages import write_compare_page
@@ -64,15 +72,15 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison) -> None:
     """The comparison in words."""
     from matstd.console import say
-    from report.words import comparison_sentence
+    from report.words import comparison_sentence, region_words, remark_sentence
     from twin.units import UM
     from twin.words import signed
 
     say(comparison_sentence(found), style="bold")
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
-        say(f"{region.words}: {mean} ({int(region.rows.sum())} touches)")
+        say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
     for remark in found.remarks:
-        say(f"- {remark}")
+        say(f"- {remark_sentence(remark)}")
     first = "" if args.no_report else "report.html, "
     say(f"{args.output}: look at {first}comparison.json, residuals.csv")

@@ -25,7 +25,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
     parser.add_argument(
-        "--model", metavar="MODEL.toml", help="begin with this one, not the ordinary geometric one"
+        "--model",
+        metavar="MODEL.toml",
+        help="starting model; without it the ordinary geometric one",
     )
     parser.add_argument(
         "--add",
@@ -33,10 +35,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="extend",
         nargs="+",
         default=[],
-        help="put these effects in",
+        help="add these effects to the model",
     )
     parser.add_argument(
-        "--auto", action="store_true", help="put in whatever the diagnosis finds, step by step"
+        "--auto", action="store_true", help="add whatever the diagnosis finds, step by step"
     )
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
@@ -96,10 +98,12 @@ def _write(
     """Result, model and plans as files."""
     from diagnosis.files import plan_text, write_diagnosis, write_model
     from matstd.inputs import is_learnt_from
+    from report.words import remark_sentence
     from twin.files import write_whole
     from twin.versions import versions
 
-    write_diagnosis(folder / "diagnosis.json", result)
+    sentences = [remark_sentence(r) for r in result.remarks]
+    write_diagnosis(folder / "diagnosis.json", result, sentences)
     fit = result.fit if args.auto else result.steps[len(args.add)].fit
     before = saved if saved and not is_learnt_from(saved, result.run) else None
     made_with = f"material-standard {versions()['material-standard']}"
@@ -113,7 +117,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     from rich.table import Column, Table
 
     from matstd.console import console, say
-    from report.words import rivals_words, verdict_sentence
+    from report.words import remark_sentence, rivals_words, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = [
@@ -128,9 +132,12 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
         if step.effect is not None and step.confusion is not None and step.confusion.rivals:
             say(f"- {step.effect.name} cannot be told from {rivals_words(step, TOLD)}")
     for remark in result.remarks:
-        say(f"- {remark}")
+        say(f"- {remark_sentence(remark)}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:
-        say("- the model file has what was named; --auto puts in what was found, --add one of them")
+        say(
+            "- model.toml holds only effects you named; --auto adds what was found, "
+            "--add NAME one of them"
+        )
     for i, plan in enumerate(result.plans, start=1):
         say(f"- next_measurement_{i}.csv would tell {' from '.join(plan.tells_apart)}")
     first = "" if args.no_report else "report.html, "
@@ -144,7 +151,7 @@ def _row(step: Step) -> tuple[str, ...]:
     from twin.words import digits
 
     return (
-        step.effect.name if step.effect is not None else "model to begin with",
+        step.effect.name if step.effect is not None else "starting model",
         ", ".join(value for _, value in values(step)[:2]),
         f"{step.p_value:.0e}" if step.effect is not None else "",
         f"{step.fit.rms / UM:.3f}",

@@ -10,12 +10,10 @@ and Z belongs to the far pole of the ball:
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from probe_paths.plan.probe import Probe
 from twin.errors import DesignError
 from twin.frames import Array
-from twin.machine import DIRECTIONS, Chain
+from twin.machine import Chain
 from twin.units import DEG
 
 LINEAR = "XYZ"
@@ -44,7 +42,7 @@ class ProgramFrame:
                 "a probing program needs exactly X, Y and Z"
             )
         for name in LINEAR:
-            if not np.allclose(chain.link(name).direction, DIRECTIONS[name], atol=1e-12):
+            if not chain.link(name).points_along_letter:
                 raise DesignError(
                     f"axis {name} of {chain.name} does not point along its letter; "
                     "programs without a tilted plane need that"

@@ -10,11 +10,12 @@ from report.pages.residual_section import (
     Picture,
     gross_rows,
     pattern_pictures,
+    region_rows,
     residual_pictures,
     setting,
 )
 from report.plots import draw_on_standard, is_spread
-from report.words import comparison_sentence
+from report.words import comparison_sentence, remark_sentence, structure_words
 from twin.units import UM
 
 PAGE = "report.html"
@@ -48,6 +49,9 @@ def write_compare_page(
         title=title,
         found=found,
         sentence=comparison_sentence(found),
+        remarks=[remark_sentence(r) for r in found.remarks],
+        where=region_rows(found.where),
+        structure=[{"words": structure_words(s), "p": s.p_value} for s in found.structure],
         um=UM,
         on_standard=on_standard,
         pictures=residual_pictures(place, "residual", found.fit, z),

@@ -14,6 +14,7 @@ from report.pages.residual_section import (
     Picture,
     gross_rows,
     pattern_pictures,
+    region_rows,
     residual_pictures,
     setting,
 )
@@ -28,7 +29,14 @@ from report.plots import (
     is_spread,
 )
 from report.style import series
-from report.words import named_value, sizes, values, verdict_sentence
+from report.words import (
+    named_value,
+    remark_sentence,
+    sizes,
+    structure_words,
+    values,
+    verdict_sentence,
+)
 from twin.files import reading_columns
 from twin.library import kinds
 from twin.record import Touches
@@ -72,6 +80,12 @@ def write_diagnosis_page(
         title=title,
         result=result,
         sentence=verdict_sentence(result),
+        remarks=[remark_sentence(r) for r in result.remarks],
+        where=region_rows(result.where),
+        depends_on=[
+            {"variable": d.variable, "words": structure_words(d.structure), "p": d.p_value}
+            for d in result.depends_on
+        ],
         is_bad=result.verdict is Verdict.UNEXPLAINED,
         um=UM,
         steps=[_step(result, i) for i in range(len(result.steps))],
@@ -92,7 +106,7 @@ def _on_standard(result: Diagnosis, place: Path) -> list[Picture]:
     """The standard coloured by residual, before and after on one scale."""
     if not is_spread(result.run.touches):
         return []
-    fits = [("model to begin with", result.start)]
+    fits = [("starting model", result.start)]
     if len(result.steps) > 1:
         fits.append(("with what was added", result.fit))
     draw_on_standard(place / "on_standard.png", tuple(fits))
@@ -103,7 +117,7 @@ def _step(result: Diagnosis, i: int) -> dict[str, Any]:
     """Row of the table of steps."""
     step = result.steps[i]
     return {
-        "effect": step.effect.name if step.effect is not None else "model to begin with",
+        "effect": step.effect.name if step.effect is not None else "starting model",
         "size": sizes(step, most=2) if step.effect is not None else "",
         "p": step.p_value if step.effect is not None else None,
         "rms": step.fit.rms / UM,

@@ -6,12 +6,22 @@ from pathlib import Path
 from typing import Any
 
 from artefact.compare import Alone, IdentifiabilityReport
-from information.identifiability import NEVER, STRONG, Degree, FreedomWords, short, ties
+from information.identifiability import STRONG, Degree, FreedomFamily, Resolution, ties
 from report.maps import draw_ties
 from report.pages.design_result import Design
 from report.pages.page import digits
 from report.style import save
-from twin.machine import Link
+from report.words import (
+    combination_words,
+    family_words,
+    gist,
+    in_words,
+    pair_words,
+    reason_words,
+    resolution_words,
+    short,
+)
+from twin.machine import Chain, Link
 from twin.units import DEG, shown
 
 CORRELATION = "correlation.png"
@@ -30,22 +40,29 @@ def known_content(design: Design, folder: Path) -> dict[str, Any]:
         folder: The results.
     """
     known = design.known
-    resolved = [f for f in known.freedoms if f.resolved_by != NEVER]
-    never = [f for f in known.freedoms if f.resolved_by == NEVER]
+    never = [f for f in known.freedoms if f.first.resolution is Resolution.NEVER]
+    resolved = [f for f in known.freedoms if f not in never]
+    names = [short(name) for name in known.model.names]
+    units = [parameter.unit for _, parameter in known.model.parameters]
     return {
         "known": known,
+        "gist": gist(known),
         "effective": design.effective,
         "conditions": _conditions(known),
         "degree_rows": _degree_rows(known),
-        "alone": [_alone(a) for a in known.alone],
+        "alone": [_alone(a, known.chain) for a in known.alone],
         "combinations": [
-            {"words": _with_minus(c.words), "u": _size(c.u, c.unit), "gain": c.gain}
+            {
+                "words": _with_minus(combination_words(names, units, c.weights, c.importance)),
+                "u": _size(c.u, c.unit),
+                "gain": c.gain,
+            }
             for c in known.combinations[:_SHOWN_COMBINATIONS]
         ],
-        "resolved": _by_cause(resolved),
-        "never": _by_cause(never),
-        "resolved_count": sum(f.shapes for f in resolved),
-        "never_count": sum(f.shapes for f in never),
+        "resolved": _by_cause(resolved, known.chain),
+        "never": _by_cause(never, known.chain),
+        "resolved_count": sum(f.count for f in resolved),
+        "never_count": sum(f.count for f in never),
         **_ties(design, folder),
     }
 
@@ -55,9 +72,9 @@ def _size(value: float, unit: str) -> str:
     return f"{digits(value / factor, 2)} {label}"
 
 
-def _alone(alone: Alone) -> dict[str, str]:
+def _alone(alone: Alone, chain: Chain) -> dict[str, str]:
     expected, u = _size(alone.expected, alone.unit), _size(alone.u, alone.unit)
-    return {"words": alone.words, "expected": expected, "u": u}
+    return {"words": in_words(alone.name, chain), "expected": expected, "u": u}
 
 
 def _conditions(known: IdentifiabilityReport) -> list[tuple[str, str]]:
@@ -114,16 +131,20 @@ def _cell(degree: Degree) -> tuple[str, str]:
     return which, f"± {_size(degree.u, degree.unit)}"
 
 
-def _by_cause(freedoms: Sequence[FreedomWords]) -> list[dict[str, Any]]:
+def _by_cause(freedoms: Sequence[FreedomFamily], chain: Chain) -> list[dict[str, Any]]:
     """Freedoms under what would resolve them and what makes them, in the order of their firsts."""
 
-    def cause(freedom: FreedomWords) -> tuple[str, str]:
-        return freedom.resolved_by, freedom.why
+    def cause(family: FreedomFamily) -> tuple[str, str]:
+        return resolution_words(family.first), reason_words(family.first)
 
     order = list(dict.fromkeys(map(cause, freedoms)))
     ranked = sorted(freedoms, key=lambda f: order.index(cause(f)))
     return [
-        {"resolved_by": by, "why": why, "words": [_with_minus(f.words) for f in members]}
+        {
+            "resolved_by": by,
+            "why": why,
+            "words": [_with_minus(family_words(f, chain)) for f in members],
+        }
         for (by, why), members in groupby(ranked, key=cause)
     ]
 
@@ -133,4 +154,5 @@ def _ties(design: Design, folder: Path) -> dict[str, Any]:
     fit = design.machines[0].fit
     found = ties(fit.covariance, [short(name) for name in fit.names])
     save(draw_ties(found), folder / CORRELATION)
-    return {"ties": found, "ties_limit": STRONG, "ties_first": _SHOWN_TIES}
+    words = [pair_words(pair, found.names) for pair in found.pairs]
+    return {"ties": found, "tied": words, "ties_limit": STRONG, "ties_first": _SHOWN_TIES}

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from diagnosis.fit import Fit
-from diagnosis.residual import Structure
+from diagnosis.residual import Region, Structure
 from report.pages.page import p_value
 from report.plots import (
     draw_normal_plot,
@@ -17,7 +17,7 @@ from report.plots import (
     has_poses,
     ranked_variables,
 )
-from report.words import microns, stated_noise
+from report.words import microns, region_words, stated_noise, structure_words
 from twin.frames import Array
 from twin.record import Run
 from twin.units import UM
@@ -105,10 +105,29 @@ def pattern_pictures(
             continue
         seen.add((one.variables, one.period))
         if draw_pattern(place / f"pattern_{k}.png", fit, one, rng):
-            words = one.words[0].upper() + one.words[1:]
+            words = _capital(structure_words(one))
             words = f"{words}; probability by chance {p_value(one.p_value)}."
             out.append(Picture(f"pattern_{k}.png", words))
     return out
+
+
+def _capital(words: str) -> str:
+    return words[0].upper() + words[1:]
+
+
+def region_rows(found: Sequence[Region]) -> list[dict[str, Any]]:
+    """Regions where a model fails, with their conditions in words; lengths in µm."""
+    return [
+        {
+            "words": region_words(r.conditions),
+            "touches": int(r.rows.sum()),
+            "mean": r.mean / UM,
+            "u": r.u / UM,
+            "rms": r.rms / UM,
+            "p": r.p_value,
+        }
+        for r in found
+    ]
 
 
 def gross_rows(fit: Fit) -> list[dict[str, Any]]:

@@ -114,7 +114,7 @@ def _noise_lines(ax: Any, fit: Fit, u: float) -> None:
 
 
 def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
-    """Evidence of library effects, each by itself added to the model to begin with.
+    """Evidence of library effects, each by itself added to the starting model.
 
     Those that belong to a found effect, or cannot be told from it, bear its colour.
 

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 
 from diagnosis.answer import Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported
-from diagnosis.residual import Comparison
+from diagnosis.residual import Comparison, Condition, Shape, Side, Structure
 from twin.model import Tunable
 from twin.record import Run
 from twin.units import UM
-from twin.words import digits, listed, span, with_uncertainty
+from twin.words import condition, digits, listed, noun, span, with_uncertainty
 
 _UNITS = (
     ("_um_per_m_K", "µm/(m K)"),
@@ -111,9 +111,38 @@ def excess(fit: Fit) -> float:
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
 
 
-def clause(words: str) -> str:
-    """Words on what a residual does, as a clause that stands after a colon."""
-    return f"it {words}" if words.startswith("varies") else words
+def region_words(conditions: Sequence[Condition]) -> str:
+    """Conditions as a reader says them, `B > 60 deg and time < 40 min`."""
+    parts = []
+    for name in dict.fromkeys(c.variable for c in conditions):
+        own = {c.side: c.bound for c in conditions if c.variable == name}
+        if Side.IS in own:
+            parts.append(f"{'in set-up' if name == 'setup' else 'on'} {own[Side.IS]}")
+            continue
+        low, high = own.get(Side.FROM, -math.inf), own.get(Side.BELOW, math.inf)
+        parts.append(condition(name, float(low), float(high)))
+    return " and ".join(parts)
+
+
+def structure_words(found: Structure) -> str:
+    """What a residual does, as it stands in a table: `varies with X and Y, along Z`."""
+    names = listed([noun(name) for name in found.variables])
+    along = "the normal" if found.direction == "normal" else found.direction
+    match found.shape:
+        case Shape.SMOOTH:
+            return f"varies with {names}, along {along}"
+        case Shape.WAVE:
+            return f"a wave in time, every {span(found.period)}, along {along}"
+        case Shape.NEIGHBOURS:
+            return f"neighbours in {names} agree"
+        case Shape.CROWD:
+            return f"gross errors crowd together in {names}"
+
+
+def structure_clause(found: Structure) -> str:
+    """The same as a clause that stands after a colon."""
+    it = "it " if found.shape is Shape.SMOOTH else ""
+    return it + structure_words(found)
 
 
 def _fall(diagnosis: Diagnosis) -> str:
@@ -152,13 +181,15 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
             f"{_fall(diagnosis)}; the noise is {noise_words(diagnosis.fit)}."
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
-        words = "; ".join(dict.fromkeys(clause(d.words) for d in diagnosis.depends_on[:2]))
+        words = "; ".join(
+            dict.fromkeys(structure_clause(d.structure) for d in diagnosis.depends_on[:2])
+        )
         was = "was" if len(steps) == 1 else "were"
         what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
         return (
             f"Something is left that no effect of the library accounts for: "
             f"{microns(excess(diagnosis.fit))} rms beyond the stated noise of "
-            f"{microns(stated_noise(diagnosis.run))}. It is no noise: "
+            f"{microns(stated_noise(diagnosis.run))}. It is not noise: "
             f"{words or 'it varies with nothing that was recorded'}.{what}"
         )
     fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""
@@ -186,7 +217,7 @@ def comparison_sentence(found: Comparison) -> str:
         )
     if not found.structure:
         return f"{text} What is left looks like noise."
-    return f"{text} What is left is not noise: {clause(found.structure[0].words)}."
+    return f"{text} What is left is not noise: {structure_clause(found.structure[0])}."
 
 
 def rivals_words(step: Step, most: int = 2) -> str:

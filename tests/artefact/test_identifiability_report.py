@@ -14,17 +14,14 @@ from artefact.compare.alternatives import (
     setup_parameters,
     touches_reached_in,
 )
-from artefact.compare.identifiability import (
-    as_json,
-    identifiability_report,
-    write_identifiability,
-)
+from artefact.compare.identifiability import identifiability_report
 from artefact.layout.sites import Blank
 from artefact.reach.touchable import ProbeReach
 from artefact.worth.touch_criterion import criterion_for, random_touches
 from information.identifiability.estimable_combinations import combinations
-from information.identifiability.separation import NEVER, SIDEWAYS
+from information.identifiability.freedoms import Resolution
 from probe_paths.plan.probe import Probe
+from report.words.identifiability_file import as_json, write_identifiability
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from twin.machine.chain import Axis, make_chain
@@ -80,8 +77,9 @@ def test_a_second_stylus_shows_the_tilts_of_the_ram_and_a_second_set_up_shows_no
     assert set(gained.values()) == {0}
     by = [f.resolved_by for f in known.gauge.freedoms]
     assert by.count(SECOND_STYLUS) == 2 * SHAPES
-    assert by.count(SIDEWAYS) == 2 * SHAPES  # ECY and ECZ turn about the spindle's line
-    assert by.count(NEVER) + 4 * SHAPES == len(known.gauge.freedoms)
+    how = [f.resolution for f in known.gauge.freedoms]
+    assert how.count(Resolution.SIDEWAYS) == 2 * SHAPES  # ECY and ECZ turn about the spindle's line
+    assert how.count(Resolution.NEVER) + 4 * SHAPES == len(known.gauge.freedoms)
     assert known.gauge.rank + len(known.gauge.freedoms) == known.gauge.parameters
 
 
@@ -133,7 +131,7 @@ def test_combinations_know_nothing_of_the_set_up(criterion, requests):
     W = criterion.whitened(requests)
     free = setup_parameters(criterion)
     unit = ["mm"] * W.shape[1]
-    found = combinations(W, criterion.prior_sd, criterion.model.names, unit, free.tolist())
+    found = combinations(W, criterion.prior_sd, unit, free.tolist())
     kept = np.setdiff1d(np.arange(W.shape[1]), free)
     U, s, _ = np.linalg.svd(W[:, free], full_matrices=False)
     U = U[:, s > 1e-9 * s[0]]
@@ -167,7 +165,7 @@ def test_the_file_says_what_the_record_says(known, tmp_path):
     assert data["format"] == "identifiability/1"
     assert data["rank"] == known.gauge.rank
     assert len(data["freedoms"]) == len(known.gauge.freedoms)
-    assert sum(line.shapes for line in known.freedoms) == len(known.gauge.freedoms)
+    assert sum(family.count for family in known.freedoms) == len(known.gauge.freedoms)
     words = [f["words"] for f in data["freedoms"]]
     assert "set-up rotation about Z (EC0w) = - zero position of C (EC0C)" in words
     assert data["readings"]["B_deg"][0] == pytest.approx(-90.0, abs=3.0)

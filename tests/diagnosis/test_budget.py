@@ -2,18 +2,18 @@
 
 import diagnosis.search.search_loop as rounds
 from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.residual.run_remarks import SearchEnded
 from diagnosis.search.selection import MOST_SETS, Budget
 from twin.library.catalogue import parse_effect
 
 KEY = (8, "hmc1995", ("thermal-expansion(Y,scaleY)",))
 LIBRARY = ("thermal-expansion(Y,scaleY)", "backlash(X)", "drift", "probe-radius", "probe-lobing")
-ENDED = f"the search was ended after {MOST_SETS:.0f} sets"
 
 
 def told(run):
     library = [parse_effect(name, run.touches.chain) for name in LIBRARY]
     d = diagnose(run, candidates=library)
-    return [e.name for e in d.found], any(ENDED in line for line in d.remarks)
+    return [e.name for e in d.found], SearchEnded(MOST_SETS) in d.remarks
 
 
 def test_a_usual_search_is_far_from_its_limit(case, monkeypatch) -> None:

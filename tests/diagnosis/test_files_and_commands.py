@@ -11,12 +11,13 @@ from diagnosis.files.diagnosis_file import write_diagnosis
 from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
-from diagnosis.fit.unit_mistakes import mixed_units
+from diagnosis.fit.unit_mistakes import unit_mistake
 from diagnosis.residual.run_remarks import remarks
 from matstd.cli import main
+from report.words.remark_words import remark_sentence
 from twin.errors import BadFile
 from twin.library.ordinary import ordinary_model
-from twin.record.copies import counted_once
+from twin.record.copies import without_copies
 from twin.units import NM, UM
 
 NUMBER = (int, float)
@@ -477,7 +478,7 @@ def test_units_mixed_up_are_named(case, key, what) -> None:
     run = case(*key).run
     run = replace(run, deviation=run.deviation * deviation, u=run.u * u)
     told = remarks(fit_run(run, ordinary_model(run.touches.chain)))
-    assert phrase in told[0]
+    assert phrase in remark_sentence(told[0])
 
 
 @pytest.mark.parametrize("factor", [0.1, 1.0, 10.0])
@@ -486,10 +487,10 @@ def test_good_and_bad_machines_are_not_mixed_units(case, factor) -> None:
     run = case(2, "hsm600u").run
     fit = fit_run(run, ordinary_model(run.touches.chain))
     deviation = run.deviation * factor + fit.residual * (1.0 - factor)
-    told = mixed_units(
+    told = unit_mistake(
         fit_run(replace(run, deviation=deviation), ordinary_model(run.touches.chain))
     )
-    assert told == []
+    assert told is None
 
 
 def test_a_run_pasted_many_times_counts_once(case) -> None:
@@ -499,11 +500,11 @@ def test_a_run_pasted_many_times_counts_once(case) -> None:
     pasted = run[np.tile(np.arange(n), 3)]
     time = pasted.touches.time + np.repeat(np.arange(3), n) * (np.ptp(run.touches.time) + 15.0)
     pasted = replace(pasted, touches=replace(pasted.touches, time=time))
-    once = counted_once(pasted)
+    once = without_copies(pasted)
     assert len(once) == n
     assert any(f"{2 * n} rows repeat the readings" in line for line in once.remarks)
-    assert counted_once(once) is once
-    again = counted_once(run[np.r_[0, np.arange(n)]])
+    assert without_copies(once) is once
+    again = without_copies(run[np.r_[0, np.arange(n)]])
     assert len(again) == n
     assert "1 row stands twice" in again.remarks[0]
 
@@ -520,7 +521,7 @@ def test_replicates_are_no_copies(case) -> None:
     rounded = np.round(noisy / shown) * shown
     twice = replace(twice, deviation=rounded, touches=replace(twice.touches, time=time))
     assert (rounded[:n] == rounded[n:]).sum() > 50
-    assert counted_once(twice) is twice
+    assert without_copies(twice) is twice
 
 
 def test_millimetres_in_a_file(changed, tmp_path) -> None:

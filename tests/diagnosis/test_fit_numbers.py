@@ -10,7 +10,14 @@ import pytest
 
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.linear import left_out, solve
-from diagnosis.residual.run_remarks import remarks
+from diagnosis.residual.run_remarks import (
+    FewTouches,
+    NoiseMisstated,
+    OutliersKept,
+    OutliersLeftOut,
+    WorseThanReplicates,
+    remarks,
+)
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 from twin.errors import NotEnoughData
 from twin.library.ordinary import ordinary_model
@@ -116,16 +123,15 @@ def test_chips_are_found_told_and_kept_out(case, fitted, seed) -> None:
     assert np.flatnonzero(fit.gross.rows).tolist() == truth["chips"]
     np.testing.assert_array_equal(fit.used, ~fit.gross.rows)
     assert np.min(fit.residual[truth["chips"]]) > 10.0 * UM
-    told = [line for line in remarks(fit) if "gross error" in line]
-    assert len(told) == 1
-    for line in run.line[truth["chips"]]:
-        assert str(line) in told[0].partition(": line")[2]
+    (told,) = [r for r in remarks(fit) if isinstance(r, OutliersLeftOut)]
+    assert sorted(told.lines) == sorted(run.line[truth["chips"]])
+    assert told.largest == pytest.approx(fit.residual[truth["chips"]].max())
 
 
 def test_nothing_is_dropped_where_nothing_stands_out(fitted) -> None:
     fit = fitted(1, "hsm600u")
     assert fit.used.all()
-    assert not any("left out" in line for line in remarks(fit))
+    assert not any(isinstance(r, OutliersLeftOut) for r in remarks(fit))
 
 
 def test_too_many_outliers_are_structure_and_stay(case) -> None:
@@ -135,7 +141,7 @@ def test_too_many_outliers_are_structure_and_stay(case) -> None:
     model = ordinary_model(run.touches.chain)
     fit = fit_run(replace(run, deviation=run.deviation + off), model)
     assert fit.used.all()
-    assert any("more touches stand out" in line for line in remarks(fit))
+    assert OutliersKept() in remarks(fit)
 
 
 @pytest.mark.parametrize("factor", [0.45 / 0.6, 0.85 / 0.6])
@@ -145,7 +151,8 @@ def test_noise_wrongly_stated_is_recognised(case, factor) -> None:
     fit = fit_run(replace(run, u=run.u / factor), ordinary_model(run.touches.chain))
     assert fit.noise.factor == pytest.approx(factor, rel=SIGMAS / np.sqrt(2.0 * fit.noise.dof))
     assert fit.noise.is_wrongly_stated
-    assert any("scatter by" in line and "is stated" in line for line in remarks(fit))
+    (told,) = [r for r in remarks(fit) if isinstance(r, NoiseMisstated)]
+    assert told.found / told.stated == fit.noise.factor
 
 
 @pytest.mark.parametrize("seed", [3, 4, 5])
@@ -159,7 +166,7 @@ def test_noise_of_hard_cases_is_found_beside_chips(case, fitted, seed) -> None:
 def test_noise_rightly_stated_is_left_alone(fitted) -> None:
     fit = fitted(1, "hsm600u")
     assert fit.noise.factor == pytest.approx(1.0, abs=SIGMAS / np.sqrt(2.0 * fit.noise.dof))
-    assert not any("as stated" in line for line in remarks(fit))
+    assert not any(isinstance(r, NoiseMisstated) for r in remarks(fit))
 
 
 def test_the_machine_does_not_depend_on_where_the_standard_was_clamped(case, fitted) -> None:
@@ -202,7 +209,7 @@ def test_fewer_touches_than_parameters(case) -> None:
         u = np.sqrt(np.diag(fit.covariance))
         assert np.all(u <= sd * fit.widened * (1.0 + SAME))
         squares.append(np.mean(((fit.theta - theta) / u) ** 2))
-    assert any("the prior decides the rest" in line for line in remarks(fit))
+    assert FewTouches(len(few), len(sd)) in remarks(fit)
     assert fit.solution.effective_parameters < len(few)
     error = np.std(squares) / np.sqrt(len(squares))
     assert np.mean(squares) == pytest.approx(1.0, abs=SIGMAS * error)
@@ -229,5 +236,6 @@ def test_replicates_tell_noise_from_what_the_model_lacks(case) -> None:
     # the residual holds both
     both = np.hypot(0.9, 0.6) / 0.6
     assert fit.noise.factor == pytest.approx(both, rel=SIGMAS / np.sqrt(2.0 * len(run)))
-    assert any("as large as the scatter of" in line for line in remarks(fit))
+    (told,) = [r for r in remarks(fit) if isinstance(r, WorseThanReplicates)]
+    assert told.ratio == pytest.approx(fit.noise.factor / fit.noise.replicates)
     assert fit_run(run, fit.model).noise.replicates is None

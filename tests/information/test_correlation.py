@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from information.identifiability.correlation import correlation, ties
-from information.identifiability.parameter_words import short
 from report.maps.correlation_picture import draw_ties
+from report.words.identifiability_words import pair_words
+from report.words.parameter_words import short
 from twin.errors import ShapeMismatch
 
 NAMES = (
@@ -32,17 +33,22 @@ def test_two_errors_of_which_only_the_sum_is_seen():
     found = ties(covariance(), NAMES)
     (pair,) = found.pairs
     assert pair.r == pytest.approx((0.02 - 2.0) / (0.02 + 2.0))  # -0.980
-    assert pair.words == (
+    assert pair_words(pair, NAMES) == (
         "geometric(EXX,linear) and location(EX0C) (r = -0.980): only their sum is known"
     )
     assert found.groups == ((0, 1),)
 
 
+def said(C):
+    """The strongest tie in words."""
+    return pair_words(ties(C, NAMES[:2]).pairs[0], NAMES)
+
+
 def test_a_full_tie_is_not_shown_as_a_full_one():
     C = np.array([[1.0, 2.0], [2.0, 4.0]])
-    assert ties(C, NAMES[:2]).pairs[0].words.endswith("(r > 0.999): only their difference is known")
+    assert said(C).endswith("(r > 0.999): only their difference is known")
     C[0, 1] = C[1, 0] = -2.0
-    assert ties(C, NAMES[:2]).pairs[0].words.endswith("(r < -0.999): only their sum is known")
+    assert said(C).endswith("(r < -0.999): only their sum is known")
 
 
 def test_correlations_are_those_of_numpy_on_samples():
@@ -65,7 +71,7 @@ def test_ties_chain_into_groups_and_the_largest_comes_first():
     assert [set(g) for g in found.groups] == [{0, 2, 4}, {1, 5}]
     assert found.groups[0][0] == 4  # of the strongest ties, and its nearest beside it
     assert found.groups[0][1] == 0
-    assert [p.words[:7] for p in found.pairs] == ["b and f", "a and e", "c and e"]
+    assert [(p.first, p.second) for p in found.pairs] == [(1, 5), (0, 4), (2, 4)]
     assert ties(r, "abcdef", strong=0.999).pairs == ()
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from information.identifiability.degrees import HIGHEST, SUPPORTED, supported_degrees
+from report.words.identifiability_words import degree_words
 from sensitivity.population.sampling import Population
 from twin.machine.chain import Axis, make_chain
 from twin.machine.symbols import Family
@@ -88,5 +89,5 @@ def test_what_no_touch_moves_has_no_degree(model):
     for symbol in ("EXY", "EZZ", "ECZ"):
         assert degrees[symbol].supported == ()
         assert degrees[symbol].largest == 0
-    assert degrees["ECZ"].words == "roll of Z (ECZ): no degree"
+    assert degree_words(degrees["ECZ"], model.chain) == "roll of Z (ECZ): no degree"
     assert degrees["EXX"].largest > 0

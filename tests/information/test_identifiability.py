@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from information.identifiability.estimable_combinations import combinations
-from information.identifiability.freedom_words import in_families
-from information.identifiability.nullspace import seen, sparse
-from information.identifiability.separation import NEVER, SIDEWAYS, identifiability
+from information.identifiability.freedoms import Reason, Resolution, in_families
+from information.identifiability.nullspace import rank_analysis, sparse
+from information.identifiability.separation import identifiability
+from report.words.identifiability_words import family_words, freedom_words
 from sensitivity.first_order.workspace import Workspace, latin_hypercube
 from sensitivity.population.sampling import Population
 from twin.machine.chain import Axis, make_chain
@@ -95,7 +96,7 @@ def test_every_freedom_is_one_and_they_are_independent(case):
     for freedom in found.freedoms:
         z = np.zeros(len(place))
         z[place[freedom.parameter]] = 1.0
-        for name, value in freedom.alike:
+        for name, value in freedom.values.items():
             z[place[name]] = -value
         moved = np.linalg.norm(A * z, axis=0).max()
         assert np.linalg.norm(A @ z) <= 1e-7 * max(moved, 1e-6 * np.linalg.norm(A, axis=0).max())
@@ -105,23 +106,26 @@ def test_every_freedom_is_one_and_they_are_independent(case):
 
 
 def test_words_are_those_worked_by_hand(case):
-    name, _, _, found = case
-    words = {f.words: f for f in found.freedoms}
+    name, model, _, found = case
+    words = {freedom_words(f, model.chain): f for f in found.freedoms}
     # -EC0Y y in X: over a range of 200 mm each way a linear straightness of -0.2 um a urad
     squareness = (
         "1 µrad of squareness of Y about Z (EC0Y) = - 0.2 µm of linear straightness of Y in X (EXY)"
     )
-    assert words[squareness].resolved_by == NEVER
-    assert words[squareness].why == "a squareness is the slope of a straightness"
+    assert words[squareness].resolution is Resolution.NEVER
+    assert words[squareness].reason is Reason.SQUARENESS
     if name in ("three axes", "table/table"):  # the ball hangs 160 mm below Z, which ends the chain
         tilt = words[
             "1 µrad of linear tilt of Z about Y (EBZ) = "
             "- 0.16 µm of linear straightness of Z in X (EXZ)"
         ]
         assert tilt.resolved_by == "a second stylus length"
-        assert words["tool length (EZ0t) = zero position of Z (EZ0Z)"].resolved_by == NEVER
-        assert words["linear roll of Z (ECZ) moves no touch"].resolved_by == SIDEWAYS
-        lines = {line.words: line.shapes for line in in_families(found.freedoms, machine(name))}
+        preset = words["tool length (EZ0t) = zero position of Z (EZ0Z)"]
+        assert preset.resolution is Resolution.NEVER
+        roll = words["linear roll of Z (ECZ) moves no touch"]
+        assert roll.resolution is Resolution.SIDEWAYS
+        families = in_families(found.freedoms)
+        lines = {family_words(family, model.chain): family.count for family in families}
         assert lines[f"roll of Z (ECZ) moves no touch {EACH_SHAPE}"] == len(SHAPES)
         family = "1 µrad of tilt of Z about Y (EBZ) = - 0.16 µm of straightness of Z in X (EXZ)"
         assert lines[f"{family} {EACH_SHAPE}"] == len(SHAPES)
@@ -143,7 +147,7 @@ def test_three_axes_by_counting_monomials():
         e for e in every.effects if e.name.startswith("location") or e.name.endswith(",linear)")
     )
     model, q = Model(chain, kept), poses(chain)
-    found = seen(rows(model, q, 160.0) * model.prior_sd)
+    found = rank_analysis(rows(model, q, 160.0) * model.prior_sd)
     x, y, z = (q[:, chain.axis_index(a)] for a in "XYZ")
     one, zero = np.ones(len(q)), np.zeros(len(q))
     tool, up = np.stack([x, y, z - 160.0]), np.eye(3)
@@ -166,10 +170,10 @@ def test_a_second_stylus_adds_what_hangs_on_the_ram():
     """On the table/table machine the tilts of Z: about X and Y, in four distributions each."""
     model, q, found = found_on("table/table")
     resolved = [f for f in found.freedoms if f.resolved_by == "a second stylus length"]
-    tilts = [f for f in resolved if "tilt of Z" in f.words]
+    tilts = [f for f in resolved if "tilt of Z" in freedom_words(f, model.chain)]
     assert len(tilts) == 8
     more = rows(model, q, np.resize(LENGTHS, len(q))) * model.prior_sd
-    assert seen(more).rank == found.rank + len(resolved)
+    assert rank_analysis(more).rank == found.rank + len(resolved)
 
 
 def test_sparse_directions_are_found_again():
@@ -180,7 +184,7 @@ def test_sparse_directions_are_found_again():
     planted[1, [4, 6, 9]] = 1.0, 0.5, -3.0
     planted[2, 11] = 1.0
     W = rng.normal(size=(40, 12)) @ (np.eye(12) - np.linalg.pinv(planted) @ planted)
-    got = sparse(seen(W).null)
+    got = sparse(rank_analysis(W).null)
     found = sorted(np.flatnonzero(z).tolist() for _, z in got)
     # 1 in the place of 4 makes a triple as small
     assert found in ([[1, 4], [4, 6, 9], [11]], [[1, 4], [1, 6, 9], [11]])
@@ -192,7 +196,7 @@ def test_combinations_have_the_textbooks_uncertainty():
     rng = np.random.default_rng(5)
     W, sd = rng.normal(size=(30, 4)), np.array([1.0, 2.0, 0.5, 1.0])
     covariance = np.diag(sd) @ np.linalg.inv(np.eye(4) + W.T @ W) @ np.diag(sd)
-    for c in combinations(W, sd, tuple("abcd"), ["mm"] * 4):
+    for c in combinations(W, sd, ["mm"] * 4):
         assert c.u == pytest.approx(np.sqrt(c.weights @ covariance @ c.weights), rel=1e-9)
         prior = np.sqrt(np.sum((c.weights * sd) ** 2))
         assert c.gain == pytest.approx(prior / c.u, rel=1e-9)

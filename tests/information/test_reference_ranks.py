@@ -9,7 +9,7 @@ its own ordinary model: several set-ups, linear, parabolic and sinusoidal errors
 import numpy as np
 import pytest
 
-from information.identifiability.nullspace import seen
+from information.identifiability.nullspace import rank_analysis
 from sensitivity.first_order.workspace import Workspace, latin_hypercube
 from sensitivity.population.sampling import Population
 from twin.effects.geometric import ComponentError, HigherOrder
@@ -75,12 +75,12 @@ def test_rank_is_that_of_the_reference(chain, order, expected):
     model, machine = reference_model(chain, *order)
     assert machine == expected[0]
     assert len(model.parameters) == machine + 9
-    assert seen(rows(model, [160.0])).rank == expected[1]
+    assert rank_analysis(rows(model, [160.0])).rank == expected[1]
 
 
 def test_several_stylus_lengths_show_what_the_reference_says(chain):
     model, _ = reference_model(chain, 3, 2)
-    assert seen(rows(model, LENGTHS)).rank == SEVERAL_LENGTHS
+    assert rank_analysis(rows(model, LENGTHS)).rank == SEVERAL_LENGTHS
 
 
 @pytest.mark.parametrize(("notation", "expected"), STATED.items())
@@ -98,5 +98,5 @@ def test_every_set_up_more_adds_six(notation, expected):
         own = A[:, :, of_w] * (np.arange(len(q)) % setups == setup)[:, None, None]
         parts.append(own)
     W = np.concatenate(parts, axis=2).reshape(3 * len(q), -1)
-    assert seen(A.reshape(3 * len(q), -1)).rank == rank - 6 * (setups - 1)
-    assert seen(W).rank == rank
+    assert rank_analysis(A.reshape(3 * len(q), -1)).rank == rank - 6 * (setups - 1)
+    assert rank_analysis(W).rank == rank

@@ -70,7 +70,7 @@ def test_an_existing_run_file_is_not_overwritten(folder, capsys):
     (folder / "out" / "run.csv").write_text("a year of measurements", encoding="utf-8")
     assert command(folder) == 2
     message = capsys.readouterr().err
-    assert "is there already" in message
+    assert "already exists" in message
     assert message.count("\n") == 1
     kept = (folder / "out" / "run.csv").read_text(encoding="utf-8")
     assert kept == "a year of measurements"
@@ -144,7 +144,7 @@ def test_logs_of_a_control_become_the_run_that_was_simulated(folder, capsys):
     assert np.abs(made.deviation - read.deviation).max() < NM
     assert np.array_equal(made.touches.pose, read.touches.pose)
     assert evaluated(folder) == 2
-    assert "is there already" in capsys.readouterr().err
+    assert "already exists" in capsys.readouterr().err
 
 
 def test_a_log_that_stopped_is_used_and_told(folder, capsys):

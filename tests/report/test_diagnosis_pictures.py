@@ -30,7 +30,12 @@ from report.plots.spatial_pictures import (
     is_spread,
     pose_vectors,
 )
-from report.words.diagnosis_words import named_value, verdict_sentence
+from report.words.diagnosis_words import (
+    named_value,
+    region_words,
+    structure_words,
+    verdict_sentence,
+)
 from twin.effects.backlash import KIND as BACKLASH
 from twin.effects.periodic import KIND as PERIODIC
 from twin.effects.thermal_lag import KIND as LAG
@@ -320,7 +325,7 @@ def test_an_unexplained_run_says_what_is_left(strange, tmp_path):
     stated = np.sqrt(np.mean(strange.run.u**2))
     left = stated * np.sqrt(strange.fit.noise.factor**2 - 1.0) / UM
     assert f"{left:.2f} µm rms beyond the stated noise of {stated / UM:.2f} µm" in sentence
-    assert strange.depends_on[0].words in text
+    assert structure_words(strange.depends_on[0].structure) in text
     assert (tmp_path / "pictures" / "pattern_0.png").exists()
 
 
@@ -347,7 +352,7 @@ def test_page_of_a_comparison_has_its_numbers(warm, tmp_path):
     line = found.run.line[found.worst]
     assert f"line {line}" in text
     for region in found.where:
-        assert region.words in text
+        assert region_words(region.conditions) in text
         assert f"{region.mean / UM:+.2f}" in text
     for group in (*found.poses, *found.features):
         row = f"{group.name} {group.touches} {group.mean / UM:+.2f} {group.rms / UM:.2f}"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made_up import MACHINES, made_up
 
-from twin.effects.thermal_lag import lagged
+from twin.effects.thermal_lag import first_order_lag
 from twin.library.catalogue import parse_effect, proposals
 from twin.library.ordinary import ordinary_model
 from twin.machine.contribution import Contribution
@@ -147,7 +147,7 @@ def test_lag_of_a_ramp_in_closed_form() -> None:
     t = np.concatenate([[0.0], np.sort(np.random.default_rng(1).uniform(0.0, 9000.0, 200))])
     tau, rate = 1300.0, 2.0e-3
     expected = rate * (t - tau * -np.expm1(-t / tau))
-    np.testing.assert_allclose(lagged(t, rate * t, tau), expected, atol=1e-12)
+    np.testing.assert_allclose(first_order_lag(t, rate * t, tau), expected, atol=1e-12)
 
 
 def test_lag_against_small_steps() -> None:
@@ -161,7 +161,7 @@ def test_lag_against_small_steps() -> None:
         out[round(float(t), 3)] = y
         y += step * (d - y) / tau
     expected = [out[float(t)] for t in knots]
-    np.testing.assert_allclose(lagged(knots, drive, tau), expected, atol=2e-4)
+    np.testing.assert_allclose(first_order_lag(knots, drive, tau), expected, atol=2e-4)
 
 
 def test_lag_after_steps_of_the_spindle() -> None:
@@ -172,7 +172,7 @@ def test_lag_after_steps_of_the_spindle() -> None:
     # what is set at the first record has been set since time zero
     warm = [1 - np.exp(-100 / tau), 1 - np.exp(-250 / tau), 1 - np.exp(-400 / tau)]
     warm.append(warm[-1] * np.exp(-300 / tau))
-    np.testing.assert_allclose(lagged(t, speed, tau, steps=True), warm, atol=1e-12)
+    np.testing.assert_allclose(first_order_lag(t, speed, tau, steps=True), warm, atol=1e-12)
 
 
 def test_lag_does_not_mind_the_order_of_the_touches() -> None:
@@ -180,8 +180,10 @@ def test_lag_does_not_mind_the_order_of_the_touches() -> None:
     t, d = np.sort(rng.uniform(0.0, 5000.0, 50)), rng.normal(size=50)
     mixed = rng.permutation(50)
     for steps in (False, True):
-        sorted_lag = lagged(t, d, 800.0, steps)
-        np.testing.assert_allclose(lagged(t[mixed], d[mixed], 800.0, steps), sorted_lag[mixed])
+        sorted_lag = first_order_lag(t, d, 800.0, steps)
+        np.testing.assert_allclose(
+            first_order_lag(t[mixed], d[mixed], 800.0, steps), sorted_lag[mixed]
+        )
 
 
 def test_touching_both_sides_is_needed_for_backlash() -> None:

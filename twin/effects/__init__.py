@@ -1,4 +1,8 @@
-"""The library of effects, one kind a file."""
+"""The library of effects, one kind a file: a class with its formula and a `Kind` that describes it.
+
+A new effect is a new file here and one line in `twin.library.catalogue`; the exact twin, the fit,
+the search and the reports know it from then on.
+"""
 
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError

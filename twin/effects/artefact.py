@@ -1,6 +1,6 @@
 """What the standard and its set-up do: expand, slip and drift."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,7 +8,17 @@ from numpy.typing import NDArray
 
 from twin.frames import Array
 from twin.machine import Chain
-from twin.model import Effect, Inner, Kind, Parameter, Term, Where, counted, sensor_record, sensors
+from twin.model import (
+    Effect,
+    Inner,
+    Kind,
+    Parameter,
+    Term,
+    Where,
+    check_count,
+    sensor_record,
+    sensors,
+)
 from twin.record import Touches
 from twin.units import T_REF, UM, URAD
 
@@ -23,17 +33,13 @@ INSTANTS = 256
 
 @dataclass(frozen=True)
 class ArtefactExpansion:
-    """Expansion of the standard with the temperature of a sensor.
+    """The standard expands with the temperature of a sensor.
 
-    ``shift = alpha (T - 20 degC) p``, p the contact point in the table frame: from the middle of
-    the table, which carries the standard along, in every direction alike. One parameter, alpha,
-    1/K: steel 10 to 12, aluminium 23, Invar 0.6 to 1.6 um/(m K).
+    It expands from the origin of the table frame, which carries it along, in every direction alike;
+    p is the contact point in the table frame. One temperature holds for the whole body.
 
     Attributes:
         sensor: Name of the sensor.
-
-    Reference:
-        ISO 1 (20 degC).
     """
 
     sensor: str
@@ -61,11 +67,9 @@ class ArtefactExpansion:
 class ArtefactSlip:
     """The standard slips on the table at an unknown instant, until it is set up again.
 
-    ``shift = e + r x (p - c)`` for the later touches of the set-up in which the instant lies, c the
-    mean contact point of that set-up in the table frame; inner parameter, the instant. Parameters
-    mm and rad: a few um and tens of urad.
-
-    The touches must be the whole run, for c and for the set-up.
+    It acts on the later touches of the set-up in which the instant lies; c is the mean contact
+    point of that set-up in the table frame. The touches must be the whole run, for c and for the
+    set-up.
 
     Attributes:
         instant: s since the start of the run.
@@ -128,11 +132,7 @@ class ArtefactSlip:
 class Drift:
     """The set-up creeps at a constant rate.
 
-    ``shift = v t``, t since the start of the run, in the directions of the table frame. Parameters
-    mm/h: 1 to 5 um/h.
-
-    Reference:
-        ISO 230-3 (environmental temperature variation error, drift tests).
+    t counts from the start of the run; v is in the directions of the table frame.
     """
 
     kind = "drift"
@@ -150,16 +150,8 @@ class Drift:
 
 
 def _make_expansion(chain: Chain, arguments: Sequence[str]) -> Effect:
-    counted("artefact-expansion(sensor)", arguments, 1, 1)
+    check_count("artefact-expansion(sensor)", arguments, 1, 1)
     return ArtefactExpansion(arguments[0])
-
-
-def _maker(word: str, effect: Effect) -> Callable[[Chain, Sequence[str]], Effect]:
-    def make(chain: Chain, arguments: Sequence[str]) -> Effect:
-        counted(word, arguments, 0, 0)
-        return effect
-
-    return make
 
 
 def _propose_expansion(touches: Touches) -> Iterable[Effect]:
@@ -178,33 +170,27 @@ def _propose_drift(touches: Touches) -> Iterable[Effect]:
 EXPANSION = Kind(
     word="artefact-expansion",
     arguments="sensor",
-    formula="shift = alpha (T - 20 degC) p, p the contact point in the table frame",
+    formula="shift = alpha (T - 20 degC) p",
     units="alpha: µm/(m K)",
     typical="steel 10 to 12, aluminium 23, Invar 0.6 to 1.6 µm/(m K)",
-    source="ISO 1",
+    source="ISO 1 (20 degC)",
     make=_make_expansion,
     propose=_propose_expansion,
     classes=(ArtefactExpansion,),
 )
-SLIP = Kind(
-    word="artefact-slip",
-    arguments="",
+SLIP = Kind.of(
+    ArtefactSlip,
     formula="shift = e + r x (p - c) after an unknown instant, to the end of the set-up",
     units="e: µm; r: µrad; instant: s",
-    typical="2 to 20 µm",
+    typical="2 to 20 µm, some tens of µrad",
     source="clamping practice; rigid motion",
-    make=_maker("artefact-slip", ArtefactSlip()),
     propose=_propose_slip,
-    classes=(ArtefactSlip,),
 )
-DRIFT = Kind(
-    word="drift",
-    arguments="",
-    formula="shift = v t, table frame",
+DRIFT = Kind.of(
+    Drift,
+    formula="shift = v t",
     units="v: µm/h",
     typical="1 to 5 µm/h",
-    source="ISO 230-3 (drift tests)",
-    make=_maker("drift", Drift()),
+    source="ISO 230-3 (environmental temperature variation error, drift tests)",
     propose=_propose_drift,
-    classes=(Drift,),
 )

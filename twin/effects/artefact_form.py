@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.frames import Array
 from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Where, counted
+from twin.model import Kind, Parameter, Term, Where, check_count
 from twin.record import Touches
 from twin.units import UM
 
@@ -19,21 +19,16 @@ FORM_TOUCHES = 30
 
 @dataclass(frozen=True)
 class ArtefactForm:
-    """Smooth form deviation of one patch from its calibration.
+    """The form of one patch deviates smoothly from its calibration.
 
-    ``bias = sum_(i+j<=5) a_ij p_i(v) p_j(w)/2``, ``p_i = sqrt(2 i + 1) P_i`` the Legendre
-    polynomials of unit mean square over the touched rectangle, v and w in [-1, 1] along the two
-    longest directions of the touched points. The length of (a_ij) is thus the amplitude of a wave
-    ``a sin(k v) sin(l w)`` of the same mean square. Parameters mm: together 0.5 to 2 um, expected
-    to fall with the degree.
-
-    The touches must be the whole run: its points on the patch give the rectangle.
+    ``p_i = sqrt(2 i + 1) P_i``, the Legendre polynomials of unit mean square over the touched
+    rectangle; v and w in [-1, 1] run along the two longest directions of the touched points. The
+    length of (a_ij) is thus the amplitude of a wave ``a sin(k v) sin(l w)`` of the same mean
+    square. Coefficients are expected to fall with the degree. The touches must be the whole run:
+    its points on the patch give the rectangle.
 
     Attributes:
         patch: Label of the feature in the run file.
-
-    Reference:
-        ISO 25178-2 (form); calibration of freeform standards leaves 0.5 to 2 um.
     """
 
     patch: str
@@ -94,7 +89,7 @@ def _legendre(place: Array) -> tuple[list[Array], list[Array]]:
 
 def make(chain: Chain, arguments: Sequence[str]) -> ArtefactForm:
     """From the label of the patch."""
-    counted("artefact-form(patch)", arguments, 1, 1)
+    check_count("artefact-form(patch)", arguments, 1, 1)
     return ArtefactForm(arguments[0])
 
 
@@ -112,7 +107,7 @@ KIND = Kind(
     formula="bias = sum a_ij p_i(v) p_j(w)/2, i + j <= 5, Legendre over the touched rectangle",
     units="a_ij: µm",
     typical="0.5 to 2 µm, correlated over 20 to 50 mm",
-    source="calibration of freeform standards",
+    source="ISO 25178-2 (form); calibration of freeform standards",
     make=make,
     propose=propose,
     classes=(ArtefactForm,),

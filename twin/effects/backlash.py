@@ -12,8 +12,8 @@ from twin.model import (
     Parameter,
     Term,
     Where,
+    check_count,
     checked_axis,
-    counted,
     moving_axes,
 )
 from twin.record import Touches
@@ -24,20 +24,15 @@ USAGE = "backlash(axis)"
 
 @dataclass(frozen=True)
 class Backlash:
-    """Reversal error of an axis, with the sign of its last motion.
+    """Reversal of an axis: it stands elsewhere when it comes from the other side.
 
-    ``E = (B/2) sgn(last motion)`` along a linear axis, about a rotary one; B is what was reached in
-    the positive direction minus what was reached in the negative one. Lost motion behind a motor
-    encoder lags and is negative. A touch whose last motion is unknown is not disturbed. One
-    parameter, B, mm or rad: 0.5 to 2 um with direct scales, 3 to 15 um with motor encoders, on a
-    rotary axis 5 to 100 urad.
+    B is what was reached in the positive direction minus what was reached in the negative one;
+    lost motion behind a motor encoder lags and is negative. A touch whose last motion is unknown
+    is not disturbed.
 
     Attributes:
         axis: Name of the axis.
         component: Index of the component along or about the axis.
-
-    Reference:
-        ISO 230-2 (reversal error B, forward minus backward).
     """
 
     axis: str
@@ -65,7 +60,7 @@ class Backlash:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Backlash:
     """From the axis."""
-    counted(USAGE, arguments, 1, 1)
+    check_count(USAGE, arguments, 1, 1)
     axis = checked_axis(USAGE, arguments, arguments[0], chain)
     return Backlash(axis, chain.link(axis).own_component)
 

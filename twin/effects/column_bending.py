@@ -12,8 +12,8 @@ from twin.model import (
     Parameter,
     Term,
     Where,
+    check_count,
     checked_linear,
-    counted,
     moving_axes,
     refusal,
     sensor_record,
@@ -29,19 +29,15 @@ USAGE = "column-bending(axis,sensor,sensor)"
 class ColumnBending:
     """A column bends away from its warm side, more the higher the carriage stands on it.
 
-    With s = (q - q_min)/L along a column of travel L and the gradient ``D = T_1 - T_2``, the
-    carriage turns by ``E_r = a D s`` and moves across by ``E_e = +-a D L s^2/2``, for the bending
-    about either axis across the column. Holds for a linear gradient over the depth h: a = alpha
-    L/h. Parameters rad/K: 2 to 15 urad/K.
+    L is the travel. The carriage turns by E_r and moves across by E_e, for the bending about
+    either axis across the column. Holds for a linear gradient over the depth h of the column,
+    ``a = alpha L/h``.
 
     Attributes:
         axis: Linear axis that travels along the column.
         warm: Sensor on one side.
         cold: Sensor on the other.
         component: Index of the component along the axis.
-
-    Reference:
-        Chen 1995: 12 arcsec of pitch from 4 K; curvature alpha D/h of a bar with a gradient.
     """
 
     axis: str
@@ -85,7 +81,7 @@ class ColumnBending:
 
 def make(chain: Chain, arguments: Sequence[str]) -> ColumnBending:
     """From the linear axis and a sensor on either side of its column."""
-    counted(USAGE, arguments, 3, 3)
+    check_count(USAGE, arguments, 3, 3)
     axis = checked_linear(USAGE, arguments, arguments[0], chain)
     if arguments[1] == arguments[2]:
         raise refusal(USAGE, arguments, "two different sensors")
@@ -110,7 +106,7 @@ KIND = Kind(
     formula="E_r = a (T_1 - T_2) s, E_e = a (T_1 - T_2) L s^2/2; s = (q - q_min)/L",
     units="a: µrad/K",
     typical="2 to 15 µrad/K; 12 arcsec from 4 K",
-    source="Chen 1995; curvature alpha (T_1 - T_2)/h",
+    source="J. S. Chen 1995; curvature alpha (T_1 - T_2)/h of a bar with a gradient",
     make=make,
     propose=propose,
     classes=(ColumnBending,),

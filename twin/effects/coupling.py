@@ -6,15 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.frames import Array
-from twin.machine import Chain, Family, Symbol, scaled
+from twin.machine import Chain, Family, Symbol
 from twin.model import (
     Kind,
     Parameter,
     Term,
     Where,
+    check_count,
     checked_axis,
     component_symbol,
-    counted,
     moving_axes,
     refusal,
 )
@@ -26,20 +26,15 @@ USAGE = "coupling(symbol,axis)"
 
 @dataclass(frozen=True)
 class Coupling:
-    """Lowest joint term of a component error over its own reading and another axis's.
+    """A component error that depends on the reading of another axis: a bending guide.
 
-    ``E = a f(q_own) g(q_other)``, f and g each the reading scaled to [-1, 1] on a linear axis and
-    cosine or sine on a rotary one: pitch of X that changes with the height of Z is
-    ``EBX = a u_X u_Z``. The weight of what travels bends the guide it travels on, more in one
-    place of the other axis than in another. Parameters are peak amplitudes, mm or rad: 10 to
-    60 urad, on slender machines more.
+    The weight of what travels bends the guide it travels on, more in one place of the other axis
+    than in another. This is the lowest joint term: pitch of X that changes with the height of Z is
+    ``EBX = a u_X u_Z``, u the reading scaled to [-1, 1].
 
     Attributes:
         symbol: The component error.
         other: Name of the axis it also depends on.
-
-    Reference:
-        J. S. Chen, Int. J. Mach. Tools Manufact. 35 (1995): pitch of X depends on Z, 58 urad.
     """
 
     symbol: Symbol
@@ -82,12 +77,12 @@ def _factors(touches: Touches, axis: str) -> tuple[Array, ...]:
     """Lowest functions of one reading, each (N,)."""
     q = touches.reading(axis)
     link = touches.chain.link(axis)
-    return (scaled(q, link),) if link.kind == "linear" else (np.cos(q), np.sin(q))
+    return (link.scaled(q),) if link.kind == "linear" else (np.cos(q), np.sin(q))
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Coupling:
     """From the component error and the other axis."""
-    counted(USAGE, arguments, 2, 2)
+    check_count(USAGE, arguments, 2, 2)
     symbol = component_symbol(chain, arguments[0])
     other = checked_axis(USAGE, arguments, arguments[1], chain)
     if other == symbol.link:
@@ -114,8 +109,8 @@ KIND = Kind(
     arguments="symbol,axis",
     formula="E = a f(q_own) g(q_other); f, g = u (linear axis), cos q and sin q (rotary axis)",
     units="a: µrad or µm",
-    typical="10 to 60 µrad over the travel",
-    source="Chen 1995 (pitch of X depends on Z, 12 arcsec)",
+    typical="10 to 60 µrad over the travel, on slender machines more",
+    source="J. S. Chen, Int. J. Mach. Tools Manufact. 35 (1995): pitch of X depends on Z, 58 µrad",
     make=make,
     propose=propose,
     classes=(Coupling,),

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.machine import SHAPES, Chain, Family, Ranges, ShapeName, Symbol, scaled, shape
+from twin.machine import SHAPES, Chain, Family, Ranges, ShapeName, Symbol, shape
 from twin.model import (
     Effect,
     Kind,
     Parameter,
     Term,
     Where,
+    check_count,
     component_symbol,
-    counted,
     moving_axes,
     refusal,
 )
@@ -32,7 +32,7 @@ class ComponentError:
     """One component error of an axis in one of the distributions of the D-MT paper.
 
     ``E(q) = a f(q)`` with f the constant, linear, parabolic or sinusoidal shape of unit peak
-    amplitude (`twin.machine.shapes`). One parameter, the peak amplitude, mm or rad.
+    amplitude (`twin.machine.shapes`).
 
     Attributes:
         symbol: Which component of which axis.
@@ -40,9 +40,6 @@ class ComponentError:
         periods: Of the sinusoidal distribution.
         phase: Of the sinusoidal distribution, rad.
         sd: Expected standard deviation of the amplitude, mm or rad.
-
-    Reference:
-        ISO 230-1:2012 (component errors).
     """
 
     symbol: Symbol
@@ -87,19 +84,15 @@ def component(chain: Chain, name: str, shape: ShapeName, **options: float) -> Co
 class HigherOrder:
     """One component error of an axis up to some degree, or up to some harmonic.
 
-    ``E(q) = sum_k a_k T_k(u)``, k = 1 .. n, on a linear axis, with T_k the Chebyshev polynomials
-    (T_1 and T_2 are the linear and the parabolic distribution) and u the reading scaled to [-1, 1];
-    ``E(q) = sum_k s_k sin(k q) + c_k cos(k q)`` on a rotary one. Constants are location errors.
-    Parameters in mm or rad; expected to fall as 1/k^1.5 from the size of the class.
+    T_k are the Chebyshev polynomials (T_1 and T_2 are the linear and the parabolic distribution) of
+    u, the reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are
+    expected to fall as ``1/k^1.5`` from the size of the class.
 
     Attributes:
         symbol: Which component of which axis.
         degree: n.
         sd: Expected standard deviation of the first coefficient, mm or rad.
         rotary: Whether harmonics are meant.
-
-    Reference:
-        ISO 230-1:2012 (component errors); ISO 230-7 (harmonics of an axis of rotation).
     """
 
     symbol: Symbol
@@ -132,7 +125,7 @@ class HigherOrder:
         if self.rotary:
             harmonics = [f(k * q) for k in range(1, self.degree + 1) for f in (np.sin, np.cos)]
             return tuple(Term(j, where, amount) for j, amount in enumerate(harmonics))
-        u = scaled(q, touches.chain.links[i])
+        u = touches.chain.links[i].scaled(q)
         basis = [np.ones_like(u), u]
         for _ in range(1, self.degree):
             basis.append(2.0 * u * basis[-1] - basis[-2])
@@ -147,7 +140,7 @@ def higher_order(chain: Chain, symbol: Symbol, degree: int) -> HigherOrder:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     """From the component error and a degree, or the name of a distribution."""
-    counted(USAGE, arguments, 2, 3)
+    check_count(USAGE, arguments, 2, 3)
     symbol = component_symbol(chain, arguments[0])
     rest = ",".join(arguments[1:])
     if rest.isdigit() and 1 <= int(rest) <= HIGHEST:
@@ -175,7 +168,7 @@ KIND = Kind(
     formula="E = sum a_k T_k(u), k <= n (linear axis); sum s_k sin kq + c_k cos kq (rotary)",
     units="a_k, s_k, c_k: µm or µrad",
     typical="3 to 10 µm, 10 to 40 µrad; old machines ten times that",
-    source="ISO 230-1:2012; ISO 230-7",
+    source="ISO 230-1:2012 (component errors); ISO 230-7 (harmonics of an axis of rotation)",
     make=make,
     propose=propose,
     classes=(ComponentError, HigherOrder),

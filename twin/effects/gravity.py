@@ -12,9 +12,9 @@ from twin.model import (
     Parameter,
     Term,
     Where,
+    check_count,
     checked_axis,
     component_symbol,
-    counted,
     moving_axes,
     refusal,
 )
@@ -28,15 +28,11 @@ USAGE = "gravity(symbol[,axis])"
 class RamSag:
     """Sag of a ram or column that travels out of its guide.
 
-    ``E = a s^3``, s = (q_max - q)/(q_max - q_min) the overhang as a share of the travel: a
-    cantilever under a load at its end sags by F L^3/(3 E I). One parameter, the sag at full
-    overhang, mm or rad: 1 to 10 um.
+    ``E = a s^3``, s the overhang as a share of the travel: a cantilever under a load at its end
+    sags by ``F L^3/(3 E I)``.
 
     Attributes:
         symbol: The component error, across the axis for a sag.
-
-    Reference:
-        Euler-Bernoulli cantilever with end load.
     """
 
     symbol: Symbol
@@ -67,15 +63,11 @@ class TiltSag:
     """Sag of a head or cradle that tilts its own weight.
 
     ``E = a sin 2q``. The weight pulls with m g sin q across and m g cos q along the tilted body;
-    the arm that its sag across gives the pull along makes the product of both. What the weight does
-    in the first harmonic, sin q and cos q, cannot be told from `geometric(EBB,1)` and belongs
-    there. One parameter, the peak, mm or rad: 10 to 50 urad at rated load, more on slender heads.
+    the arm that its sag across gives the pull along makes the product of both (P-delta). What the
+    weight does in the first harmonic cannot be told from `geometric(EBB,1)` and belongs there.
 
     Attributes:
         symbol: The component error.
-
-    Reference:
-        Second-order (P-delta) moment of an elastically held weight.
     """
 
     symbol: Symbol
@@ -103,15 +95,11 @@ class TiltSag:
 class OffCentreLoad:
     """Tilt of a cradle under a load that lies off the centre of the table it carries.
 
-    ``E = sin(q_tilt) (a cos(q_table) + b sin(q_table))``: the moment m g r sin B cos(C - phi).
-    Parameters mm or rad: 10 urad.
+    ``E = sin(q_tilt) (a cos(q_table) + b sin(q_table))``: the moment ``m g r sin B cos(C - phi)``.
 
     Attributes:
         symbol: The component error of the tilting axis.
         table: Name of the axis that turns the load.
-
-    Reference:
-        Moment of a weight about the tilting axis, over its stiffness.
     """
 
     symbol: Symbol
@@ -139,7 +127,7 @@ class OffCentreLoad:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     """From the component error, and the axis of the table for a load off its centre."""
-    counted(USAGE, arguments, 1, 2)
+    check_count(USAGE, arguments, 1, 2)
     symbol = component_symbol(chain, arguments[0])
     rotary = chain.link(symbol.link).kind == "rotary"
     if len(arguments) == 1:
@@ -182,8 +170,9 @@ KIND = Kind(
     formula="E = a s^3, s = (q_max - q)/travel (ram); a sin 2q (head, cradle); "
     "sin B (a cos C + b sin C) (load off centre)",
     units="a, b: µm or µrad",
-    typical="ram 1 to 10 µm; cradle 10 to 50 µrad at rated load; load off centre 10 µrad",
-    source="cantilever F L^3/(3 E I); moment of a weight over the stiffness that holds it",
+    typical="ram 1 to 10 µm; cradle 10 to 50 µrad at rated load, slender heads more; load off "
+    "centre 10 µrad",
+    source="Euler-Bernoulli cantilever; moment of a weight over the stiffness that holds it",
     make=make,
     propose=propose,
     classes=(RamSag, TiltSag, OffCentreLoad),

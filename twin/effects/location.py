@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.machine import Chain, Family, Ranges, Symbol
-from twin.model import Kind, Parameter, Term, Where, counted, refusal
+from twin.model import Kind, Parameter, Term, Where, check_count, refusal
 from twin.record import Touches
 
 USAGE = "location(symbol)"
@@ -18,14 +18,11 @@ class LocationError:
 
     The chain knows how it reaches the tip (`twin.machine.kinematics.place_as_twist`): a squareness
     turns the direction of travel of a linear axis, `EX0C`, `EA0C` displace and tilt a rotary axis's
-    line, `EX0X`, `EC0C` add to a reading. One parameter, mm or rad.
+    line, `EX0X`, `EC0C` add to a reading.
 
     Attributes:
         symbol: Which one.
         sd: Expected standard deviation, mm or rad.
-
-    Reference:
-        ISO 230-1:2012 (location errors); ISO 230-7 (axes of rotation).
     """
 
     symbol: Symbol
@@ -51,7 +48,7 @@ class LocationError:
 
 def make(chain: Chain, arguments: Sequence[str]) -> LocationError:
     """From the name of the constant, with the prior of the default ranges."""
-    counted(USAGE, arguments, 1, 1)
+    check_count(USAGE, arguments, 1, 1)
     symbol = chain.symbol(arguments[0])
     if symbol.family is Family.COMPONENT:
         names = [s.name for s in chain.symbols if s.family is not Family.COMPONENT]
@@ -72,7 +69,7 @@ KIND = Kind(
     formula="E = a, constant: squareness, line of a rotary axis, zero position, set-up",
     units="a: µm or µrad",
     typical="20 to 100 µm, 20 to 100 µrad when neglected; 2 to 10 µm, 10 to 30 µrad after care",
-    source="ISO 230-1:2012; ISO 230-7",
+    source="ISO 230-1:2012 (location errors); ISO 230-7 (axes of rotation)",
     make=make,
     propose=propose,
     classes=(LocationError,),

@@ -12,8 +12,8 @@ from twin.model import (
     Parameter,
     Term,
     Where,
+    check_count,
     component_symbol,
-    counted,
     moving_axes,
 )
 from twin.record import Touches
@@ -30,18 +30,13 @@ HIGHEST_HARMONIC = 12
 
 @dataclass(frozen=True)
 class Periodic:
-    """Sine of free phase over a linear axis, one period unknown.
+    """A sine of free phase and unknown period p over a linear axis.
 
-    ``E = s sin(2 pi q/p) + c cos(2 pi q/p)``; inner parameter p, the period. Screw and nut, or
-    scale and head, repeat every pitch. Parameters mm or rad: 0.5 to 3 um for ground ball screws, up
-    to 10 um for others.
+    Screw and nut, or scale and head, repeat every pitch.
 
     Attributes:
         symbol: The component error.
         period: p, mm.
-
-    Reference:
-        ISO 230-2 and the makers' data of feed axes.
     """
 
     symbol: Symbol
@@ -85,16 +80,13 @@ class Periodic:
 class Harmonic:
     """One harmonic, the second or a higher one, of a component error of a rotary axis.
 
-    ``E = s sin(k q) + c cos(k q)``; inner parameter k = 2, 3 ... (k = 1 is eccentricity and tilt,
-    part of every geometric model). Parameters mm or rad: 0.1 to 1 um, 5 to 20 urad; k = 2 from two
-    reading heads or an oval seat, 4 from four screws, the line count from the encoder.
+    ``E = s sin(k q) + c cos(k q)``, k = 2, 3 ...; k = 1 is eccentricity and tilt, part of every
+    geometric model. k = 2 comes from two reading heads or an oval seat, 4 from four screws, the
+    line count from the encoder.
 
     Attributes:
         symbol: The component error.
         harmonic: k.
-
-    Reference:
-        ISO 230-7 (axes of rotation).
     """
 
     symbol: Symbol
@@ -146,7 +138,7 @@ def _wave(touches: Touches, symbol: Symbol, factor: float) -> Sequence[Term]:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Periodic | Harmonic:
     """From the component error."""
-    counted(USAGE, arguments, 1, 1)
+    check_count(USAGE, arguments, 1, 1)
     symbol = component_symbol(chain, arguments[0])
     return Periodic(symbol) if chain.link(symbol.link).kind == "linear" else Harmonic(symbol)
 
@@ -168,8 +160,9 @@ KIND = Kind(
     arguments="symbol",
     formula="E = s sin(2 pi q/p) + c cos(2 pi q/p), p unknown (linear); k q, k >= 2 (rotary)",
     units="s, c: µm or µrad; p: mm; k: 1",
-    typical="0.5 to 3 µm at the pitch of a ball screw; rotary 0.1 to 1 µm, 5 to 20 µrad",
-    source="ISO 230-2; ISO 230-7",
+    typical="0.5 to 3 µm at the pitch of a ground ball screw, up to 10 µm of others; rotary 0.1 to "
+    "1 µm, 5 to 20 µrad",
+    source="ISO 230-2 and the makers' data of feed axes; ISO 230-7 (axes of rotation)",
     make=make,
     propose=propose,
     classes=(Periodic, Harmonic),

@@ -1,13 +1,12 @@
 """What a touch probe adds of its own: lobes, its effective radius, a stylus that bends."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from twin.frames import Array
-from twin.machine import Chain
-from twin.model import Effect, Inner, Kind, Parameter, Term, Where, counted
+from twin.model import Inner, Kind, Parameter, Term, Where
 from twin.record import Touches
 from twin.units import UM
 
@@ -22,15 +21,11 @@ def normal_in_tool(touches: Touches) -> Array:
 class ProbeLobing:
     """Pre-travel that varies with the direction in which the stylus is deflected.
 
-    ``bias = sin(theta) (a cos(k phi) + b sin(k phi))``, theta and phi latitude from the tool axis
-    and azimuth of the surface normal in the tool frame; inner parameter k, three for the three
-    seats of a kinematic probe. Parameters mm: 3 to 8 um, strain-gauge probes below 1 um.
+    theta and phi are latitude from the tool axis and azimuth of the surface normal in the tool
+    frame; k = 3 for the three seats of a kinematic probe.
 
     Attributes:
         lobes: k.
-
-    Reference:
-        Estler et al., Precision Engineering 19 (1996), on pre-travel variation of touch probes.
     """
 
     lobes: float = 3.0
@@ -69,12 +64,8 @@ class ProbeLobing:
 class ProbeRadius:
     """Effective radius of the ball minus the radius that is stated.
 
-    ``bias = a``: a larger ball meets the surface earlier, by as much along every normal; a
-    pre-travel v t_d that is the same in every direction makes it smaller. One parameter, mm:
-    1 to 5 um.
-
-    Reference:
-        ISO 10360-5 (probing systems: effective size of the stylus tip).
+    A larger ball meets the surface earlier, by as much along every normal; a pre-travel v t_d that
+    is the same in every direction makes it smaller.
     """
 
     kind = "probe-radius"
@@ -94,13 +85,8 @@ class ProbeRadius:
 class StylusBending:
     """Bending of the stylus, which grows with the latitude of the touch.
 
-    ``bias = a sin^2(theta)``, theta the angle between the surface normal and the tool axis: the
-    trigger force bends a stylus of length l by F l^3/(3 E I) times sin(theta), of which sin(theta)
-    lies along the normal. Positive where the surface is seen outside. One parameter, mm: 0.5 to
-    3 um.
-
-    Reference:
-        Euler-Bernoulli cantilever with end load; Estler et al. 1996.
+    The trigger force bends a stylus of length l by ``F l^3/(3 E I)`` times sin(theta), of which
+    sin(theta) lies along the normal. Positive where the surface is seen outside.
     """
 
     kind = "stylus-bending"
@@ -117,48 +103,24 @@ class StylusBending:
         return (Term(0, Where("bias"), n[:, 0] ** 2 + n[:, 1] ** 2),)
 
 
-def _maker(word: str, effect: Effect) -> Callable[[Chain, Sequence[str]], Effect]:
-    def make(chain: Chain, arguments: Sequence[str]) -> Effect:
-        counted(word, arguments, 0, 0)
-        return effect
-
-    return make
-
-
-def _always(effect: Effect) -> Callable[[Touches], Iterable[Effect]]:
-    return lambda touches: (effect,)
-
-
-LOBING = Kind(
-    word="probe-lobing",
-    arguments="",
+LOBING = Kind.of(
+    ProbeLobing,
     formula="bias = sin(theta) (a cos(k phi) + b sin(k phi)), k = 2 to 6 lobes, tool frame",
     units="a, b: µm; k: 1",
     typical="3 to 8 µm with three lobes (kinematic), below 1 µm (strain gauge)",
-    source="Estler et al. 1996",
-    make=_maker("probe-lobing", ProbeLobing()),
-    propose=_always(ProbeLobing()),
-    classes=(ProbeLobing,),
+    source="Estler et al., Precision Engineering 19 (1996): pre-travel of touch probes",
 )
-RADIUS = Kind(
-    word="probe-radius",
-    arguments="",
+RADIUS = Kind.of(
+    ProbeRadius,
     formula="bias = a, effective minus stated radius",
     units="a: µm",
     typical="1 to 5 µm",
-    source="ISO 10360-5",
-    make=_maker("probe-radius", ProbeRadius()),
-    propose=_always(ProbeRadius()),
-    classes=(ProbeRadius,),
+    source="ISO 10360-5 (effective size of the stylus tip)",
 )
-BENDING = Kind(
-    word="stylus-bending",
-    arguments="",
+BENDING = Kind.of(
+    StylusBending,
     formula="bias = a sin^2(theta), theta between normal and tool axis",
     units="a: µm",
     typical="0.5 to 3 µm",
     source="cantilever F l^3/(3 E I); Estler et al. 1996",
-    make=_maker("stylus-bending", StylusBending()),
-    propose=_always(StylusBending()),
-    classes=(StylusBending,),
 )

@@ -8,7 +8,7 @@ import numpy as np
 from twin.errors import UnknownEffect
 from twin.frames import Array
 from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Where, counted, refusal
+from twin.model import Kind, Parameter, Term, Where, check_count, refusal
 from twin.record import Touches
 from twin.units import UM
 
@@ -17,19 +17,15 @@ USAGE = "stiffness(axis or t)"
 
 @dataclass(frozen=True)
 class Stiffness:
-    """An axis yields to the part of the load that acts along it, or turns it.
+    """An axis or the tool yields to the load on the tool.
 
-    ``E = c F.d`` along a linear axis, ``E = c M.d`` about a rotary one, with the load F on the tool
-    and its moment M about the axis; on either side of the machine the tool moves with the load
-    relative to the workpiece. The tool, `t`, yields sideways and along: two compliances. Parameters
-    mm/N (10 to 50 N/um is 0.02 to 0.1 um/N) and rad/(N mm).
+    F acts on the tool, M is its moment about the axis, d the direction of the axis; on either side
+    of the machine the tool moves with the load relative to the workpiece. The tool, `t`, yields
+    sideways and along: two compliances.
 
     Attributes:
         link: Name of the axis, or `t`.
         components: Indices of the components that yield, and the parameter of each.
-
-    Reference:
-        Static compliance, ISO 230-1 (machine under load); loaded double ball bar.
     """
 
     link: str
@@ -77,7 +73,7 @@ def stiffness(chain: Chain, link: str) -> Stiffness:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Stiffness:
     """From the axis, or `t` for the tool."""
-    counted(USAGE, arguments, 1, 1)
+    check_count(USAGE, arguments, 1, 1)
     if arguments[0] not in (*chain.programmed_axes, "t"):
         known = ", ".join((*chain.programmed_axes, "t"))
         raise refusal(USAGE, arguments, f"one of {known}")
@@ -97,7 +93,7 @@ KIND = Kind(
     formula="E = c F.d (linear axis, tool); E = c M.d (rotary axis); F, M the load on the tool",
     units="c: µm/N; µrad/(N mm)",
     typical="0.02 to 0.1 µm/N (10 to 50 N/µm) at the tool; the rotary table is the weakest",
-    source="static compliance under a loaded ball bar",
+    source="static compliance, ISO 230-1 (machine under load); loaded double ball bar",
     make=make,
     propose=propose,
     classes=(Stiffness,),

@@ -9,8 +9,8 @@ from twin.model import (
     Parameter,
     Term,
     Where,
+    check_count,
     checked_linear,
-    counted,
     moving_axes,
     sensor_record,
     sensors,
@@ -23,19 +23,15 @@ USAGE = "thermal-expansion(axis,sensor)"
 
 @dataclass(frozen=True)
 class ThermalExpansion:
-    """Growth of the scale of a linear axis with the temperature of a sensor.
+    """The scale of a linear axis grows with the temperature of a sensor.
 
-    ``E = alpha (T - 20 degC) q`` along the axis. Holds for a scale that is fixed at reading zero,
-    free elsewhere, and has one temperature over its whole length. One parameter, alpha, 1/K: steel
-    10 to 12, glass 8, aluminium 23 um/(m K); a screw that is warmer than its sensor shows more.
+    Holds for a scale that is fixed at reading zero, free elsewhere, and has one temperature over
+    its whole length. A screw that is warmer than its sensor shows a larger alpha.
 
     Attributes:
         axis: Name of the linear axis.
         sensor: Name of the sensor.
         component: Index of the component along the axis.
-
-    Reference:
-        ISO 1 (20 degC); ISO 230-3 (thermal effects).
     """
 
     axis: str
@@ -63,7 +59,7 @@ class ThermalExpansion:
 
 def make(chain: Chain, arguments: Sequence[str]) -> ThermalExpansion:
     """From the linear axis and the sensor."""
-    counted(USAGE, arguments, 2, 2)
+    check_count(USAGE, arguments, 2, 2)
     axis = checked_linear(USAGE, arguments, arguments[0], chain)
     return ThermalExpansion(axis, arguments[1], chain.link(axis).own_component)
 
@@ -82,7 +78,7 @@ KIND = Kind(
     formula="E = alpha (T - 20 degC) q, along the axis",
     units="alpha: µm/(m K)",
     typical="steel 10 to 12, glass 8, aluminium 23 µm/(m K)",
-    source="ISO 1; ISO 230-3",
+    source="ISO 1 (20 degC); ISO 230-3 (thermal effects)",
     make=make,
     propose=propose,
     classes=(ThermalExpansion,),

@@ -19,8 +19,8 @@ from twin.model import (
     Parameter,
     Term,
     Where,
+    check_count,
     component_symbol,
-    counted,
     moving_axes,
     refusal,
     sensor_record,
@@ -46,21 +46,14 @@ STEPS = 14
 class ThermalLag:
     """A component error that follows its cause with a time constant.
 
-    ``tau dE/dt = a d(t) - E``. Without a drive d = 1 from the start of the run, time zero:
-    ``E = a (1 - exp(-t/tau))``. After a sensor d = T - 20 degC, in equilibrium at the first record;
-    after the spindle speed d = n/(10 000 rpm), cold at time zero. Inner parameter tau. One
-    parameter, the amplitude a, mm or rad (per K, per 10 000 rpm): spindle growth 20 to 100 um,
-    1 to 5 um per K of ambient.
-
-    The touches must be the whole run: a part of it has lost what drove it before.
+    After switching on, at time zero, ``E = a (1 - exp(-t/tau))``. A body that follows a sensor is
+    in equilibrium at the first record; one that follows the spindle speed is cold at time zero. The
+    touches must be the whole run: a part of it has lost what drove it before.
 
     Attributes:
         symbol: The component error.
         drive: Sensor, `spindle_rpm`, or "" for switching on.
         tau: Time constant, s.
-
-    Reference:
-        ISO 230-3 (thermal distortion); first-order lag as in grey-box models of rotary axes.
     """
 
     symbol: Symbol
@@ -94,8 +87,10 @@ class ThermalLag:
         if self.drive == SPINDLE:
             if touches.spindle_rpm is None:
                 raise UnknownEffect(f"'{self.name}': the spindle speed of these touches is unknown")
-            return lagged(touches.time, touches.spindle_rpm / SPEED_UNIT, self.tau, steps=True)
-        return lagged(touches.time, sensor_record(touches, self.drive) - T_REF, self.tau)
+            return first_order_lag(
+                touches.time, touches.spindle_rpm / SPEED_UNIT, self.tau, steps=True
+            )
+        return first_order_lag(touches.time, sensor_record(touches, self.drive) - T_REF, self.tau)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The time constant, evenly spaced in its logarithm, up to three times the run."""
@@ -113,7 +108,7 @@ class ThermalLag:
         return {"tau": self.tau}
 
 
-def lagged(time: Array, drive: Array, tau: float, steps: bool = False) -> Array:
+def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) -> Array:
     """First-order lag of a record, exact between the records.
 
     ``tau dy/dt = d - y``. With ``x = dt/tau`` and a straight drive from d0 to d1 one step is
@@ -159,7 +154,7 @@ def _recursion(keep: Array, added: Array) -> Array:
 
 def make(chain: Chain, arguments: Sequence[str]) -> ThermalLag:
     """From the component error and, where something drives it, a sensor or `spindle_rpm`."""
-    counted(USAGE, arguments, 1, 2)
+    check_count(USAGE, arguments, 1, 2)
     symbol = component_symbol(chain, arguments[0])
     if len(arguments) == 2 and not arguments[1]:
         raise refusal(USAGE, arguments, f"a sensor or {SPINDLE} after the comma")
@@ -190,7 +185,7 @@ KIND = Kind(
     formula="tau dE/dt = a d - E; d = 1 from time zero, T - 20 degC, or n/(10 000 rpm)",
     units="a: µm or µrad, per K after a sensor; tau: min",
     typical="spindle growth 20 to 100 µm, tau 10 to 40 min; ambient 1 to 5 µm/K, tau 0.5 to 6 h",
-    source="ISO 230-3; Chen 1995",
+    source="ISO 230-3 (thermal distortion); J. S. Chen 1995; grey-box models of rotary axes",
     make=make,
     propose=propose,
     classes=(ThermalLag,),

@@ -1,4 +1,8 @@
-"""The border: users' files in, users' files out, in the units that stand in their names."""
+"""The border: users' files in, users' files out, in the units that stand in their names.
+
+Readers end in frozen records in base units, or in one `BadFile` that names file, line or key, what
+stood there and what was expected. Writers write whole files or none.
+"""
 
 from twin.files.error_file import errors_toml, read_errors
 from twin.files.machine_file import AxisTable, Pair, Vector, WorkpieceTable, read_machine

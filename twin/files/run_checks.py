@@ -9,7 +9,7 @@ from twin.errors import BadFile
 from twin.files.pose_file import reading_columns
 from twin.files.table import CsvTable
 from twin.frames import Array
-from twin.record import IntArray, Run, computed_deviation, counted_once
+from twin.record import IntArray, Run, computed_deviation, without_copies
 from twin.units import UM
 
 ABSURD = 10.0
@@ -52,7 +52,7 @@ def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     Raises:
         BadFile: What concerns too many rows to be a slip of single ones.
     """
-    run = counted_once(replace(run, remarks=tuple(remarks)))
+    run = without_copies(replace(run, remarks=tuple(remarks)))
     remarks[:] = run.remarks
     run = _without_slips(run, table, remarks)
     run = _with_clock(run, table, remarks)

@@ -15,7 +15,7 @@ from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
 from twin.machine import Chain
-from twin.record import IntArray, Run, Setup, Touches, computed_deviation
+from twin.record import IntArray, Run, Setup, Touches, aligned, computed_deviation
 from twin.units import DEG, UM
 
 _OPTIONAL = (
@@ -81,6 +81,13 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks: list[str] = []
     run = _assemble(table, chain, head, remarks)
+    if "dev_um" not in table:
+        run, moved = aligned(run)
+        remarks += [
+            f"set-up {m.name} stands {m.shift:.2f} mm and {m.turn / DEG:.2f}° from where the head "
+            "says, as its touches tell; it is taken there"
+            for m in moved
+        ]
     run = checked_run(run, table, remarks)
     return replace(run, remarks=tuple(remarks))
 

@@ -72,6 +72,6 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
 
 
 def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:
-    """Raise DesignError if a file is there already and nobody asked to overwrite it."""
+    """Raise DesignError if the file exists and nobody asked to overwrite it."""
     if not force and Path(path).exists():
-        raise DesignError(f"{path}: is there already; choose another name or give --force")
+        raise DesignError(f"{path}: already exists; choose another name or give --force")

@@ -1,8 +1,12 @@
-"""Effects by name: the register, trials of users' own effects, the ordinary geometric model."""
+"""Effects by name: the register, trials of users' own effects, the ordinary geometric model.
+
+In: names such as `backlash(X)`, users' Python files, touches. Out: effects, and proposals of all
+that make sense for some touches.
+"""
 
 from twin.library.catalogue import (
     Kind,
-    is_seen,
+    is_visible,
     kinds,
     load_installed_effects,
     load_user_effects,
@@ -12,12 +16,11 @@ from twin.library.catalogue import (
     users_files,
 )
 from twin.library.ordinary import ordinary_model
-from twin.library.trial import fault, try_effect, try_kind, users_lines
+from twin.library.trial import try_effect, try_kind, users_fault, users_lines
 
 __all__ = [
     "Kind",
-    "fault",
-    "is_seen",
+    "is_visible",
     "kinds",
     "load_installed_effects",
     "load_user_effects",
@@ -27,6 +30,7 @@ __all__ = [
     "register",
     "try_effect",
     "try_kind",
+    "users_fault",
     "users_files",
     "users_lines",
 ]

@@ -29,7 +29,7 @@ from twin.effects import (
     thermal_lag,
 )
 from twin.errors import BadFile, DesignError, UnknownEffect
-from twin.library.trial import fault
+from twin.library.trial import users_fault
 from twin.machine import Chain
 from twin.model import Effect, Kind, Tunable, columns
 from twin.record import Touches
@@ -158,10 +158,10 @@ def proposals(touches: Touches, only: Sequence[str] | None = None) -> list[Effec
     """
     wanted = [k for k in kinds() if only is None or k.word in only]
     by_name = {effect.name: effect for kind in wanted for effect in kind.propose(touches)}
-    return [effect for effect in by_name.values() if is_seen(effect, touches)]
+    return [effect for effect in by_name.values() if is_visible(effect, touches)]
 
 
-def is_seen(effect: Effect, touches: Touches) -> bool:
+def is_visible(effect: Effect, touches: Touches) -> bool:
     """Whether an effect of its expected size changes any deviation beyond rounding."""
     if isinstance(effect, Tunable):
         effect = effect.tuned(
@@ -191,7 +191,7 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
         found = f"{(cause.text or '').strip()!r} ({cause.msg})"
         raise BadFile(path, f"line {cause.lineno}", found, "Python") from cause
     except Exception as cause:  # whatever a user's file does wrong is one line about that file
-        raise fault(cause, path, "file", "a Python file that runs") from cause
+        raise users_fault(cause, path, "file", "a Python file that runs") from cause
     own = {id(k): k for k in vars(module).values() if isinstance(k, Kind)}
     if not own:
         raise BadFile(path, "file", "no Kind", "at least one twin.library.Kind at its top level")

@@ -35,7 +35,7 @@ def try_kind(kind: Kind, touches: Touches, path: str | Path) -> None:
     try:
         proposed = list(kind.propose(touches))
     except Exception as cause:
-        raise fault(cause, path, f"propose of '{kind.word}'", "effects in a list") from cause
+        raise users_fault(cause, path, f"propose of '{kind.word}'", "effects in a list") from cause
     for effect in proposed:
         try_effect(effect, touches, path)
         name = effect.name.partition("(")[0]
@@ -69,7 +69,7 @@ def try_effect(effect: Effect, touches: Touches, path: str | Path) -> None:
         raise
     except Exception as cause:
         expected = "an effect for every value of its inner parameters"
-        raise fault(cause, path, effect.name, expected) from cause
+        raise users_fault(cause, path, effect.name, expected) from cause
     for one in tuned:
         _try_terms(one, touches, path)
 
@@ -116,7 +116,7 @@ def _try_terms(effect: Effect, touches: Touches, path: str | Path) -> None:
         with np.errstate(all="ignore"):
             terms: object = effect.terms(touches)
     except Exception as cause:
-        raise fault(cause, path, effect.name, "an amount for every touch") from cause
+        raise users_fault(cause, path, effect.name, "an amount for every touch") from cause
     if not isinstance(terms, Iterable) or isinstance(terms, np.ndarray | Term):
         found = f"{type(terms).__name__} from terms"
         raise BadFile(path, effect.name, found, "a tuple of Term; of one: (Term(...),)")
@@ -157,7 +157,7 @@ def _try_amount(effect: Effect, term: Term, touches: Touches, path: str | Path) 
         raise BadFile(path, effect.name, found, "a number at every touch")
 
 
-def fault(cause: BaseException, path: str | Path, where: str, expected: str) -> BadFile:
+def users_fault(cause: BaseException, path: str | Path, where: str, expected: str) -> BadFile:
     """A failure of a user's code as one line, with the line of his file where there is one."""
     lines = users_lines(cause, path)
     place = f"line {lines[-1]}" if lines else where

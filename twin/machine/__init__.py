@@ -1,6 +1,11 @@
-"""Machines in ISO chain notation, error parameters by their ISO 230-1 names, and kinematics."""
+"""Machines in ISO chain notation, error parameters by their ISO 230-1 names, and kinematics.
 
-from twin.machine.chain import DIRECTIONS, Axis, Chain, Link, make_chain
+In: a chain notation and what is known of each axis; readings (N, A). Out: poses and tool points,
+exact and to first order in every error. A new shape over a reading goes to `shapes`, a new class of
+errors to `ranges`; signs and letters are defined in `symbols` and nowhere else.
+"""
+
+from twin.machine.chain import Axis, Chain, Link, make_chain
 from twin.machine.contribution import Contribution, Where
 from twin.machine.kinematics import (
     Reach,
@@ -13,12 +18,11 @@ from twin.machine.kinematics import (
     tip,
 )
 from twin.machine.ranges import DEFAULT_RANGES, Ranges, error_class
-from twin.machine.shapes import SHAPES, ShapeName, scaled, shape, sine_argument
+from twin.machine.shapes import SHAPES, ShapeName, shape, sine_argument
 from twin.machine.symbols import LETTERS, Family, Symbol, parse_symbol
 
 __all__ = [
     "DEFAULT_RANGES",
-    "DIRECTIONS",
     "LETTERS",
     "SHAPES",
     "Axis",
@@ -39,7 +43,6 @@ __all__ = [
     "make_chain",
     "parse_symbol",
     "reach",
-    "scaled",
     "shape",
     "sine_argument",
     "table_to_tool",

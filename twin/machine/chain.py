@@ -15,14 +15,10 @@ from twin.units import DEG
 
 Kind = Literal["linear", "rotary", "fixed"]
 
-DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
-    "X": (1.0, 0.0, 0.0),
-    "Y": (0.0, 1.0, 0.0),
-    "Z": (0.0, 0.0, 1.0),
-}
-"""The letters' own directions in the machine frame (ISO 841); A B C turn about X Y Z."""
+_ALONG = {**{k: k for k in "XYZ"}, **dict(zip("ABCUVW", "XYZXYZ", strict=True)), "S": "Z"}
+"""Letter of an axis -> direction of the machine frame that it moves along or turns about (ISO 841).
+"""
 
-_SAME_DIRECTION = {**{k: k for k in "XYZ"}, **dict(zip("ABCUVW", "XYZXYZ", strict=True)), "S": "Z"}
 _TOKEN = re.compile(r"([XYZUVWABCS]\d?)('?)\Z")
 
 _SAME = 1e-6
@@ -58,7 +54,17 @@ class Link:
     @property
     def own(self) -> int:
         """Index in X Y Z of the letter's own direction, whatever the direction of the axis."""
-        return "XYZ".index(_SAME_DIRECTION[self.name[0]])
+        return "XYZ".index(_ALONG[self.name[0]])
+
+    @property
+    def points_along_letter(self) -> bool:
+        """Whether the axis moves along, or turns about, the direction of its letter."""
+        return bool(np.allclose(self.direction, np.eye(3)[self.own], atol=1e-12))
+
+    def scaled(self, reading: Array) -> Array:
+        """Readings scaled to [-1, 1] over the range, in any shape."""
+        low, high = self.range
+        return (2.0 * reading - (low + high)) / (high - low)
 
     @property
     def own_component(self) -> int:
@@ -279,7 +285,8 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
         raise BadValue(f"axis.{name}.range", "nothing", "its smallest and largest reading")
     if not reach[0] < reach[1]:
         raise BadValue(f"axis.{name}.range", str(list(reach)), "the smaller reading first")
-    direction = np.array(axis.direction or DIRECTIONS[_SAME_DIRECTION[name[0]]], dtype=float)
+    own = np.eye(3)["XYZ".index(_ALONG[name[0]])]
+    direction = own if axis.direction is None else np.array(axis.direction, dtype=float)
     length = float(np.linalg.norm(direction))
     if not length > 0.0:
         raise BadValue(f"axis.{name}.direction", "a vector of length zero", "a unit vector")

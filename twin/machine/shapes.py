@@ -11,12 +11,6 @@ ShapeName = Literal["constant", "linear", "parabolic", "sinusoidal"]
 SHAPES: tuple[ShapeName, ...] = ("constant", "linear", "parabolic", "sinusoidal")
 
 
-def scaled(q: Array, link: Link) -> Array:
-    """Reading scaled to [-1, 1] over the axis's range, shape of q."""
-    low, high = link.range
-    return (2.0 * q - (low + high)) / (high - low)
-
-
 def sine_argument(q: Array, link: Link, periods: float = 1.0) -> Array:
     """Argument of the sinusoidal distribution, rad: whole periods over the range of a linear axis,
     over a turn of a rotary one.
@@ -48,5 +42,5 @@ def shape(name: ShapeName, q: Array, link: Link, periods: float = 1.0, phase: fl
         return np.ones_like(q)
     if name == "sinusoidal":
         return np.sin(sine_argument(q, link, periods) + phase)
-    u = scaled(q, link)
+    u = link.scaled(q)
     return u if name == "linear" else 2.0 * u**2 - 1.0

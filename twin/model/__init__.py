@@ -1,4 +1,9 @@
-"""What an effect is and how effects add up: columns of the linear model, the exact product."""
+"""What an effect is and how effects add up: columns of the linear model, the exact product.
+
+An effect says where it acts (`Where`) and how much per unit of each parameter (`Term`); `Model`
+adds terms up, to first order and exactly. `Kind` is a word of the library with what users are told
+of it.
+"""
 
 from twin.machine import Where
 from twin.model.effect import (
@@ -13,10 +18,10 @@ from twin.model.effect import (
 )
 from twin.model.kind import (
     Kind,
+    check_count,
     checked_axis,
     checked_linear,
     component_symbol,
-    counted,
     moving_axes,
     refusal,
     sensor_record,
@@ -35,12 +40,12 @@ __all__ = [
     "Term",
     "Tunable",
     "Where",
+    "check_count",
     "checked_axis",
     "checked_linear",
     "columns",
     "component_symbol",
     "contribution",
-    "counted",
     "inner_values",
     "moving_axes",
     "refusal",

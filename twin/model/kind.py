@@ -50,6 +50,7 @@ class Kind:
         units: str = "",
         typical: str = "",
         source: str = "",
+        propose: Callable[[Touches], Iterable[Effect]] | None = None,
     ) -> "Kind":
         """The kind of an effect that takes no arguments, which is all that most users need.
 
@@ -59,16 +60,24 @@ class Kind:
             units: Of its parameters and inner parameters, as a user sees them.
             typical: Size that is met in practice.
             source: Where the formula and the size are from.
+            propose: The effect where it makes sense for some touches; None for always.
         """
         word = effect().kind
 
         def make(chain: Chain, arguments: Sequence[str]) -> Effect:
-            counted(word, arguments, 0, 0)
+            check_count(word, arguments, 0, 0)
             return effect()
 
-        classes = (effect,) if isinstance(effect, type) else ()
         return cls(
-            word, "", formula, units, typical, source, make, lambda touches: (effect(),), classes
+            word=word,
+            arguments="",
+            formula=formula,
+            units=units,
+            typical=typical,
+            source=source,
+            make=make,
+            propose=propose or (lambda touches: (effect(),)),
+            classes=(effect,) if isinstance(effect, type) else (),
         )
 
     @property
@@ -96,7 +105,7 @@ def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:
     return UnknownEffect(f"effect '{given}': expected {usage}, {expected}")
 
 
-def counted(usage: str, arguments: Sequence[str], low: int, high: int) -> None:
+def check_count(usage: str, arguments: Sequence[str], low: int, high: int) -> None:
     """Check the number of arguments; raises UnknownEffect."""
     if not low <= len(arguments) <= high:
         number = f"{low or 'no'}" if low == high else f"{low} to {high}"

@@ -1,6 +1,11 @@
-"""What was measured: touches, set-ups and runs, as arrays."""
+"""What was measured: touches, set-ups and runs, as arrays.
 
-from twin.record.copies import counted_once
+`Touches` is the one record that flows through the house: everything known about N contacts, base
+units. A new quantity that is recorded at every touch becomes a field of it; `Run` adds deviations.
+"""
+
+from twin.record.alignment import aligned
+from twin.record.copies import without_copies
 from twin.record.run import Run
 from twin.record.touches import (
     IntArray,
@@ -18,8 +23,9 @@ __all__ = [
     "Run",
     "Setup",
     "Touches",
+    "aligned",
     "at_poses",
     "computed_deviation",
-    "counted_once",
     "linear_approach",
+    "without_copies",
 ]

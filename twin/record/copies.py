@@ -21,7 +21,7 @@ SAME_PLACE = 0.05
 """Touches whose readings lie within this (mm, or mrad) at one calibrated point are repeated."""
 
 
-def counted_once(run: Run) -> Run:
+def without_copies(run: Run) -> Run:
     """The run without copied rows, and a remark that says so; the run itself if there are none.
 
     A row that stands twice, its time included, is a copy. So are rows that agree with earlier ones

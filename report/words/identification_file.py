@@ -7,6 +7,7 @@ from typing import Any
 
 from diagnosis.answer import Proof
 from diagnosis.fit import Estimable, Fit, estimable
+from report.words.identifiability_words import combination_words, freedom_words
 from twin.files import write_whole
 from twin.units import UM, shown
 
@@ -21,6 +22,7 @@ def identification(fit: Fit, known: Estimable, proofs: Sequence[Proof] = ()) -> 
         known: What it determines.
         proofs: Comparison with simulated machines whose truth is known, if any.
     """
+    units = [parameter.unit for _, parameter in fit.parameters]
     out: dict[str, Any] = {
         "format": FORMAT,
         "touches": int(fit.used.sum()),
@@ -34,10 +36,13 @@ def identification(fit: Fit, known: Estimable, proofs: Sequence[Proof] = ()) -> 
         "condition_number": known.found.condition_prior,
         "determined": [_value(d.name, d.value, d.u, d.unit) for d in known.determined],
         "combinations": [
-            _value(c.words, c.value, c.u, c.unit) | {"prior_over_posterior": c.gain}
+            _value(
+                combination_words(fit.names, units, c.weights, c.importance), c.value, c.u, c.unit
+            )
+            | {"prior_over_posterior": c.gain}
             for c in known.combinations
         ],
-        "never_seen": [f.words for f in known.freedoms],
+        "never_seen": [freedom_words(f, fit.model.chain) for f in known.freedoms],
     }
     if proofs:
         out["volumetric_error"] = [

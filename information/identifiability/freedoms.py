@@ -1,0 +1,163 @@
+"""Gauge freedoms: what imitates what and why, and freedoms that differ in their shape alone."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+from twin.machine import Chain, Family, Symbol, parse_symbol
+from twin.model import Effect, Parameter
+
+_SHAPED = re.compile(r"geometric\((\w+),([^,)]+)\)\Z")
+_ORDER = ("linear", "parabolic", "sinusoidal", "sinusoidal@90")
+
+Parameters = Sequence[tuple[Effect, Parameter]]
+"""Those of a model, each with its effect."""
+
+
+class Reason(Enum):
+    """What makes the members of a freedom alike."""
+
+    STANDARD = "the standard moves as a whole"
+    STANDARD_ON_TABLE = "the standard on the table moves as a whole"
+    TOOL = "the tool moves as a whole"
+    BODY = "the body between two axes moves as a whole"
+    SQUARENESS = "a squareness is the slope of a straightness"
+    ONE_LENGTH = "the ball hangs at one length, so a tilt is a displacement"
+    ON_SPINDLE = "the spindle stands still, and the ball hangs on its line"
+    SPINDLE_STILL = "the spindle stands still, so its errors are constant"
+    TURNS = "it turns about the line from spindle to ball"
+
+
+class Resolution(Enum):
+    """What would tell the members of a freedom apart."""
+
+    UNTRIED = "nothing else was tried"
+    TOUCHES = "other touches that were tried"
+    SIDEWAYS = "a second stylus that reaches sideways, off the line of the spindle"
+    NEVER = "nothing that touches a workpiece; it is fixed by convention"
+
+
+class Term(NamedTuple):
+    """A member of a freedom: value in base units per base unit of what it is compared with."""
+
+    name: str
+    unit: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """A parameter that the touches cannot tell from others: only their sum has a value.
+
+    Attributes:
+        parameter: That can be left out.
+        unit: Its base unit.
+        alike: What imitates it exactly; nothing for a parameter that moves no touch.
+        reason: What makes them alike; None where nothing is known of the parameters.
+        resolution: What would tell them apart.
+        resolved_by: The touches that would, by the name they were tried under.
+    """
+
+    parameter: str
+    unit: str
+    alike: tuple[Term, ...]
+    reason: Reason | None = None
+    resolution: Resolution = Resolution.UNTRIED
+    resolved_by: str = ""
+
+    @property
+    def values(self) -> dict[str, float]:
+        """What imitates it: value of every other parameter per unit of this one."""
+        return {term.name: term.value for term in self.alike}
+
+
+@dataclass(frozen=True)
+class FreedomFamily:
+    """Freedoms that say the same of several shapes of an error.
+
+    Attributes:
+        first: One of them; of several shapes with the component errors themselves for names,
+            `geometric(EXX,)`.
+        shapes: Of the errors, in their usual order; empty for a freedom by itself.
+        count: Number of freedoms.
+    """
+
+    first: Freedom
+    shapes: tuple[str, ...]
+    count: int
+
+
+def reason(members: Sequence[int], parameters: Parameters, chain: Chain) -> Reason | None:
+    """What makes the members of a freedom alike, from what they are."""
+    symbols = [getattr(parameters[p][0], "symbol", None) for p in members]
+    known = [s for s in symbols if isinstance(s, Symbol)]
+    if len(known) < len(members):
+        is_setup = any(parameters[p][0].kind == "setup" for p in members)
+        return Reason.STANDARD if is_setup else None
+    still = [s for s in known if s.link not in "wt" and not chain.link(s.link).programmed]
+    if len(known) == 1:
+        if still:
+            return Reason.ON_SPINDLE
+        return Reason.TURNS if known[0].is_angular else None
+    families, links = {s.family for s in known}, {s.link for s in known}
+    is_mixed = len({s.is_angular for s in known}) == 2
+    if "w" in links:
+        return Reason.STANDARD_ON_TABLE
+    if len(known) == 2 and is_mixed and Family.LOCATION in families and len(links) == 1:
+        return Reason.SQUARENESS
+    if len(known) == 2 and is_mixed:
+        return Reason.ONE_LENGTH
+    if "t" in links:
+        return Reason.TOOL
+    return Reason.SPINDLE_STILL if still else Reason.BODY
+
+
+def in_families(freedoms: Iterable[Freedom]) -> tuple[FreedomFamily, ...]:
+    """Freedoms, those that say the same of several shapes of an error together.
+
+    Returns:
+        In the order of their first members.
+    """
+    families: dict[object, list[Freedom]] = {}
+    for freedom in freedoms:
+        families.setdefault(_family(freedom) or (freedom.parameter,), []).append(freedom)
+    return tuple(_joined(family) for family in families.values())
+
+
+def _family(freedom: Freedom) -> tuple[object, ...] | None:
+    """What freedoms of several shapes have in common; None where no one shape is in all members."""
+    named = [(freedom.parameter, 1.0), *((t.name, t.value) for t in freedom.alike)]
+    found = [_SHAPED.match(name) for name, _ in named]
+    if not all(found) or len({m.group(2) for m in found if m}) > 1:
+        return None
+    symbols = tuple(m.group(1) for m in found if m)
+    values = tuple(f"{value:.6g}" for _, value in named)
+    return symbols, values, freedom.resolution, freedom.resolved_by
+
+
+def _joined(family: Sequence[Freedom]) -> FreedomFamily:
+    """One record for freedoms of several shapes."""
+    first = family[0]
+    if len(family) == 1:
+        return FreedomFamily(first, (), 1)
+    lead = _without_shape(first.parameter, 1.0)
+    shapes = [m.group(2) for f in family if (m := _SHAPED.match(f.parameter))]
+    shapes.sort(key=lambda shape: _ORDER.index(shape) if shape in _ORDER else len(_ORDER))
+    plain = Freedom(
+        parameter=lead.name,
+        unit=lead.unit,
+        alike=tuple(_without_shape(term.name, term.value) for term in first.alike),
+        reason=first.reason,
+        resolution=first.resolution,
+        resolved_by=first.resolved_by,
+    )
+    return FreedomFamily(plain, tuple(shapes), len(family))
+
+
+def _without_shape(name: str, value: float) -> Term:
+    """The component error itself, `geometric(EXX,)`."""
+    symbol = parse_symbol(name.partition("(")[2].partition(",")[0])
+    unit = "rad" if symbol is not None and symbol.is_angular else "mm"
+    return Term(f"geometric({symbol.name if symbol else ''},)", unit, value)

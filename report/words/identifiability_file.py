@@ -1,0 +1,105 @@
+"""identifiability.json: what a design's touches can and cannot know."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from artefact.compare import IdentifiabilityReport
+from information.identifiability import Degree
+from report.words.identifiability_words import (
+    combination_words,
+    degree_words,
+    freedom_words,
+    gist,
+    group_words,
+    reason_words,
+    resolution_words,
+)
+from report.words.parameter_words import in_words, short
+from twin.files import write_whole
+from twin.machine import Chain, Link
+from twin.units import DEG, shown
+
+FORMAT = "identifiability/1"
+"""Of the file."""
+
+
+def as_json(known: IdentifiabilityReport) -> dict[str, Any]:
+    """The record as plain data, units in the names of the keys."""
+    g, chain = known.gauge, known.chain
+    names = [short(name) for name in known.model.names]
+    units = [parameter.unit for _, parameter in known.model.parameters]
+    return {
+        "format": FORMAT,
+        "words": gist(known),
+        "touches": known.touches,
+        "readings": dict(_reading(known.chain.link(a), known.readings[a]) for a in known.readings),
+        "parameters": g.parameters,
+        "rank": g.rank,
+        "condition": {
+            "columns_of_length_one": _rounded(g.condition),
+            "in_units_of_expected_sizes": _rounded(g.condition_prior),
+            "per_um_and_urad": _rounded(g.condition_raw),
+        },
+        "freedoms": [
+            {
+                "parameter": f.parameter,
+                "words": freedom_words(f, chain),
+                "why": reason_words(f),
+                "resolved_by": resolution_words(f),
+                "alike": [{"parameter": t.name, "per_unit": _rounded(t.value)} for t in f.alike],
+            }
+            for f in g.freedoms
+        ],
+        "groups": [
+            asdict(group) | {"words": group_words(group.members, group.known)} for group in g.groups
+        ],
+        "combinations": [
+            {
+                "words": combination_words(names, units, c.weights, c.importance),
+                "u": _rounded(c.u / shown(c.unit)[1]),
+                "unit": shown(c.unit)[0],
+                "prior_over_posterior": _rounded(c.gain),
+            }
+            for c in known.combinations
+        ],
+        "alone": [
+            {
+                "parameter": a.name,
+                "words": in_words(a.name, chain),
+                "expected": _rounded(a.expected / shown(a.unit)[1]),
+                "u": _rounded(a.u / shown(a.unit)[1]),
+                "unit": shown(a.unit)[0],
+            }
+            for a in known.alone
+        ],
+        "degrees": [_degree(d, chain) for d in known.degrees],
+        "alternatives": [asdict(a) for a in known.alternatives],
+    }
+
+
+def _reading(link: Link, limits: tuple[float, float]) -> tuple[str, list[float]]:
+    suffix, unit = ("_mm", 1.0) if link.kind == "linear" else ("_deg", DEG)
+    return link.name + suffix, [_rounded(v / unit) for v in limits]
+
+
+def _degree(degree: Degree, chain: Chain) -> dict[str, Any]:
+    label, factor = shown(degree.unit)
+    return {
+        "parameter": degree.symbol,
+        "supported": list(degree.supported),
+        "largest": degree.largest,
+        "u": _rounded(degree.u / factor),
+        "unit": label,
+        "words": degree_words(degree, chain),
+    }
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.6g}")
+
+
+def write_identifiability(path: Path, known: IdentifiabilityReport) -> None:
+    """Write the record as a JSON file, whole or not at all."""
+    write_whole(path, json.dumps(as_json(known), indent=1, ensure_ascii=False) + "\n")

@@ -1,0 +1,137 @@
+"""What touches can and cannot tell apart, in the words of a metrologist.
+
+Where the members of a gauge freedom have different units its equation says what one unit of the
+first looks like, `1 µrad of squareness of Y about Z (EC0Y) = - 0.3 µm of linear straightness of Y
+in X (EXY)`.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from artefact.compare import IdentifiabilityReport
+from information.identifiability import (
+    Degree,
+    Freedom,
+    FreedomFamily,
+    Pair,
+    Resolution,
+    Term,
+)
+from report.words.parameter_words import in_words
+from twin.frames import Array
+from twin.machine import Chain
+from twin.units import shown
+
+NAMED = 4
+"""Most parameters that are written out in the words of a combination."""
+
+SHARE = 0.1
+"""A parameter below this share of the largest weight is left out of the words."""
+
+_FULL = 0.9995  # a correlation that rounds to 1.000
+_SAME = 1e-6  # relative, of two weights
+_SHAPES = {"sinusoidal": "sine", "sinusoidal@90": "cosine"}
+
+
+def gist(known: IdentifiabilityReport) -> str:
+    """What a design's touches can know, in two sentences."""
+    gauge = known.gauge
+    never = sum(f.resolution is Resolution.NEVER for f in gauge.freedoms)
+    return (
+        f"{known.touches} touches see {gauge.rank} independent combinations of {gauge.parameters} "
+        f"parameters. Of the {len(gauge.freedoms)} that stay free, {never} are free on every "
+        f"workpiece and fixed by convention"
+    )
+
+
+def freedom_words(freedom: Freedom, chain: Chain) -> str:
+    """`set-up rotation about Z (EC0w) = - zero position of C (EC0C)`."""
+    left, unit = in_words(freedom.parameter, chain).strip(), freedom.unit
+    if not freedom.alike:
+        return f"{left} moves no touch"
+    is_mixed = any(term.unit != unit for term in freedom.alike)
+    right = " ".join(_term(term, unit, is_mixed, chain) for term in freedom.alike)
+    right = right.removeprefix("+ ")
+    return f"1 {shown(unit)[0]} of {left} = {right}" if is_mixed else f"{left} = {right}"
+
+
+def _term(term: Term, of: str, is_mixed: bool, chain: Chain) -> str:
+    """A term with its sign: `- zero position of C (EC0C)`, `+ 0.16 µm of ...`."""
+    sign, size = ("-" if term.value < 0.0 else "+"), abs(term.value)
+    words = in_words(term.name, chain).strip()
+    if is_mixed:
+        label, factor = shown(term.unit)
+        return f"{sign} {size * shown(of)[1] / factor:.3g} {label} of {words}"
+    return f"{sign} {words}" if abs(size - 1.0) < _SAME else f"{sign} {size:.3g} x {words}"
+
+
+def family_words(family: FreedomFamily, chain: Chain) -> str:
+    """The same, with the shapes for which it holds."""
+    words = freedom_words(family.first, chain)
+    listed = ", ".join(_SHAPES.get(shape, shape) for shape in family.shapes)
+    return f"{words} (in each shape: {listed})" if listed else words
+
+
+def reason_words(freedom: Freedom) -> str:
+    """What makes the members of a freedom alike; nothing where it is not known."""
+    return freedom.reason.value if freedom.reason else ""
+
+
+def resolution_words(freedom: Freedom) -> str:
+    """What would tell the members of a freedom apart; nothing where nothing was tried."""
+    if freedom.resolution is Resolution.UNTRIED:
+        return ""
+    return freedom.resolved_by or freedom.resolution.value
+
+
+def group_words(members: Sequence[str], known: int) -> str:
+    """How many combinations of confounded parameters the touches see."""
+    return f"{len(members)} parameters, {known} combinations of which are seen"
+
+
+def pair_words(pair: Pair, names: Sequence[str]) -> str:
+    """What a tie means: `EXX and EX0C (r = -0.980): only their sum is known`."""
+    known, sign = ("difference", ">") if pair.r > 0.0 else ("sum", "<")
+    # nothing is known to be tied for good: a full one is never shown
+    number = f"r = {pair.r:+.3f}" if abs(pair.r) < _FULL else f"r {sign} {np.sign(pair.r) * 0.999}"
+    return f"{names[pair.first]} and {names[pair.second]} ({number}): only their {known} is known"
+
+
+def degree_words(degree: Degree, chain: Chain) -> str:
+    """`straightness of X in Y (EYX): degrees 2 to 5, the last to 0.4 µm`."""
+    what = in_words(f"geometric({degree.symbol},)", chain).strip()
+    link = chain.link(chain.symbol(degree.symbol).link)
+    kind = "harmonic" if link.kind == "rotary" else "degree"
+    if not degree.supported:
+        return f"{what}: no {kind}"
+    label, factor = shown(degree.unit)
+    first, last = degree.supported[0], degree.supported[-1]
+    if first == last:
+        return f"{what}: {kind} {last} to {degree.u / factor:.2g} {label}"
+    return f"{what}: {kind}s {first} to {last}, the last to {degree.u / factor:.2g} {label}"
+
+
+def combination_words(
+    names: Sequence[str], units: Sequence[str], weights: Array, importance: Array
+) -> str:
+    """`EXX + 0.52 EXZ - 0.03 µm/µrad EBX ...`: the most important parameters with their weights.
+
+    Args:
+        names: Of the parameters.
+        units: Base units of the parameters.
+        weights: Shape (P,), the leading one's is one.
+        importance: Weights in units of what is expected of each parameter, (P,).
+    """
+    order = np.argsort(-np.abs(importance), kind="stable")
+    kept = [k for k in order if abs(importance[k]) >= SHARE * abs(importance[order[0]])]
+    label, factor = shown(units[order[0]])
+    parts = []
+    for k in kept[:NAMED]:
+        sign = "-" if weights[k] < 0 else "+"
+        own, size = shown(units[k]), abs(weights[k])
+        words = f"{size * own[1] / factor:.3g}"
+        per = "" if own[0] == label else f"{label}/{own[0]} "
+        parts.append(f"{sign} {'' if words == '1' and not per else words + ' '}{per}{names[k]}")
+    rest = len(kept) - NAMED
+    return " ".join(parts).removeprefix("+ ") + (f" and {rest} more" if rest > 0 else "")

@@ -1,0 +1,190 @@
+"""The search among sets of effects, refinement of inner parameters, classes of look-alikes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.answer.ambiguity import CONFUSED, confusion_class, plausibility
+from diagnosis.evidence.effect_signatures import (
+    ResidualSpace,
+    ScaledEffect,
+    projected,
+    signatures,
+    whole_grids,
+)
+from diagnosis.evidence.evidence import EffectSet, addition
+from diagnosis.fit.identification import fit_run
+from diagnosis.search.refine import refined, with_moved_points
+from diagnosis.search.regrid import regridded
+from diagnosis.search.screening import Library, joined_shortlists
+from diagnosis.search.selection import MOST_SETS, Search
+from twin.library.catalogue import parse_effect
+from twin.library.ordinary import ordinary_model
+from twin.model.model import columns
+from twin.units import MINUTE, UM
+
+KEY = (2, "hsm600u")
+NAMES = (
+    "backlash(X)",
+    "backlash(Y)",
+    "thermal-lag(EZZ)",
+    "thermal-lag(EXX)",
+    "periodic(EXX)",
+    "probe-radius",
+    "drift",
+)
+
+
+@pytest.fixture
+def planted(case):
+    """A function: {name: (inner parameters, size in standard deviations)} -> space of a run."""
+
+    def made(hidden, seed=0):
+        run = case(*KEY).run
+        t = run.touches
+        rng = np.random.default_rng(seed)
+        deviation = rng.normal(0.0, 0.6 * UM, len(run))
+        for name, (inner, size) in hidden.items():
+            effect = parse_effect(name, t.chain)
+            effect = effect.tuned(*inner) if inner else effect
+            theta = np.array([size * p.sd for p in effect.parameters])
+            deviation = deviation + columns([effect], t) @ theta
+        return ResidualSpace.of(fit_run(replace(run, deviation=deviation), ordinary_model(t.chain)))
+
+    return made
+
+
+def library(space, names=NAMES):
+    return [parse_effect(name, space.touches.chain) for name in names]
+
+
+def search_in(space, names=NAMES):
+    grids = whole_grids(library(space, names), space.touches)
+    return Search(signatures(space, grids, len(grids)))
+
+
+def names_of(subset):
+    return {m.effect.name for m in subset.members}
+
+
+def test_two_effects_are_found_and_no_third(planted) -> None:
+    search = search_in(planted({"backlash(X)": ((), 1.0), "thermal-lag(EZZ)": ((1500.0,), 1.0)}))
+    assert names_of(search.run()) == {"backlash(X)", "thermal-lag(EZZ)"}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_nothing_is_found_in_noise(planted, seed) -> None:
+    assert search_in(planted({}, seed)).run().members == ()
+
+
+def test_only_an_evaluation_is_charged(planted) -> None:
+    """Whoever asks for scores or a ranking again pays nothing."""
+    search = search_in(planted({"backlash(X)": ((), 1.0)}))
+    nothing = search.evaluate(())
+    left = search.budget.left
+    assert MOST_SETS - left == pytest.approx(1.0)
+    best = search.ranking(nothing)[0]
+    member = search.member(nothing, best)
+    assert member.effect.name == "backlash(X)"
+    assert search.budget.left == left
+    search.evaluate((member,))
+    assert search.budget.left < left
+
+
+def test_the_evidence_of_a_set_is_that_of_its_columns(planted) -> None:
+    """Scores of additions, by inner products, against the sets themselves."""
+    search = search_in(planted({"backlash(X)": ((), 1.0), "thermal-lag(EZZ)": ((1500.0,), 1.0)}))
+    nothing = search.evaluate(())
+    one = search.evaluate((search.member(nothing, search.ranking(nothing)[0]),))
+    scores = search.scores(one)
+    for variant in search.ranking(one):
+        whole = search.evaluate((*one.members, search.member(one, variant)))
+        assert scores.evidence[variant] == pytest.approx(whole.effects.evidence, abs=1e-6)
+
+
+def test_refinement_leaves_the_grid_for_the_true_time_constant(planted) -> None:
+    """Between two points of the grid, and at least as likely as the truth itself."""
+    space = planted({"thermal-lag(EZZ)": ((1234.0,), 2.0)})
+    (start,) = library(space, ("thermal-lag(EZZ)",))
+    grid = np.asarray(start.inner(space.touches)[0].grid)
+    nearest = start.tuned(float(grid[np.argmin(np.abs(grid - 1234.0))]))
+    empty = EffectSet(space, np.zeros((len(space.residual), 0)))
+
+    def evidence(tau):
+        return addition(empty, projected(space, [ScaledEffect(start.tuned(tau))]))[0]
+
+    found, top = refined(empty, nearest)
+    (tau,) = found.effect.tuning.values()
+    assert top >= max(evidence(1234.0), *(evidence(float(g)) for g in grid)) - 1e-3
+    # a parabola through the evidence has the standard uncertainty in its curvature
+    step = 30.0
+    curvature = (evidence(tau + step) - 2.0 * evidence(tau) + evidence(tau - step)) / step**2
+    assert abs(tau - 1234.0) < 4.0 / np.sqrt(-curvature)
+
+
+def test_moved_points_take_the_place_of_the_grid(planted) -> None:
+    space = planted({})
+    search = search_in(space, ("thermal-lag(EZZ)", "backlash(X)"))
+    effect = search.pool.variants[0].tuned(777.0)
+    pool = with_moved_points(search.pool, {0: effect})
+    raw = space.columns([effect])
+    np.testing.assert_allclose(pool.columns_of(0), space.project(raw))
+    assert pool.size[0] == pytest.approx(np.linalg.norm(raw[:, 0]))
+    assert pool.variants[0] is effect
+
+
+def test_what_a_coarse_grid_leaves_is_no_second_effect(planted) -> None:
+    """A lag ten times its usual size between two points of the grid."""
+    (effect,) = library(planted({}), ("thermal-lag(EZZ)",))
+    grid = np.sort(np.asarray(effect.inner(planted({}).touches)[0].grid))
+    tau = float(np.sqrt(grid[len(grid) // 2] * grid[len(grid) // 2 + 1]))
+    space = planted({"thermal-lag(EZZ)": ((tau,), 10.0)})
+    coarse = search_in(space)
+    found = coarse.run()
+    search, settled = regridded(coarse, found)
+    assert names_of(settled) == {"thermal-lag(EZZ)"}
+    assert settled.effects.evidence > found.effects.evidence
+    (member,) = settled.members
+    assert next(iter(member.effect.tuning.values())) == pytest.approx(tau, abs=MINUTE)
+    assert search.pool.variants[member.variant] is member.effect
+
+
+def test_a_shortlist_of_a_long_run_is_a_value(planted, monkeypatch) -> None:
+    """Asked twice it says the same, and the pool has exactly its points."""
+    monkeypatch.setattr("diagnosis.search.screening.WHOLE_BELOW", 300)
+    space = planted({"thermal-lag(EZZ)": ((1500.0,), 2.0)})
+    made = Library.of(space, library(space))
+    empty = EffectSet(space, np.zeros((len(space.residual), 0)))
+    first = made.shortlist((), empty)
+    assert made.shortlist((), empty) == first
+    assert made.sample.names[next(iter(first))] == "thermal-lag(EZZ)"
+    pool = made.pool(first)
+    assert len(pool.variants) == sum(len(points) for points in first.values())
+    assert pool.tried == len(NAMES)
+    joined = joined_shortlists({0: frozenset({1}), 2: frozenset({5})}, {0: frozenset({3})})
+    assert joined == {0: frozenset({1, 3}), 2: frozenset({5})}
+
+
+def test_look_alikes_are_a_class(planted) -> None:
+    """A growth along Z is the same in the body of Z as in that of X; along X it is another."""
+    space = planted({"thermal-lag(EZZ)": ((1500.0,), 0.5)})
+    names = ("thermal-lag(EZZ)", "thermal-lag(EZX)", "thermal-lag(EXX)", "backlash(X)")
+    pool = search_in(space, names).pool
+    empty = EffectSet(space, np.zeros((len(space.residual), 0)))
+    found, _ = refined(empty, library(space, names[:1])[0].tuned(1500.0))
+    made = confusion_class(pool, found, ())
+    everything = {made.effect.name, *(r.effect.name for r in made.rivals)}
+    assert {"thermal-lag(EZZ)", "thermal-lag(EZX)"} <= everything
+    assert all(r.log_odds < CONFUSED for r in made.rivals)
+    assert all(r.log_odds >= CONFUSED for r in made.told_apart)
+    assert "thermal-lag(EXX)" not in everything
+    assert "backlash(X)" not in everything
+
+
+def test_a_sensor_is_believed_of_its_own_axis(case) -> None:
+    t = case(8, "hmc1995", ("thermal-expansion(Y,scaleY)",)).run.touches
+    effects = [parse_effect(f"thermal-expansion(Y,{s})", t.chain) for s in ("scaleX", "scaleY")]
+    odds = plausibility(effects, t)
+    own, other = odds["thermal-expansion(Y,scaleY)"], odds["thermal-expansion(Y,scaleX)"]
+    assert own > other

@@ -1,0 +1,80 @@
+"""Structure in a residual: what was planted is found by its kind, noise has none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.evidence.effect_signatures import ResidualSpace
+from diagnosis.evidence.evidence import EffectSet
+from diagnosis.fit.identification import fit_run
+from diagnosis.residual.structure import CHANCE, Shape, find_structure
+from twin.model.model import Model
+from twin.units import UM
+
+KEY = (1, "hmc1995")
+NOISE = 0.6 * UM
+
+
+@pytest.fixture
+def structure_of(case):
+    """A function: deviation (mm) of the touches of a run -> structure that a bare model leaves."""
+
+    def found(deviation):
+        run = replace(case(*KEY).run, deviation=deviation)
+        space = ResidualSpace.of(fit_run(run, Model(run.touches.chain, ())))
+        nothing = EffectSet(space, np.zeros((len(space.residual), 0)))
+        return space, find_structure(nothing)
+
+    return found
+
+
+@pytest.fixture
+def noise(case):
+    """A function of a seed -> white noise of a run, (N,), mm."""
+    return lambda seed: np.random.default_rng(seed).normal(0.0, NOISE, len(case(*KEY).run))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_noise_has_no_structure(structure_of, noise, seed) -> None:
+    assert structure_of(noise(seed))[1] == []
+
+
+def test_a_smooth_function_is_found_in_its_variable_and_direction(
+    case, structure_of, noise
+) -> None:
+    """A wavy Z over X: nothing but X, along Z, explains it."""
+    t = case(*KEY).run.touches
+    x = t.reading("X")
+    wavy = np.sin(3.0 * np.pi * (x - x.min()) / np.ptp(x)) * t.normal_table[:, 2]
+    space, found = structure_of(noise(1) + 4.0 * UM * wavy)
+    named = [s for s in found if s.shape is Shape.SMOOTH and s.columns is not None]
+    best = max(named, key=lambda s: s.evidence)
+    assert "X_mm" in best.variables
+    assert best.direction == "Z"
+    assert best.p_value < 1e-9
+    # its columns leave nothing but noise once they are in the set
+    after = EffectSet(space, best.columns)
+    left = np.sqrt(after.objective / after.dof) * np.median(space.u)
+    assert left == pytest.approx(NOISE, rel=4.0 / np.sqrt(2.0 * after.dof))
+    assert all(s.p_value > 1e-9 for s in find_structure(after))
+
+
+def test_noise_that_remembers_is_seen_by_its_neighbours(structure_of, noise) -> None:
+    """Every touch keeps six tenths of the one before."""
+    white = noise(2)
+    coloured = np.zeros_like(white)
+    for i in range(len(white)):
+        coloured[i] = 0.6 * coloured[i - 1] * (i > 0) + 0.8 * white[i]
+    found = structure_of(coloured)[1]
+    (in_time,) = [s for s in found if s.shape is Shape.NEIGHBOURS and s.variables == ("time_s",)]
+    assert in_time.p_value < CHANCE
+    assert in_time.columns is None
+
+
+def test_a_wave_keeps_its_period(case, structure_of, noise) -> None:
+    t = case(*KEY).run.touches
+    wave = 2.0 * UM * np.sin(2.0 * np.pi * t.time / 287.0)
+    found = structure_of(noise(3) + wave)[1]
+    (one,) = [s for s in found if s.shape is Shape.WAVE]
+    assert one.period == pytest.approx(287.0, rel=0.01)

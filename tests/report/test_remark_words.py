@@ -1,0 +1,48 @@
+"""Sentences of remarks: numbers in their units, singular and plural, every record has one."""
+
+from typing import get_args
+
+import pytest
+
+from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake
+from diagnosis.residual.run_remarks import (
+    FewPoses,
+    NoiseMisstated,
+    OutliersLeftOut,
+    Remark,
+    SearchEnded,
+)
+from report.words.remark_words import _SENTENCES, remark_sentence
+from twin.units import UM
+
+
+def test_every_remark_has_its_sentence() -> None:
+    assert set(_SENTENCES) == set(get_args(Remark))
+
+
+@pytest.mark.parametrize("what", MistakenUnit)
+def test_every_mistaken_unit_has_its_sentence(what) -> None:
+    told = remark_sentence(UnitMistake(what, 0.012 * UM, 12.0 * UM, 0.6 * UM, 0.5 * UM))
+    assert "µm" in told
+    assert "look like" in told or "looks like" in told
+
+
+def test_lengths_are_in_micrometres() -> None:
+    told = remark_sentence(NoiseMisstated(0.45 * UM, 0.6 * UM))
+    assert told == "touches scatter by 0.45 µm about the model; 0.60 µm is stated"
+
+
+def test_one_outlier_and_many() -> None:
+    one = remark_sentence(OutliersLeftOut((17,), 31.04 * UM))
+    assert one.startswith("1 gross error was left out, 31.0 µm outside what the other")
+    assert one.endswith(": line 17")
+    many = remark_sentence(OutliersLeftOut(tuple(range(1, 24)), -12.0 * UM))
+    assert many.startswith("23 gross errors were left out, the largest 12.0 µm inside")
+    assert many.endswith("19, 20 and 3 more")
+
+
+def test_one_pose_and_two() -> None:
+    assert remark_sentence(FewPoses(1)).startswith("1 table pose only: errors of the rotary axes c")
+    assert "cannot be seen" in remark_sentence(FewPoses(1))
+    assert "2 table poses only" in remark_sentence(FewPoses(2))
+    assert "1500 sets" in remark_sentence(SearchEnded(1500.0))
