@@ -19,8 +19,15 @@ from artefact.brief.standard_tables import (
 from sensitivity.montecarlo import MACHINES_A_BATCH
 from sensitivity.population import Population
 from twin.errors import BadFile, UnknownAxis
-from twin.files import Table, Vector, check_format, checked, parse_toml, read_machine, read_text
-from twin.frames import fixed_xyz, pose
+from twin.files import (
+    SetupTable,
+    Table,
+    check_format,
+    checked,
+    parse_toml,
+    read_machine,
+    read_text,
+)
 from twin.machine import Chain
 from twin.record import Setup
 from twin.units import DEG, UM
@@ -39,13 +46,6 @@ class MonteCarloTable(Table):
     draws: int = Field(default=2000, ge=100)
     digits: int = Field(default=0, ge=0, le=3)
     tolerance_um: float = Field(default=float("inf"), gt=0.0)
-
-
-class SetupTable(Table):
-    """`[setup.a]`: pose of the standard in the table frame."""
-
-    origin_mm: Vector = (0.0, 0.0, 0.0)
-    rotation_deg: Vector = (0.0, 0.0, 0.0)
 
 
 class SimulationTable(Table):
@@ -171,10 +171,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         standard=table.standard,
         blank=table.blank,
         limits=table.limits,
-        setup=Setup(
-            name,
-            pose(fixed_xyz(np.array(setup.rotation_deg) * DEG), np.array(setup.origin_mm)),
-        ),
+        setup=setup.setup(name),
         noise=table.simulation.noise_um * UM,
         machines=table.simulation.machines,
     )

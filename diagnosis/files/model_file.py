@@ -10,9 +10,8 @@ from pydantic import Field
 from diagnosis.fit import Prior, file_unit
 from twin.errors import BadFile, DesignError
 from twin.files import (
-    AxisTable,
+    MachineTables,
     Table,
-    WorkpieceTable,
     check_format,
     checked,
     parse_toml,
@@ -20,20 +19,11 @@ from twin.files import (
 )
 from twin.frames import Array
 from twin.library import parse_effect
-from twin.machine import Axis, Chain, make_chain
+from twin.machine import Chain
 from twin.model import Effect, Model, Tunable
 from twin.units import DEG
 
 FORMAT = "model/1"
-
-
-class MachineEntry(Table):
-    """`[machine]`: as in a machine file."""
-
-    name: str
-    chain: str
-    axis: dict[str, AxisTable]
-    workpiece: WorkpieceTable = WorkpieceTable()
 
 
 class EffectEntry(Table):
@@ -64,7 +54,7 @@ class ModelTable(Table):
     """The whole file."""
 
     format: str
-    machine: MachineEntry
+    machine: MachineTables
     source: SourceEntry
     effect: list[EffectEntry]
     covariance: list[list[float]]
@@ -120,7 +110,7 @@ def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
     data = parse_toml(read_text(path), path)
     check_format(data, FORMAT, path)
     table = checked(ModelTable, data, path)
-    chain = _chain(table.machine, path)
+    chain = table.machine.made(path, "machine")
     by_name = {e.name: e for e in known}
     effects, mean, factors = [], [], []
     for i, entry in enumerate(table.effect):
@@ -136,18 +126,6 @@ def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
     covariance = _covariance(table.covariance, np.array(factors), path)
     model = Model(chain, tuple(effects))
     return SavedModel(model, Prior.of_estimates(np.array(mean), covariance), table.source)
-
-
-def _chain(entry: MachineEntry, path: str | Path) -> Chain:
-    axes = {}
-    for name, axis in entry.axis.items():
-        factor = DEG if name[:1] in "ABC" else 1.0
-        reach = None if axis.range is None else (axis.range[0] * factor, axis.range[1] * factor)
-        axes[name] = Axis(reach, axis.point, axis.direction)
-    try:
-        return make_chain(entry.name, entry.chain, axes, entry.workpiece.origin)
-    except DesignError as error:
-        raise BadFile(path, "machine", str(error), "a machine that fits together") from error
 
 
 def _effect(

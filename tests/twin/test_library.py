@@ -230,7 +230,7 @@ def test_entry_points_add_effects(own_register, monkeypatch) -> None:
 @pytest.mark.parametrize(
     ("value", "message"),
     [
-        ("twin.effects.backlash:USAGE", "expected a Kind"),
+        ("twin.effects.backlash:Backlash", "expected a Kind"),
         ("twin.effects.nothing:KIND", "No module named 'twin.effects.nothing'"),
     ],
 )

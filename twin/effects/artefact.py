@@ -150,7 +150,7 @@ class Drift:
 
 
 def _make_expansion(chain: Chain, arguments: Sequence[str]) -> Effect:
-    check_count("artefact-expansion(sensor)", arguments, 1, 1)
+    check_count(EXPANSION.usage, arguments, 1, 1)
     return ArtefactExpansion(arguments[0])
 
 

@@ -12,9 +12,9 @@ from twin.record import Touches
 from twin.units import UM
 
 FORM_DEGREE = 5
-"""Of the polynomial over a patch: waves down to the size of the patch."""
+"""Of the polynomial over a patch, 21 coefficients: waves down to the size of the patch."""
 FORM_TOUCHES = 30
-"""Fewest touches on a patch whose form can be told from noise."""
+"""Fewest touches on a patch whose form is proposed: about three for two of its 21 coefficients."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def _legendre(place: Array) -> tuple[list[Array], list[Array]]:
 
 def make(chain: Chain, arguments: Sequence[str]) -> ArtefactForm:
     """From the label of the patch."""
-    check_count("artefact-form(patch)", arguments, 1, 1)
+    check_count(KIND.usage, arguments, 1, 1)
     return ArtefactForm(arguments[0])
 
 

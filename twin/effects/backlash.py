@@ -19,8 +19,6 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import UM, URAD
 
-USAGE = "backlash(axis)"
-
 
 @dataclass(frozen=True)
 class Backlash:
@@ -60,8 +58,8 @@ class Backlash:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Backlash:
     """From the axis."""
-    check_count(USAGE, arguments, 1, 1)
-    axis = checked_axis(USAGE, arguments, arguments[0], chain)
+    check_count(KIND.usage, arguments, 1, 1)
+    axis = checked_axis(KIND.usage, arguments, arguments[0], chain)
     return Backlash(axis, chain.link(axis).own_component)
 
 

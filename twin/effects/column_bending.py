@@ -22,8 +22,6 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import URAD
 
-USAGE = "column-bending(axis,sensor,sensor)"
-
 
 @dataclass(frozen=True)
 class ColumnBending:
@@ -81,10 +79,10 @@ class ColumnBending:
 
 def make(chain: Chain, arguments: Sequence[str]) -> ColumnBending:
     """From the linear axis and a sensor on either side of its column."""
-    check_count(USAGE, arguments, 3, 3)
-    axis = checked_linear(USAGE, arguments, arguments[0], chain)
+    check_count(KIND.usage, arguments, 3, 3)
+    axis = checked_linear(KIND.usage, arguments, arguments[0], chain)
     if arguments[1] == arguments[2]:
-        raise refusal(USAGE, arguments, "two different sensors")
+        raise refusal(KIND.usage, arguments, "two different sensors")
     return ColumnBending(axis, arguments[1], arguments[2], chain.link(axis).own_component)
 
 

@@ -21,8 +21,6 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import UM, URAD
 
-USAGE = "coupling(symbol,axis)"
-
 
 @dataclass(frozen=True)
 class Coupling:
@@ -82,11 +80,11 @@ def _factors(touches: Touches, axis: str) -> tuple[Array, ...]:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Coupling:
     """From the component error and the other axis."""
-    check_count(USAGE, arguments, 2, 2)
+    check_count(KIND.usage, arguments, 2, 2)
     symbol = component_symbol(chain, arguments[0])
-    other = checked_axis(USAGE, arguments, arguments[1], chain)
+    other = checked_axis(KIND.usage, arguments, arguments[1], chain)
     if other == symbol.link:
-        raise refusal(USAGE, arguments, f"another axis than {other} itself")
+        raise refusal(KIND.usage, arguments, f"another axis than {other} itself")
     return Coupling(symbol, other)
 
 

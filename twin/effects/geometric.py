@@ -21,9 +21,10 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import DEG
 
-USAGE = "geometric(symbol,degree or shape)"
 HIGHEST = 12
+"""Degree beyond which a name is a slip: what varies faster is `periodic`."""
 PROPOSED_DEGREE = 4
+"""Two degrees beyond the ordinary model; faster changes are proposed as `periodic`."""
 _SHAPE = re.compile(r"([a-z]+)(?:,([\d.]+))?(?:@(-?[\d.]+(?:e-?\d+)?))?\Z")
 
 
@@ -140,7 +141,7 @@ def higher_order(chain: Chain, symbol: Symbol, degree: int) -> HigherOrder:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     """From the component error and a degree, or the name of a distribution."""
-    check_count(USAGE, arguments, 2, 3)
+    check_count(KIND.usage, arguments, 2, 3)
     symbol = component_symbol(chain, arguments[0])
     rest = ",".join(arguments[1:])
     if rest.isdigit() and 1 <= int(rest) <= HIGHEST:
@@ -148,7 +149,9 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     match = _SHAPE.match(rest)
     word = next((s for s in SHAPES if match is not None and s == match.group(1)), None)
     if match is None or word is None:
-        raise refusal(USAGE, arguments, f"a degree of 1 to {HIGHEST} or one of {', '.join(SHAPES)}")
+        raise refusal(
+            KIND.usage, arguments, f"a degree of 1 to {HIGHEST} or one of {', '.join(SHAPES)}"
+        )
     _, periods, phase = match.groups()
     sd = Ranges().sd(chain, symbol)
     return ComponentError(symbol, word, float(periods or 1.0), float(phase or 0.0) * DEG, sd)

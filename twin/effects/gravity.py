@@ -21,8 +21,6 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import UM, URAD
 
-USAGE = "gravity(symbol[,axis])"
-
 
 @dataclass(frozen=True)
 class RamSag:
@@ -127,14 +125,16 @@ class OffCentreLoad:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     """From the component error, and the axis of the table for a load off its centre."""
-    check_count(USAGE, arguments, 1, 2)
+    check_count(KIND.usage, arguments, 1, 2)
     symbol = component_symbol(chain, arguments[0])
     rotary = chain.link(symbol.link).kind == "rotary"
     if len(arguments) == 1:
         return TiltSag(symbol) if rotary else RamSag(symbol)
-    table = checked_axis(USAGE, arguments, arguments[1], chain)
+    table = checked_axis(KIND.usage, arguments, arguments[1], chain)
     if not rotary or table not in chain.rotary_axes or table == symbol.link:
-        raise refusal(USAGE, arguments, "a rotary axis that tilts and another that turns the load")
+        raise refusal(
+            KIND.usage, arguments, "a rotary axis that tilts and another that turns the load"
+        )
     return OffCentreLoad(symbol, table)
 
 

@@ -9,8 +9,6 @@ from twin.machine import Chain, Family, Ranges, Symbol
 from twin.model import Kind, Parameter, Term, Where, check_count, refusal
 from twin.record import Touches
 
-USAGE = "location(symbol)"
-
 
 @dataclass(frozen=True)
 class LocationError:
@@ -48,11 +46,11 @@ class LocationError:
 
 def make(chain: Chain, arguments: Sequence[str]) -> LocationError:
     """From the name of the constant, with the prior of the default ranges."""
-    check_count(USAGE, arguments, 1, 1)
+    check_count(KIND.usage, arguments, 1, 1)
     symbol = chain.symbol(arguments[0])
     if symbol.family is Family.COMPONENT:
         names = [s.name for s in chain.symbols if s.family is not Family.COMPONENT]
-        raise refusal(USAGE, arguments, f"one of {', '.join(names)}")
+        raise refusal(KIND.usage, arguments, f"one of {', '.join(names)}")
     return LocationError(symbol, Ranges().sd(chain, symbol))
 
 

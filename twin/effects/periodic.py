@@ -19,13 +19,12 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import UM, URAD
 
-USAGE = "periodic(symbol)"
-
 SHORTEST, LONGEST = 1.0, 50.0
 """Periods that are scanned on a linear axis, mm."""
 OVERSAMPLING = 3.0
 """Scanned frequencies per resolvable one; the nearest keeps 95 % of a sine between two of them."""
 HIGHEST_HARMONIC = 12
+"""A period of 30 degrees, which 26 distinct readings of the axis can tell from its neighbours."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +137,7 @@ def _wave(touches: Touches, symbol: Symbol, factor: float) -> Sequence[Term]:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Periodic | Harmonic:
     """From the component error."""
-    check_count(USAGE, arguments, 1, 1)
+    check_count(KIND.usage, arguments, 1, 1)
     symbol = component_symbol(chain, arguments[0])
     return Periodic(symbol) if chain.link(symbol.link).kind == "linear" else Harmonic(symbol)
 

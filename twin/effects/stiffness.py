@@ -12,8 +12,6 @@ from twin.model import Kind, Parameter, Term, Where, check_count, refusal
 from twin.record import Touches
 from twin.units import UM
 
-USAGE = "stiffness(axis or t)"
-
 
 @dataclass(frozen=True)
 class Stiffness:
@@ -73,10 +71,10 @@ def stiffness(chain: Chain, link: str) -> Stiffness:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Stiffness:
     """From the axis, or `t` for the tool."""
-    check_count(USAGE, arguments, 1, 1)
+    check_count(KIND.usage, arguments, 1, 1)
     if arguments[0] not in (*chain.programmed_axes, "t"):
         known = ", ".join((*chain.programmed_axes, "t"))
-        raise refusal(USAGE, arguments, f"one of {known}")
+        raise refusal(KIND.usage, arguments, f"one of {known}")
     return stiffness(chain, arguments[0])
 
 

@@ -18,8 +18,6 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import T_REF
 
-USAGE = "thermal-expansion(axis,sensor)"
-
 
 @dataclass(frozen=True)
 class ThermalExpansion:
@@ -59,8 +57,8 @@ class ThermalExpansion:
 
 def make(chain: Chain, arguments: Sequence[str]) -> ThermalExpansion:
     """From the linear axis and the sensor."""
-    check_count(USAGE, arguments, 2, 2)
-    axis = checked_linear(USAGE, arguments, arguments[0], chain)
+    check_count(KIND.usage, arguments, 2, 2)
+    axis = checked_linear(KIND.usage, arguments, arguments[0], chain)
     return ThermalExpansion(axis, arguments[1], chain.link(axis).own_component)
 
 

@@ -30,8 +30,6 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import MINUTE, T_REF, UM, URAD
 
-USAGE = "thermal-lag(symbol,drive)"
-
 SPINDLE = "spindle_rpm"
 """The drive that is no sensor: the spindle speed of the run file."""
 SPEED_UNIT = 1.0e4
@@ -40,6 +38,7 @@ SPEED_UNIT = 1.0e4
 SHORTEST, LONGEST = 2.0 * MINUTE, 360.0 * MINUTE
 """Time constants that are scanned, s: a spindle nose 10 to 40 min, a column hours."""
 STEPS = 14
+"""Over the whole range neighbours differ by a factor of 1.5, between which the search refines."""
 
 
 @dataclass(frozen=True)
@@ -154,10 +153,10 @@ def _recursion(keep: Array, added: Array) -> Array:
 
 def make(chain: Chain, arguments: Sequence[str]) -> ThermalLag:
     """From the component error and, where something drives it, a sensor or `spindle_rpm`."""
-    check_count(USAGE, arguments, 1, 2)
+    check_count(KIND.usage, arguments, 1, 2)
     symbol = component_symbol(chain, arguments[0])
     if len(arguments) == 2 and not arguments[1]:
-        raise refusal(USAGE, arguments, f"a sensor or {SPINDLE} after the comma")
+        raise refusal(KIND.usage, arguments, f"a sensor or {SPINDLE} after the comma")
     return ThermalLag(symbol, arguments[1] if len(arguments) == 2 else "")
 
 

@@ -5,9 +5,9 @@ stood there and what was expected. Writers write whole files or none.
 """
 
 from twin.files.error_file import errors_toml, read_errors
-from twin.files.machine_file import AxisTable, Pair, Vector, WorkpieceTable, read_machine
+from twin.files.machine_file import MachineTables, Pair, Vector, read_machine
 from twin.files.pose_file import read_poses, reading_columns
-from twin.files.run_file import read_run
+from twin.files.run_file import SetupTable, read_run
 from twin.files.run_writer import write_run
 from twin.files.sensor_file import read_sensors
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
@@ -15,11 +15,11 @@ from twin.files.whole import NOT_WRITABLE, refuse_to_overwrite, write_whole, wri
 
 __all__ = [
     "NOT_WRITABLE",
-    "AxisTable",
+    "MachineTables",
     "Pair",
+    "SetupTable",
     "Table",
     "Vector",
-    "WorkpieceTable",
     "check_format",
     "checked",
     "errors_toml",

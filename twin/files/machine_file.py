@@ -21,6 +21,13 @@ class AxisTable(Table):
     point: Vector | None = None
     direction: Vector | None = None
 
+    def axis(self, name: str) -> Axis:
+        """What the table says of the axis of that name, base units."""
+        factor = DEG if name[:1] in "ABC" else 1.0
+        low, high = self.range or (0.0, 0.0)
+        travel = None if self.range is None else (low * factor, high * factor)
+        return Axis(travel, self.point, self.direction)
+
 
 class WorkpieceTable(Table):
     """`[workpiece]`: origin of the table frame, mm."""
@@ -28,14 +35,37 @@ class WorkpieceTable(Table):
     origin: Vector = (0.0, 0.0, 0.0)
 
 
-class MachineTable(Table):
-    """The whole file."""
+class MachineTables(Table):
+    """A machine as it stands in its own file and in model files."""
 
-    format: str
     name: str
     chain: str
     axis: dict[str, AxisTable]
     workpiece: WorkpieceTable = WorkpieceTable()
+
+    def made(self, path: str | Path, within: str = "") -> Chain:
+        """The machine in base units.
+
+        Args:
+            path: The file, for messages.
+            within: Key of the table that the machine stands in.
+
+        Raises:
+            BadFile: File, key, what stood there, what was expected.
+        """
+        axes = {name: table.axis(name) for name, table in self.axis.items()}
+        try:
+            return make_chain(self.name, self.chain, axes, self.workpiece.origin)
+        except UnknownAxis as error:
+            raise BadFile.of(path, error, within, f"axis.{error.facts['key']}") from error
+        except BadValue as error:
+            raise BadFile.of(path, error, within=within) from error
+
+
+class MachineFile(MachineTables):
+    """The whole file."""
+
+    format: str
 
 
 def read_machine(path: str | Path) -> Chain:
@@ -46,17 +76,4 @@ def read_machine(path: str | Path) -> Chain:
     """
     data = parse_toml(read_text(path), path)
     check_format(data, "machine/1", path)
-    table = checked(MachineTable, data, path)
-    axes = {}
-    for name, axis in table.axis.items():
-        factor = DEG if name[:1] in "ABC" else 1.0
-        if axis.range is not None and not axis.range[0] < axis.range[1]:
-            raise BadFile(path, f"axis.{name}.range", list(axis.range), "the smaller reading first")
-        reach = None if axis.range is None else (axis.range[0] * factor, axis.range[1] * factor)
-        axes[name] = Axis(reach, axis.point, axis.direction)
-    try:
-        return make_chain(table.name, table.chain, axes, table.workpiece.origin)
-    except UnknownAxis as error:
-        raise BadFile.of(path, error, within="axis") from error
-    except BadValue as error:
-        raise BadFile.of(path, error) from error
+    return checked(MachineFile, data, path).made(path)

@@ -1,6 +1,8 @@
 """Pose file (CSV): axis readings, a row a pose, `X_mm,...,B_deg,...[,tool_length_mm]`."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,10 +11,14 @@ from twin.files.table import CsvTable
 from twin.files.toml import read_text
 from twin.frames import Array
 from twin.machine import Chain
+from twin.record import IntArray
 from twin.units import DEG
 
 FARTHEST = 1e5
 """A length (mm) or an angle (degrees) beyond this is a slip, not a reading or a place."""
+
+ROUNDING = 1e-6
+"""Share of the travel by which the rounding of a reading may exceed it."""
 
 
 def reading_columns(chain: Chain) -> dict[str, tuple[str, float]]:
@@ -39,29 +45,25 @@ def readings(table: CsvTable, chain: Chain) -> Array:
     return q
 
 
-def outside_travel(table: CsvTable, chain: Chain, q: Array, slack: float = 1e-6) -> BadFile | None:
-    """The first reading beyond the travel of its axis, as an exception to raise or to tell.
+class BeyondTravel(NamedTuple):
+    """Rows beyond the travel of one axis, with the column, the first reading and the rule."""
 
-    Args:
-        table: The table, for line numbers.
-        chain: The machine.
-        q: Readings, (N, A).
-        slack: How far beyond is still within, as a part of the travel.
-    """
+    rows: IntArray
+    column: str
+    found: str
+    expected: str
+
+
+def beyond_travel(chain: Chain, q: Array, slack: float) -> Iterator[BeyondTravel]:
+    """Readings (N, A) beyond the travel of their axes by more than a share of it."""
     for i, (axis, (column, factor)) in enumerate(reading_columns(chain).items()):
         low, high = chain.link(axis).range
         margin = slack * (high - low)
-        beyond = np.flatnonzero((q[:, i] < low - margin) | (q[:, i] > high + margin))
-        if len(beyond):
-            row = int(beyond[0])
+        rows = np.flatnonzero((q[:, i] < low - margin) | (q[:, i] > high + margin))
+        if len(rows):
             travel = f"{low / factor:g} to {high / factor:g}"
-            return table.bad(
-                row,
-                column,
-                f"{q[row, i] / factor:.6g}",
-                f"a reading within the travel {travel} of axis {axis}",
-            )
-    return None
+            expected = f"a reading within the travel {travel} of axis {axis}"
+            yield BeyondTravel(rows, column, f"{q[rows[0], i] / factor:.6g}", expected)
 
 
 def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
@@ -79,9 +81,8 @@ def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
     if not len(table):
         raise BadFile(path, "table", "no rows", "a row a pose")
     q = readings(table, chain)
-    beyond = outside_travel(table, chain, q)
-    if beyond is not None:
-        raise beyond
+    for beyond in beyond_travel(chain, q, ROUNDING):
+        raise table.bad(int(beyond.rows[0]), beyond.column, beyond.found, beyond.expected)
     if "tool_length_mm" not in table:
         return q, np.zeros(len(table))
     return q, table.numbers("tool_length_mm", largest=FARTHEST)

@@ -1,12 +1,11 @@
 """What is looked at in the rows of a run file as a whole: copies, clocks, units, slips."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from twin.errors import BadFile
-from twin.files.pose_file import reading_columns
+from twin.files.pose_file import beyond_travel
 from twin.files.table import CsvTable
 from twin.frames import Array
 from twin.record import IntArray, Run, computed_deviation, without_copies
@@ -70,9 +69,9 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     how errors go on out there; a deviation of centimetres says nothing about micrometres.
     """
     astray = np.zeros(len(run), dtype=bool)
-    for beyond, column, found, wanted in _beyond_travel(run, ASTRAY):
-        _tell_slip(run, table, beyond, column, found, wanted, remarks)
-        astray[beyond] = True
+    for rows, column, found, wanted in beyond_travel(run.touches.chain, run.touches.q, ASTRAY):
+        _tell_slip(run, table, rows, f"column {column}", found, wanted, remarks)
+        astray[rows] = True
     far = np.flatnonzero((np.abs(run.deviation) > ABSURD) & ~astray)
     if len(far):
         where = "column dev_um" if "dev_um" in table else "deviation computed from the readings"
@@ -81,27 +80,10 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
         _tell_slip(run, table, far, where, found, wanted, remarks)
         astray[far] = True
     run = run[~astray] if astray.any() else run
-    for beyond, column, found, wanted in _beyond_travel(run, AT_LIMIT):
-        line = run.line[beyond[0]]
-        remarks.append(f"line {line}, {column}: found {found}, expected {wanted}; it is used so")
+    for rows, column, found, wanted in beyond_travel(run.touches.chain, run.touches.q, AT_LIMIT):
+        where = f"line {run.line[rows[0]]}, column {column}"
+        remarks.append(f"{where}: found {found}, expected {wanted}; it is used so")
     return run
-
-
-def _beyond_travel(run: Run, slack: float) -> Iterator[tuple[IntArray, str, str, str]]:
-    """Rows beyond the travel of an axis by more than a share of it.
-
-    Yields:
-        For every axis: the rows, the column, what stood in the first, what was expected.
-    """
-    for i, (axis, (column, factor)) in enumerate(reading_columns(run.touches.chain).items()):
-        low, high = run.touches.chain.link(axis).range
-        margin = slack * (high - low)
-        q = run.touches.q[:, i]
-        rows = np.flatnonzero((q < low - margin) | (q > high + margin))
-        if len(rows):
-            travel = f"{low / factor:g} to {high / factor:g}"
-            wanted = f"a reading within the travel {travel} of axis {axis}"
-            yield rows, f"column {column}", f"{q[rows[0]] / factor:.6g}", wanted
 
 
 def _tell_slip(

@@ -9,8 +9,8 @@ from twin.files.pose_file import FARTHEST
 from twin.files.table import CsvTable
 from twin.frames import Array
 from twin.machine import Chain
-from twin.record import IntArray, Labels, linear_approach
-from twin.units import UM
+from twin.record import IntArray, Labels, Moved, linear_approach
+from twin.units import DEG, UM
 
 SENSOR = re.compile(r"T_(\w+)_degC\Z")
 POINT = ("px_mm", "py_mm", "pz_mm")
@@ -165,3 +165,11 @@ def repeats(table: CsvTable) -> IntArray | None:
         row = int(odd[0])
         raise table.bad(row, "repeat", f"{numbers[row]:g}", "a whole number")
     return numbers.astype(np.int64)
+
+
+def moved_setup(moved: Moved) -> str:
+    """Remark on a set-up that was taken where its touches say that it stands."""
+    return (
+        f"set-up {moved.name} stands {moved.shift:.2f} mm and {moved.turn / DEG:.2f}° from where "
+        "the head says, as its touches tell; it is taken there"
+    )

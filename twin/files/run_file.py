@@ -44,6 +44,11 @@ class SetupTable(Table):
     origin_mm: Vector = (0.0, 0.0, 0.0)
     rotation_deg: Vector = (0.0, 0.0, 0.0)
 
+    def setup(self, name: str) -> Setup:
+        """The set-up in base units."""
+        rotation = fixed_xyz(np.array(self.rotation_deg) * DEG)
+        return Setup(name, pose(rotation, np.array(self.origin_mm)))
+
 
 class HeadTable(Table):
     """The head of a run file."""
@@ -83,11 +88,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     run = _assemble(table, chain, head, remarks)
     if "dev_um" not in table:
         run, moved = aligned(run)
-        remarks += [
-            f"set-up {m.name} stands {m.shift:.2f} mm and {m.turn / DEG:.2f}° from where the head "
-            "says, as its touches tell; it is taken there"
-            for m in moved
-        ]
+        remarks += [columns.moved_setup(m) for m in moved]
     run = checked_run(run, table, remarks)
     return replace(run, remarks=tuple(remarks))
 
@@ -165,10 +166,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
 def _setups(table: CsvTable, head: HeadTable) -> tuple[tuple[Setup, ...], IntArray]:
     """Set-ups in the order of the head, and the index of every row's."""
     tables = head.setup or {"a": SetupTable()}
-    setups = tuple(
-        Setup(name, pose(fixed_xyz(np.array(s.rotation_deg) * DEG), np.array(s.origin_mm)))
-        for name, s in tables.items()
-    )
+    setups = tuple(entry.setup(name) for name, entry in tables.items())
     names = list(tables)
     if "setup" not in table:
         if len(names) > 1:

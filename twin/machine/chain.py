@@ -284,7 +284,9 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
     if reach is None:
         raise BadValue(f"axis.{name}.range", "nothing", "its smallest and largest reading")
     if not reach[0] < reach[1]:
-        raise BadValue(f"axis.{name}.range", str(list(reach)), "the smaller reading first")
+        unit = 1.0 if kind == "linear" else DEG
+        found = [float(f"{end / unit:.12g}") for end in reach]
+        raise BadValue(f"axis.{name}.range", found, "the smaller reading first")
     own = np.eye(3)["XYZ".index(_ALONG[name[0]])]
     direction = own if axis.direction is None else np.array(axis.direction, dtype=float)
     length = float(np.linalg.norm(direction))

@@ -4,7 +4,7 @@
 units. A new quantity that is recorded at every touch becomes a field of it; `Run` adds deviations.
 """
 
-from twin.record.alignment import aligned
+from twin.record.alignment import Moved, aligned
 from twin.record.copies import without_copies
 from twin.record.run import Run
 from twin.record.touches import (
@@ -20,6 +20,7 @@ from twin.record.touches import (
 __all__ = [
     "IntArray",
     "Labels",
+    "Moved",
     "Run",
     "Setup",
     "Touches",

@@ -2,8 +2,8 @@
 
 Every touch gives a pair of points: the centre of the ball on the calibrated surface, artefact
 frame, and the tool point of the nominal machine, table frame. The rigid motion that joins the
-pairs best
-is known in closed form at any size; machine errors are small beside what makes it necessary.
+pairs best is known in closed form at any size; machine errors are small beside what makes it
+necessary.
 
 Reference:
     W. Kabsch, Acta Cryst. A32 (1976) 922: rotation between two sets of points.
