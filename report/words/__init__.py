@@ -14,6 +14,7 @@ from report.words.diagnosis_words import (
     sizes,
     stated_noise,
     structure_words,
+    unit_words,
     values,
     verdict_sentence,
 )
@@ -30,12 +31,19 @@ from report.words.identification_file import write_identification
 from report.words.parameter_words import in_words, short
 from report.words.probe_words import ordering_words
 from report.words.remark_words import remark_sentence
-from report.words.sensitivity_words import study_words, unsampled
+from report.words.sensitivity_words import (
+    dominant_words,
+    place_words,
+    sampling_words,
+    study_words,
+    unsampled,
+)
 
 __all__ = [
     "combination_words",
     "comparison_sentence",
     "criterion_words",
+    "dominant_words",
     "family_words",
     "gist",
     "in_words",
@@ -44,16 +52,19 @@ __all__ = [
     "ordering_words",
     "pair_words",
     "percent",
+    "place_words",
     "reason_words",
     "region_words",
     "remark_sentence",
     "resolution_words",
     "rivals_words",
+    "sampling_words",
     "short",
     "sizes",
     "stated_noise",
     "structure_words",
     "study_words",
+    "unit_words",
     "unsampled",
     "values",
     "verdict_sentence",
