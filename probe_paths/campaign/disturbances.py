@@ -9,6 +9,7 @@ later knows it at the touches only.
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import datetime
+from typing import Any
 
 import numpy as np
 
@@ -75,6 +76,9 @@ def joined_touches(parts: Sequence[Touches]) -> Touches:
         index.append(numbers[part.setup])
     first = parts[0]
     speeds = [p.spindle_rpm for p in parts if p.spindle_rpm is not None]
+    columns: dict[str, Any] = {
+        name: np.concatenate([getattr(p, name) for p in parts]) for name in _PER_TOUCH
+    }
     return replace(
         first,
         setups=tuple(setups.values()),
@@ -83,7 +87,7 @@ def joined_touches(parts: Sequence[Touches]) -> Touches:
             s: np.concatenate([p.temperature[s] for p in parts]) for s in first.temperature
         },
         spindle_rpm=np.concatenate(speeds) if len(speeds) == len(parts) else None,
-        **{name: np.concatenate([getattr(p, name) for p in parts]) for name in _PER_TOUCH},
+        **columns,
     )
 
 
