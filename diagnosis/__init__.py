@@ -1,4 +1,59 @@
-"""Measurements against the model: fit, compare, diagnose what is missing."""
+"""Diagnosis: from a run and a model, what the model lacks and what the machine's errors are.
+
+In: a `Run` (measurements), a `Model` to start from and what is believed of its parameters (`Prior`,
+or a `SavedModel`). Out: a `Comparison` (what the model leaves, where, and what that varies with) or
+a `Diagnosis` (verdict, the effects that it found step by step, what looks like them, what to
+measure next), and model and result files. It needs no standard and no CAD.
+
+    result = diagnose(read_run("run.csv"))
+    result.verdict, [step.effect for step in result.steps], result.fit.test_rms
+
+`fit` estimates parameters with a prior, whatever the noise, and finds gross errors. `evidence`
+projects effects that are not in the model on what the fit leaves, and says how much a set of them
+explains. `residual` tests what is left for structure, and finds regions where a model fails.
+`search` chooses the set of effects. `answer` turns it into a verdict with sizes and look-alikes.
+`files` reads and writes models and results.
+
+Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
+should know about a run is a record in `residual.run_remarks`, its sentence in `report.words`; a
+new effect needs nothing here.
+"""
+
+from diagnosis.answer import Diagnosis, Proof, Step, Verdict, diagnose, prove
+from diagnosis.files import (
+    SavedModel,
+    read_model,
+    write_comparison,
+    write_diagnosis,
+    write_model,
+    write_residuals,
+)
+from diagnosis.fit import Estimable, Fit, Prior, estimable, fit_run
+from diagnosis.residual import Comparison, Region, Structure, compare
 
 PARTS = ("fit", "evidence", "residual", "search", "answer", "files")
 """From bottom to top: each imports only from those before it."""
+
+__all__ = [
+    "Comparison",
+    "Diagnosis",
+    "Estimable",
+    "Fit",
+    "Prior",
+    "Proof",
+    "Region",
+    "SavedModel",
+    "Step",
+    "Structure",
+    "Verdict",
+    "compare",
+    "diagnose",
+    "estimable",
+    "fit_run",
+    "prove",
+    "read_model",
+    "write_comparison",
+    "write_diagnosis",
+    "write_model",
+    "write_residuals",
+]

@@ -22,9 +22,9 @@ from probe_paths.emit import make_programs
 from probe_paths.plan import PlanOptions, TouchPlan, plan_touches
 from report.maps import draw_maps, draw_path
 from report.pages import Design, Proven
-from report.words import write_identifiability, write_identification
+from report.words import sampling_words, write_identifiability, write_identification
 from sensitivity.first_order import Workspace
-from sensitivity.montecarlo import Crew
+from sensitivity.montecarlo import Workers
 from sensitivity.population import Population, drawn_errors
 from sensitivity.study import run_study, write_study
 from twin.compute import Progress
@@ -35,14 +35,14 @@ PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""
 
 
-def design(project: Project, folder: Path, progress: Progress, crew: Crew = None) -> Design:
+def design(project: Project, folder: Path, progress: Progress, workers: Workers = None) -> Design:
     """Run all stages and write their files into a folder.
 
     Args:
         project: What shall be designed, for which machine.
         folder: Empty folder.
         progress: Told what is going on.
-        crew: Who draws the random machines of the maps; None for this process.
+        workers: Who draws the random machines of the maps; None for this process.
 
     Raises:
         DesignError: A stage that cannot do its work; its message says which constraint binds.
@@ -65,9 +65,9 @@ def design(project: Project, folder: Path, progress: Progress, crew: Crew = None
         progress=progress,
         tolerance=project.tolerance,
         digits=project.digits,
-        crew=crew,
+        workers=workers,
     )
-    write_study(study, folder / "sensitivity")
+    write_study(study, folder / "sensitivity", sampling_words(study.volumetric))
     maps = draw_maps(study, folder / "sensitivity", rng.maps)
     maps += draw_path(study, folder / "sensitivity")
     progress("STEP and STL", 0, 1)

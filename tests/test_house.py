@@ -60,10 +60,6 @@ EXCUSED = {
 }
 """Files below `report` with units in prose outside a `raise` all the same, and why."""
 UNSAID = {
-    "sensitivity/first_order/workspace.py",
-    "sensitivity/montecarlo/tally.py",
-    "sensitivity/shares/workspace_regions.py",
-    "information/identifiability/parameter_words.py",
     "artefact/compare/alternatives.py",
     "diagnosis/residual/partial_residuals.py",
     "diagnosis/residual/run_remarks.py",

@@ -1,4 +1,9 @@
-"""The answer of a diagnosis: verdict, sizes, what looks alike, what to measure next."""
+"""The answer of a diagnosis: verdict, sizes, what looks alike, what to measure next.
+
+In: a run, a model, effects that a user adds. Out: a `Diagnosis`. `ambiguity` makes classes of
+look-alikes, `sizes` numbers that rest on the touches alone, `detectable` what the run would have
+shown, `next_measurement` touches that tell look-alikes apart, `proof` compares with a known truth.
+"""
 
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.detectable import Detectable

@@ -1,4 +1,9 @@
-"""Signatures of effects that are not in the model, and how much they explain."""
+"""Signatures of effects that are not in the model, and how much they explain.
+
+In: a `Fit`, made a `ResidualSpace`, and candidate effects. Out: `Signatures`, their columns freed
+of all that the model can imitate, and `EffectSet`, a set of them in the model, with its evidence,
+its held-out errors and the scores of every further effect. Nothing is refitted.
+"""
 
 from diagnosis.evidence.effect_signatures import (
     Grid,

@@ -1,4 +1,9 @@
-"""Models and results as files."""
+"""Models and results as files.
+
+`model.toml` ("model/1") is read and written; `diagnosis.json`, `comparison.json`,
+`identification.json` and the tables beside them are written. Numbers come from the results,
+sentences from whoever calls: prose is made in `report`.
+"""
 
 from diagnosis.files.diagnosis_file import (
     plan_text,

@@ -1,6 +1,11 @@
-"""Identification: the parameters of a model from a run, whatever the noise."""
+"""Identification: the parameters of a model from a run, with a prior, whatever the noise.
 
-from diagnosis.fit.describe import InstantEstimate, Reported, file_unit, inner_unit, reported
+In: a `Run`, a `Model` and a `Prior`. Out: a `Fit` with estimates and their covariance, gross errors
+set aside, the size of the noise, and errors of poses that were left out. `estimable` says which
+combinations the run determines; `reported` gives parameters as a user reads them.
+"""
+
+from diagnosis.fit.describe import InstantEstimate, Reported, Role, file_unit, inner_unit, reported
 from diagnosis.fit.estimability import Estimable, estimable
 from diagnosis.fit.gross import GrossErrors
 from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
@@ -23,6 +28,7 @@ __all__ = [
     "MistakenUnit",
     "Prior",
     "Reported",
+    "Role",
     "UnitMistake",
     "continuous_inner",
     "estimable",

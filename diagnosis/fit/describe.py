@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
@@ -15,21 +16,38 @@ _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
 
 
+class Role(Enum):
+    """What a number is among the numbers of an effect."""
+
+    SIZE = "size"
+    INNER = "inner parameter"
+    COEFFICIENT = "coefficient"
+
+
 @dataclass(frozen=True, slots=True)
 class Reported:
     """One number of an effect as it stands in a file.
 
     Attributes:
-        name: With its unit: `amplitude_um`, `tau_min`.
+        quantity: What it is: `amplitude`, `tau`.
+        unit: As the file spells it: `um`, `min`, `um_per_K`; "" for a pure number.
         value: In that unit.
         u: Standard uncertainty, or None where the run gives none.
         factor: One of that unit in the base unit.
+        role: Of the number among those of its effect.
     """
 
-    name: str
+    quantity: str
+    unit: str
     value: float
     u: float | None
     factor: float
+    role: Role
+
+    @property
+    def name(self) -> str:
+        """With its unit: `amplitude_um`, `tau_min`."""
+        return f"{self.quantity}_{self.unit}" if self.unit else self.quantity
 
 
 class InstantEstimate(NamedTuple):
@@ -89,9 +107,17 @@ def reported(
         out.append(size(effect, theta, covariance))
     for i, parameter in enumerate(effect.parameters):
         suffix, factor = file_unit(parameter.unit)
-        name = f"{parameter.name.replace(' ', '_')}_{suffix}"
-        u = float(np.sqrt(covariance[i, i]))
-        out.append(Reported(name, float(theta[i]) / factor, u / factor, factor))
+        out.append(
+            Reported(
+                quantity=parameter.name.replace(" ", "_"),
+                unit=suffix,
+                value=float(theta[i]) / factor,
+                u=float(np.sqrt(covariance[i, i])) / factor,
+                factor=factor,
+                # where nothing sums them up, the coefficient is the size
+                role=Role.COEFFICIENT if len(theta) > 1 else Role.SIZE,
+            )
+        )
     return tuple(out)
 
 
@@ -116,7 +142,14 @@ def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
     variance = direction @ C @ direction + float((across**2).sum()) / (2.0 * squared)
     u = float(np.sqrt(max(variance, 0.0)))
     suffix, factor = file_unit(units[0])
-    return Reported(f"amplitude_{suffix}", float(length) / factor, u / factor, factor)
+    return Reported(
+        quantity="amplitude",
+        unit=suffix,
+        value=float(length) / factor,
+        u=u / factor,
+        factor=factor,
+        role=Role.SIZE,
+    )
 
 
 def _inner(
@@ -133,6 +166,14 @@ def _inner(
     for i, (inner, value) in enumerate(inner_values(effect, fit.run.touches)):
         suffix, factor = inner_unit(inner)
         value, own = settled.get(i, (value, u.get(i)))
-        own_u = None if own is None else own / factor
-        out.append(Reported(f"{inner.name}{suffix}", value / factor, own_u, factor))
+        out.append(
+            Reported(
+                quantity=inner.name,
+                unit=suffix.removeprefix("_"),
+                value=value / factor,
+                u=None if own is None else own / factor,
+                factor=factor,
+                role=Role.INNER,
+            )
+        )
     return out

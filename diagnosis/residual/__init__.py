@@ -1,4 +1,9 @@
-"""What a model leaves: patterns, regions, tests for structure."""
+"""What a model leaves: patterns, regions, tests for structure.
+
+In: a `Fit` or an `EffectSet`. Out: a `Comparison` with the `Structure` and the `Region`s of its
+residual and a `Remark` for everything noteworthy; `partial` is what the run shows of one effect.
+A new test is a module beside `waves` and `crowds`, called by `structure`.
+"""
 
 from diagnosis.residual.comparison import Comparison, GroupResidual, compare
 from diagnosis.residual.failing_regions import Condition, Region, Side, regions

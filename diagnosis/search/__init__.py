@@ -1,4 +1,10 @@
-"""Which set of effects explains a run."""
+"""Which set of effects explains a run.
+
+In: a `DiagnosisTask` (run, starting model, prior) and candidates. Out: a `SearchState`: the best
+set of which every member stands, refined, and the structure that it leaves. `search_loop` is the
+way through, `selection` the choice, `refine` and `regrid` what a grid is too coarse for,
+`screening` what makes long runs affordable, `edges` gross errors that are none.
+"""
 
 from diagnosis.search.refine import refined
 from diagnosis.search.search_loop import (

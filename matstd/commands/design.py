@@ -25,8 +25,8 @@ def run(args: argparse.Namespace) -> int:
         from matstd.design import design
         from report.pages import write_design_page
 
-        with stages() as progress, connected(args.scheduler) as crew:
-            made = design(project, folder, progress, crew)
+        with stages() as progress, connected(args.scheduler) as workers:
+            made = design(project, folder, progress, workers)
             progress("report", 0, 1)
             remarks = write_design_page(made, folder)
     for remark in remarks:

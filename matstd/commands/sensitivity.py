@@ -77,8 +77,8 @@ def _study(args: argparse.Namespace) -> int:
         from matstd.console import stages
         from matstd.study_run import study_project
 
-        with stages() as progress, connected(args.scheduler) as crew:
-            told = study_project(project, args.poses, folder, progress, crew)
+        with stages() as progress, connected(args.scheduler) as workers:
+            told = study_project(project, args.poses, folder, progress, workers)
     for line in told:
         print(line)
     print(f"{args.output}: look at report.html")

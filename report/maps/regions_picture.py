@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from report.style import INK, axis_title, figure, nothing, plain, series
+from report.words import place_words
 from sensitivity.shares import Region, RegionTotals
 from twin.frames import Array
 from twin.machine import Chain
@@ -92,7 +93,7 @@ def _tornado(
         )
         top = max(top, (total + 2.0 * u).max())
     axes.set_xlim(min(0.0, axes.get_xlim()[0], low.min()), max(axes.get_xlim()[1], 1.04 * top))
-    title = f"{region.words}\n{region.rms / UM:.0f} µm rms"
+    title = f"{place_words(region.place)}\n{region.rms / UM:.0f} µm rms"
     axes.set_title(title, fontsize=9.5, loc="left", color=INK)
     plain(axes, "x")
     axes.tick_params(axis="y", length=0)

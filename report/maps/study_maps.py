@@ -11,7 +11,7 @@ from report.maps.regions_picture import draw_regions
 from report.maps.rotary_picture import draw_rotary
 from report.maps.sensitivity_pictures import maps_of_S, overview
 from report.style import INK, axis_title, figure, nothing, plain, reading_label, save, series
-from report.words import unsampled
+from report.words import sampling_words, unsampled
 from sensitivity.shares import region_totals, regions
 from sensitivity.study import Study
 from twin.frames import Array
@@ -38,7 +38,7 @@ def draw_maps(
     Returns:
         File name and caption of each.
     """
-    sampled = f"Monte Carlo: {study.volumetric.statement}; {len(study.q)} poses."
+    sampled = f"Monte Carlo: {sampling_words(study.volumetric)}; {len(study.q)} poses."
     maps = [
         (
             "sensitivity.png",

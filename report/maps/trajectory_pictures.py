@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from report.style import INK, figure, plain, reading_label, save, series
+from report.words import sampling_words
 from sensitivity.montecarlo import Volumetric
 from sensitivity.study import AlongPath, Study, Trajectory
 from twin.effects import ComponentError
@@ -77,7 +78,7 @@ def statistics_picture(
     _finish(beside)
     beside.set_ylabel("share of the machines / %")
     caption = f"Volumetric error along a trajectory ({path.name}, {len(path.q)} poses)."
-    return drawn, f"{caption} {found.statement}."
+    return drawn, f"{caption} {sampling_words(found)}."
 
 
 def _sheet(path: Trajectory) -> tuple[Figure, Axes, Axes]:

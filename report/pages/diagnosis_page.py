@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
-from diagnosis.fit import Reported, file_unit
+from diagnosis.fit import file_unit
 from report.numbers import digits
 from report.pages.page import write_page
 from report.pages.residual_section import (
@@ -31,10 +31,10 @@ from report.plots import (
 )
 from report.style import series
 from report.words import (
-    named_value,
     remark_sentence,
     sizes,
     structure_words,
+    unit_words,
     values,
     verdict_sentence,
 )
@@ -233,19 +233,13 @@ def _kind_row(kind: str, found: Sequence[Detectable]) -> dict[str, Any]:
 def _sized(d: Detectable) -> dict[str, Any]:
     """Size of one effect in the unit of its file, and the deviation that it causes."""
     suffix, factor = file_unit(d.unit)
-    unit = named_unit(suffix)
     return {
         "effect": d.effect.name,
         "size": (d.size or 0.0) / factor,
-        "unit": unit,
+        "unit": unit_words(suffix),
         "largest": (d.largest or 0.0) / UM,
         "survives": d.survives,
     }
-
-
-def named_unit(suffix: str) -> str:
-    """Unit as a reader sees it, from the suffix of a file: `um_per_K` is µm/K."""
-    return named_value(Reported(f"x_{suffix}", 1.0, None, 1.0))[1].partition(" ")[2]
 
 
 def _plan(names: tuple[str, str], touches: Touches, separation: float) -> dict[str, Any]:

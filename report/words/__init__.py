@@ -4,6 +4,7 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
+from report.words.artefact_words import criterion_words, percent
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
@@ -13,6 +14,7 @@ from report.words.diagnosis_words import (
     sizes,
     stated_noise,
     structure_words,
+    unit_words,
     values,
     verdict_sentence,
 )
@@ -29,11 +31,19 @@ from report.words.identification_file import write_identification
 from report.words.parameter_words import in_words, short
 from report.words.probe_words import ordering_words
 from report.words.remark_words import remark_sentence
-from report.words.sensitivity_words import study_words, unsampled
+from report.words.sensitivity_words import (
+    dominant_words,
+    place_words,
+    sampling_words,
+    study_words,
+    unsampled,
+)
 
 __all__ = [
     "combination_words",
     "comparison_sentence",
+    "criterion_words",
+    "dominant_words",
     "family_words",
     "gist",
     "in_words",
@@ -41,16 +51,20 @@ __all__ = [
     "named_value",
     "ordering_words",
     "pair_words",
+    "percent",
+    "place_words",
     "reason_words",
     "region_words",
     "remark_sentence",
     "resolution_words",
     "rivals_words",
+    "sampling_words",
     "short",
     "sizes",
     "stated_noise",
     "structure_words",
     "study_words",
+    "unit_words",
     "unsampled",
     "values",
     "verdict_sentence",

@@ -4,29 +4,25 @@ import math
 from collections.abc import Sequence
 
 from diagnosis.answer import Diagnosis, Step, Verdict
-from diagnosis.fit import Fit, Reported
+from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Comparison, Condition, Shape, Side, Structure
 from report.numbers import condition, digits, noun, span, with_uncertainty
-from twin.model import Tunable
 from twin.record import Run
 from twin.units import UM
 from twin.words import listed
 
-_UNITS = (
-    ("_um_per_m_K", "µm/(m K)"),
-    ("_urad_per_K", "µrad/K"),
-    ("_um_per_K", "µm/K"),
-    ("_um_per_h", "µm/h"),
-    ("_urad_per_h", "µrad/h"),
-    ("_um_per_N", "µm/N"),
-    ("_urad", "µrad"),
-    ("_um", "µm"),
-    ("_min", "min"),
-    ("_mm", "mm"),
-    ("_deg", "°"),
-    ("_s", "s"),
-)
-"""Endings of the names of numbers in files, the longest first, with the unit that a reader sees."""
+_UNITS = {
+    "um_per_m_K": "µm/(m K)",
+    "urad_per_K": "µrad/K",
+    "um_per_K": "µm/K",
+    "um_per_h": "µm/h",
+    "urad_per_h": "µrad/h",
+    "um_per_N": "µm/N",
+    "urad": "µrad",
+    "um": "µm",
+    "deg": "°",
+}
+"""Units as files spell them, with what a reader sees where that is another word."""
 
 _WORDS = {"tau": "time constant"}
 
@@ -38,23 +34,27 @@ _NUMBERS = {1: 3, 2: 2, 3: 1}
 """Numbers of an effect in the verdict by the number of effects; of more effects only the names."""
 
 
+def unit_words(unit: str) -> str:
+    """A unit as a reader sees it, from the spelling of files: `um_per_K` is µm/K."""
+    return _UNITS.get(unit, unit)
+
+
 def named_value(reported: Reported) -> tuple[str, str]:
     """Name and value of a number of an effect as a reader sees them: `time constant`, `42 ± 3 min`.
 
     Example:
-        >>> named_value(Reported("tau_min", 42.07, 3.32, 60.0))
+        >>> named_value(Reported("tau", "min", 42.07, 3.32, 60.0, Role.INNER))
         ('time constant', '42.1 ± 3.3 min')
-        >>> named_value(Reported("instant_s", 7083.0, None, 1.0))
+        >>> named_value(Reported("instant", "s", 7083.0, None, 1.0, Role.INNER))
         ('instant', '1.97 h')
     """
-    name, unit = next(
-        ((reported.name[: -len(end)], unit) for end, unit in _UNITS if reported.name.endswith(end)),
-        (reported.name, ""),
-    )
-    words = _WORDS.get(name, name).replace("_", " ")
-    if unit == "s" and reported.u is None:
+    words = _WORDS.get(reported.quantity, reported.quantity).replace("_", " ")
+    if reported.unit == "s" and reported.u is None:
         return words, span(reported.value)
-    return words, with_uncertainty(reported.value, reported.u, unit)
+    return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))
+
+
+_ORDER = (Role.SIZE, Role.INNER, Role.COEFFICIENT)
 
 
 def values(step: Step) -> list[tuple[str, str]]:
@@ -62,23 +62,10 @@ def values(step: Step) -> list[tuple[str, str]]:
 
     Of an effect with many coefficients only what sums them up and its inner parameters are told.
     """
-    told = sorted(step.reported, key=lambda r: _rank(step, r))
+    told = sorted(step.reported, key=lambda r: _ORDER.index(r.role))
     if len(told) > ALL_TOLD:
-        told = [r for r in told if _rank(step, r) in (0, 2)] or told[:ALL_TOLD]
+        told = [r for r in told if r.role is not Role.COEFFICIENT]
     return [named_value(r) for r in told]
-
-
-def _rank(step: Step, reported: Reported) -> int:
-    """Place of a number of an effect: its size, its inner parameters, what the size is made of.
-
-    Where nothing sums them up the linear parameters are the size.
-    """
-    inner = step.effect.tuning if isinstance(step.effect, Tunable) else {}
-    if reported.name.startswith("amplitude"):
-        return 0
-    if any(reported.name.partition("_")[0] == name for name in inner):
-        return 2
-    return 3 if any(r.name.startswith("amplitude") for r in step.reported) else 1
 
 
 def sizes(step: Step, most: int) -> str:
@@ -155,13 +142,14 @@ def _fall(diagnosis: Diagnosis) -> str:
 
 def _added(step: Step, most: int) -> str:
     """An effect with its leading numbers, and whether another name would do as well."""
-    rivals = len(step.confusion.rivals) if step.confusion else 0
     name = step.effect.name if step.effect is not None else ""
-    alike = f", or one of {rivals} effects that look the same" if rivals else ""
-    if step.confusion is not None and rivals == 1:
-        alike = f", or {step.confusion.rivals[0].effect.name}"
-    told = f"{sizes(step, most)}{alike}".removeprefix(", ")
-    return f"{name} ({told})" if told else name
+    rivals = step.confusion.rivals if step.confusion else ()
+    told = [sizes(step, most)] if most and step.reported else []
+    if len(rivals) == 1:
+        told.append(f"or {rivals[0].effect.name}")
+    elif rivals:
+        told.append(f"or one of {len(rivals)} effects that look the same")
+    return f"{name} ({', '.join(told)})" if told else name
 
 
 def _them(steps: Sequence[Step]) -> str:
@@ -205,17 +193,16 @@ def comparison_sentence(found: Comparison) -> str:
     """What a model leaves of a run, in plain words with numbers."""
     made = "predicts" if found.is_prediction else "fitted to the run explains"
     worst = found.worst
+    left = microns(found.rms)
+    is_better = found.rms <= found.rms_measured
     text = (
-        f"Of {microns(found.rms_measured)} rms that were measured the model {made} all but "
-        f"{microns(found.rms)}; the noise is stated as {microns(stated_noise(found.run))}, "
-        f"chi-square per degree of freedom is {digits(found.chi2_ratio)}, and the worst touch "
-        f"(line {found.run.line[worst]}) is off by {microns(float(found.residual[worst]))}, "
+        f"Of {microns(found.rms_measured)} rms that were measured the model {made} "
+        f"{f'all but {left}' if is_better else f'nothing: {left} are left'}; the noise is stated "
+        f"as {microns(stated_noise(found.run))}, chi-square per degree of freedom is "
+        f"{digits(found.chi2_ratio)}, and the worst touch (line {found.run.line[worst]}) is off by "
+        f"{microns(float(found.residual[worst]))}, "
         f"{digits(abs(float(found.normalised[worst])), 2)} times its uncertainty."
     )
-    if found.rms > found.rms_measured:
-        text = text.replace(
-            f"all but {microns(found.rms)}", f"nothing: {microns(found.rms)} are left"
-        )
     if not found.structure:
         return f"{text} What is left looks like noise."
     return f"{text} What is left is not noise: {structure_clause(found.structure[0])}."

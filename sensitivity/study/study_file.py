@@ -15,7 +15,7 @@ from twin.machine import Chain
 from twin.units import UM, URAD
 
 
-def write_study(study: Study, folder: str | Path) -> None:
+def write_study(study: Study, folder: str | Path, statement: str) -> None:
     """Write the data of a study into a folder; `report.maps.study_maps.draw_maps` draws it.
 
     `poses.csv` (readings and statistics of the volumetric error with their standard errors by
@@ -27,6 +27,7 @@ def write_study(study: Study, folder: str | Path) -> None:
     Args:
         study: The study.
         folder: Made where it does not exist; files in it are replaced.
+        statement: The sampling in one sentence, kept beside its figures.
     """
     folder, symbols = Path(folder), study.chain.symbols
     readings = _readings(study.chain, study.q)
@@ -49,7 +50,7 @@ def write_study(study: Study, folder: str | Path) -> None:
         table |= {f"errors_of_{e.axis}_um": e.size / UM for e in study.path.effects}
         write_whole(folder / "trajectory.csv", csv_text(table))
     _write_sections(study, folder / "sections.npz")
-    write_whole(folder / "montecarlo.json", json.dumps(_summary(study), indent=1) + "\n")
+    write_whole(folder / "montecarlo.json", json.dumps(_summary(study, statement), indent=1) + "\n")
 
 
 def _readings(chain: Chain, q: Array) -> dict[str, Array]:
@@ -75,13 +76,13 @@ def _statistics(v: Volumetric, closed: NormalLength) -> dict[str, Array]:
     return table
 
 
-def _summary(study: Study) -> dict[str, Any]:
+def _summary(study: Study, statement: str) -> dict[str, Any]:
     """Draws, seed, precision, and the figures over the workspace."""
     v = study.volumetric
     worst = _readings(study.chain, study.worst_pose[None])
     out: dict[str, Any] = {
         "format": "montecarlo/1",
-        "statement": v.statement,
+        "statement": statement,
         "draws": v.draws,
         "seed": v.seed,
         "achieved_um": v.achieved / UM,

@@ -15,6 +15,7 @@ from report.pages.study_page import (
     write_study_page,
 )
 from report.style import figure, save
+from report.words.sensitivity_words import sampling_words
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study
@@ -88,7 +89,7 @@ def test_the_page_holds_every_map_once_and_the_regions_in_words(study, tmp_path)
     drawn = len(maps) + (0 if remarks else 2)  # without OpenGL a remark stands for two pictures
     assert page.count("<figure>") == drawn
     assert page.count("data:image/png;base64,") == drawn
-    assert study.volumetric.statement in page
+    assert sampling_words(study.volumetric) in page
     assert "corners: X, Y and Z in their outer sixths" in page
     assert "of the variance together" in page
     assert "project.toml" in page
