@@ -8,7 +8,7 @@ collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of p
 
 from probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
 from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import Heading, parse_heading
+from probe_paths.plan.heading import Heading, parse_heading, stated_serial
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, waypoints
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
@@ -29,6 +29,7 @@ __all__ = [
     "plan_touches",
     "requests_at",
     "solid_hull",
+    "stated_serial",
     "swing_height",
     "top_height",
     "waypoints",
