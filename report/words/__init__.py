@@ -4,7 +4,7 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
-from report.words.artefact_words import criterion_words, percent
+from report.words.artefact_words import alternative_words, criterion_words, percent
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
@@ -40,6 +40,7 @@ from report.words.sensitivity_words import (
 )
 
 __all__ = [
+    "alternative_words",
     "combination_words",
     "comparison_sentence",
     "criterion_words",
