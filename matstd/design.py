@@ -11,7 +11,7 @@ import numpy as np
 from artefact.body import write_standard
 from artefact.brief import Project
 from artefact.compare import identifiability_report
-from artefact.place import Placement, place
+from artefact.place import Placement, design_standard
 from cad_out.verify import export_standard
 from diagnosis.answer import probed_volume, prove
 from diagnosis.fit import fit_run
@@ -103,7 +103,7 @@ def _placement(
     project: Project, workspace: Workspace, rng: np.random.Generator, progress: Progress
 ) -> Placement:
     """Standard and touches for the project's machine."""
-    return place(
+    return design_standard(
         probe_reach(project),
         blank(project),
         workspace,

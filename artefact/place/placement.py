@@ -49,7 +49,7 @@ from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
 from twin.units import UM
 
-__all__ = ["Placement", "PlacementOptions", "place"]
+__all__ = ["Placement", "PlacementOptions", "design_standard"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
 _REBUILDS = 8  # choices of sites tried before giving up
@@ -106,7 +106,7 @@ class Placement:
         return self.rivals[0]
 
 
-def place(
+def design_standard(
     reach: ProbeReach,
     blank: Blank,
     workspace: Workspace,
