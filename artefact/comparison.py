@@ -18,6 +18,7 @@ from artefact.touchable import Requests, joined
 from artefact.visibility import Visibility
 from sensitivity.design import Purpose, Selection, exchange, fill
 from sensitivity.information import Posterior, prior_sd_of_tip
+from twin.errors import NotReachable
 from twin.frames import Array
 
 _TRIED = 3000  # touches that the ideal scatter may choose from
@@ -120,6 +121,7 @@ def compare(
     options: PlacementOptions,
     library: Visibility,
     rng: np.random.Generator,
+    remarks: list[str] | None = None,
 ) -> tuple[Rival, ...]:
     """Other artefacts at as many touches: bodies that people have, and scatter that nobody has.
 
@@ -135,11 +137,22 @@ def compare(
         options: Numbers of touches and poses.
         library: Effects of the library that touches could show.
         rng: Source of the random numbers.
+        remarks: Takes a line for every body that cannot be touched at all, or not often enough.
     """
-    out = []
+    out, said = [], [] if remarks is None else remarks
     for name, body in rivals(aim.volume, frame, rng).items():
-        own = chosen_poses(aim.plain, body, all_poses, options)
-        tried = some_touches(aim, body, own, options, rng)
+        try:
+            own = chosen_poses(aim.plain, body, all_poses, options)
+            tried = some_touches(aim, body, own, options, rng)
+        except NotReachable:
+            said.append(f"Not compared with: {name}; this machine can make no touch on it.")
+            continue
+        points = len(np.unique(np.column_stack([tried.point, tried.rotary]), axis=0))
+        if points < options.touches:
+            said.append(
+                f"{name}: {points} touches can be made on it, {options.touches} are compared; "
+                "some are made more than once."
+            )
         lots = random_lots(tried, options.touches, rng)
         chosen = chosen_touches(aim, aim.purpose, tried, options)
         out.append(judged(name, aim, chosen, lots, library, body))

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ from sensitivity.sampling import Population
 from sensitivity.scales import drawn_scales
 from sensitivity.workspace import Box, Workspace, latin_hypercube
 from twin.errors import DesignError, NotReachable
-from twin.frames import Array
+from twin.frames import Array, apply
 from twin.model import Model
 from twin.symbols import Family
 from twin.touches import at_poses
@@ -260,7 +261,10 @@ def _tips(
     """Deviation of the tip per unit of every parameter: probed volume, user's workspace."""
     chain = probing.chain
     limits = {name: workspace.limit(name) for name in chain.rotary_axes}
-    corners = np.array(volume) + probing.setup.T_table_artefact[:3, 3]
+    on_table = apply(
+        probing.setup.T_table_artefact, np.array(list(product(*zip(*volume, strict=True))))
+    )
+    corners = np.array([on_table.min(axis=0), on_table.max(axis=0)])
     box: Box = (tuple(corners[0]), tuple(corners[1]))
     probed = Workspace(chain, limits, probing.length, box)
     tips = []

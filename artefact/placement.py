@@ -60,6 +60,7 @@ class Placement:
         rivals: This standard first, then other artefacts at as many touches.
         certificate: How near the touches are to the best choice among all that could be made on the
             standard at its table poses and that keep the same shares of poses, spheres, patches.
+        remarks: What has to be said of the comparison, one line each.
     """
 
     standard: Standard
@@ -68,6 +69,7 @@ class Placement:
     before: tuple[float, float]
     rivals: tuple[Rival, ...]
     certificate: Certificate
+    remarks: tuple[str, ...] = ()
 
     @property
     def own(self) -> Rival:
@@ -134,7 +136,8 @@ def place(
     library = visibility(aim, free)
     lots = random_lots(tried, len(requests), rng)
     own = judged(f"standard {options.name}", aim, requests, lots, library, standard)
-    rivals = compare(aim, all_poses, poses, frame, options, library, rng)
+    remarks: list[str] = []
+    rivals = compare(aim, all_poses, poses, frame, options, library, rng, remarks)
     progress("placement", 6, 6)
     return Placement(
         standard=standard,
@@ -143,6 +146,7 @@ def place(
         before=before(aim),
         rivals=(own, *rivals),
         certificate=nearness,
+        remarks=tuple(remarks),
     )
 
 

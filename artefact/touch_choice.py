@@ -174,7 +174,13 @@ def some_touches(
     options: PlacementOptions,
     rng: np.random.Generator,
 ) -> Requests:
-    """Touches that can be made, drawn from the finest grid until a choice has enough."""
+    """Touches that can be made, drawn from the finest grid until a choice has enough.
+
+    Where fewer can be made than are wanted, each may be chosen more than once.
+
+    Raises:
+        NotReachable: None can be made.
+    """
     tried = touches_at(standard, poses, _PITCHES[-1])
     tried = tried[aim.probing.is_reachable(tried)]
     tried = tried[rng.permutation(len(tried))]
@@ -183,12 +189,10 @@ def some_touches(
         found.append(tried[rows][aim.probing.is_clear(standard, tried[rows])])
         if sum(map(len, found)) >= _CHOICE * options.touches:
             break
-    if sum(map(len, found)) < options.touches:
-        raise NotReachable(
-            f"{sum(map(len, found))} touches can be made on '{standard.name}', "
-            f"{options.touches} are wanted"
-        )
-    return joined(found)
+    made = sum(map(len, found))
+    if not made:
+        raise NotReachable(f"no touch can be made on '{standard.name}'")
+    return joined(found * -(-options.touches // made))
 
 
 def pose_quota(tried: Requests, count: int) -> Quota:

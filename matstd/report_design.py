@@ -38,7 +38,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
     Returns:
         What could not be drawn and why, one line each; the page says it too.
     """
-    remarks: list[str] = []
+    remarks: list[str] = list(design.placement.remarks)
     pictures = _standard_pictures(design, folder, remarks)
     maps = [*design.maps, *_volumes(design, folder, remarks)]
     write_touches_picture(folder / "plan_touches.png", design.plan)

@@ -9,6 +9,7 @@ import numpy as np
 from artefact.body import Plate
 from artefact.clearance import TABLE_THICKNESS, clearance_on_table
 from artefact.standard import Standard
+from artefact.table_face import table_face
 from probe_paths.probe import Probe
 from twin.chain import Chain
 from twin.frames import Array, apply, turn
@@ -37,7 +38,7 @@ def obstacles(standard: Standard, setup: Setup, table_radius: float) -> Obstacle
     solid = np.concatenate(points)
     centres = np.array([s.centre for s in standard.spheres]).reshape(-1, 3)
     on_table = apply(setup.T_table_artefact, np.concatenate([solid, centres]))
-    rim = _ring(table_radius, 0.0)
+    rim = apply(table_face(setup.T_table_artefact), _ring(table_radius, 0.0))
     radii = np.zeros(len(on_table) + len(rim))
     radii[len(solid) : len(on_table)] = [s.radius for s in standard.spheres]
     return Obstacles(np.concatenate([on_table, rim]), radii)
