@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.clearance import TABLE_RADIUS
+from artefact.meeting import contact
+from artefact.patch import Meeting
 from artefact.standard import Standard
 from probe_paths.clearance import Room, obstacles, swing_height, top_height
 from probe_paths.probe import Probe
@@ -116,6 +118,11 @@ def _marched(room: Room, moves: _Moves) -> Array:
         active = active[(travel[active] < length[active]) & (gap >= SMALLEST_GAP)]
         if not len(active):
             break
+    # beside a steep face the distance is far from below: what seems tight is met on exact shapes
+    tight = np.flatnonzero(smallest < SMALLEST_GAP)
+    wide = room.probe.radius + SMALLEST_GAP
+    met = contact(room.standard, start[tight], direction[tight], wide, length[tight])
+    smallest[tight[met.meeting == Meeting.NOTHING]] = SMALLEST_GAP
     return smallest
 
 
