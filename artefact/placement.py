@@ -86,6 +86,7 @@ def place(
     options: PlacementOptions | None = None,
     progress: Progress = silent,
     distributions: Distributions | None = None,
+    poses_to_try: Array | None = None,
 ) -> Placement:
     """Design a standard for a machine.
 
@@ -99,6 +100,7 @@ def place(
         options: How much.
         progress: Told what is being done.
         distributions: Shapes of the errors over the readings; None for the ordinary ones.
+        poses_to_try: Table poses to choose from, (K, R), rad; None for a grid over the workspace.
 
     Raises:
         NotBuildable: The blank is larger than the table, or no choice of sites meets every limit;
@@ -121,7 +123,7 @@ def place(
         population,
     )
     progress("placement", 1, 6)
-    all_poses = table_poses(aim, options.poses)
+    all_poses = table_poses(aim, options.poses) if poses_to_try is None else poses_to_try
     standard = _standard(aim.plain, frame, all_poses, options, rng)
     progress("placement", 3, 6)
     poses = chosen_poses(aim.plain, standard, all_poses, options)

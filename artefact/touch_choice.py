@@ -13,6 +13,7 @@ from sensitivity.certificate import Certificate, relaxed, rounded
 from sensitivity.design import Quota
 from sensitivity.groups import best_groups
 from sensitivity.shares import heaviest
+from twin.chain import Chain
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
 from twin.units import DEG, UM
@@ -77,8 +78,17 @@ def table_poses(aim: Criterion, wanted: int) -> Array:
     The values of each later axis are shifted from one value of the earlier ones to the next, so
     that the whole grid holds many different readings of each.
     """
-    chain, limits = aim.probing.chain, []
-    for name, (low, high) in zip(chain.rotary_axes, aim.rotary, strict=True):
+    return poses_within(aim.probing.chain, aim.rotary, wanted)
+
+
+def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:
+    """The same for smallest and largest readings of the rotary axes, (R, 2), rad.
+
+    Raises:
+        NotReachable: Limits without room to approach a reading from both sides.
+    """
+    limits = []
+    for name, (low, high) in zip(chain.rotary_axes, rotary, strict=True):
         travel = chain.link(name).range
         limits.append((max(low, travel[0] + _OVERSHOOT), min(high, travel[1] - _OVERSHOOT)))
         if limits[-1][0] > limits[-1][1]:

@@ -30,7 +30,7 @@ Mask = NDArray[np.bool_]
 _WORDS = "U200"  # of a reason
 _LIFT = 400.0  # mm the ball comes down from, far above any standard
 _WIDER = 1.0  # mm added to the ball on its way down
-_ROUNDING = (
+ROUNDING = (
     1e-9  # mm or rad: a reading at the very end of a travel is inside, whatever its last digit
 )
 
@@ -143,6 +143,25 @@ class Probing:
             along=along,
         )
 
+    def everywhere(
+        self, point: Array, normal: Array, poses: Array, gap: float = 0.0
+    ) -> tuple[Array, Array]:
+        """Every one of N places (N, 3) at every one of K table poses (K, R).
+
+        Returns:
+            Readings of the linear axes as of `readings`, (N, K, 3), and the angle between normal
+            and tool axis, (N, K), rad.
+        """
+        k = len(poses)
+        stands = self._stands(Requests(np.full(k, ""), np.zeros((k, 3)), np.zeros((k, 3)), poses))
+        i, place = stands.index, self.setup.T_table_artefact
+        linear = [self.chain.axis_index(name) for name in self.chain.linear_axes]
+        target = apply(place, point + (self.radius + gap) * normal)
+        way = target[:, None] - stands.tip[i]
+        q = stands.q[i][:, linear] + np.einsum("kij,nkj->nki", stands.inverse[i], way)
+        cosine = turn(place, normal) @ stands.T_table_tool[i, :3, 2].T
+        return q, np.arccos(np.clip(cosine, -1.0, 1.0))
+
     def touches(self, wanted: Requests) -> Touches:
         """The touches as a record that effects understand."""
         n, q = len(wanted), self.readings(wanted)
@@ -165,7 +184,7 @@ class Probing:
     def is_reachable(self, wanted: Requests) -> Mask:
         """Touches within the angle to the tool axis and within every travel, (N,)."""
         good: Mask = self._lean(wanted) >= np.cos(self.steepest)
-        for gap in self._gaps:
+        for gap in self.gaps:
             good &= (self._outside(self.readings(wanted, gap)) == 0.0).all(axis=1)
         return good
 
@@ -190,7 +209,7 @@ class Probing:
         return reason
 
     @property
-    def _gaps(self) -> tuple[float, float, float]:
+    def gaps(self) -> tuple[float, float, float]:
         """Between ball and surface at the start of a touch, at the contact, at the search's end."""
         return (self.standoff, 0.0, -self.search)
 
@@ -206,7 +225,7 @@ class Probing:
     def _outside(self, q: Array) -> Array:
         """How far readings (N, A) are beyond the ends of their travels, (N, A), mm and rad."""
         low, high = np.array([self.chain.link(name).range for name in self.chain.axes]).T
-        beyond: Array = np.maximum(np.maximum(low - q, q - high) - _ROUNDING, 0.0)
+        beyond: Array = np.maximum(np.maximum(low - q, q - high) - ROUNDING, 0.0)
         return beyond
 
     def _out_of_reach(self, one: Requests) -> str:
@@ -215,7 +234,7 @@ class Probing:
         if cosine < np.cos(self.steepest):
             angle = np.arccos(np.clip(cosine, -1.0, 1.0)) / DEG
             return f"the surface leans {angle:.1f} degrees from the tool axis"
-        for gap in self._gaps:
+        for gap in self.gaps:
             q = self.readings(one, gap)
             for i in np.flatnonzero(self._outside(q)[0]):
                 link = self.chain.link(self.chain.axes[i])

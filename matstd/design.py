@@ -19,6 +19,7 @@ from diagnosis.fit import Fit, fit_run
 from diagnosis.identification_file import write_identification
 from diagnosis.proof import Proof, probed_volume, prove
 from matstd.project_file import Project
+from matstd.reach import check_reach
 from matstd.wanted import frame, placement_options, probe, probing
 from probe_paths.campaign import Campaign, simulate
 from probe_paths.contacts import VirtualMachine
@@ -106,10 +107,13 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
         DesignError: A stage that cannot do its work; its message says which constraint binds.
     """
     rng_study, rng_place, rng_proof, rng_maps, rng_known = _generators(project)
+    progress("reach", 0, 1)
+    poses = check_reach(project, folder)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
-    placement = _placement(project, workspace, rng_place, progress)
+    placement = _placement(project, workspace, rng_place, progress, poses)
+    plan = _plan(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
     progress("what can be told apart", 0, 1)
     known = knowable(placement.criterion, placement.requests, rng_known)
@@ -131,7 +135,6 @@ def design(project: Project, folder: Path, progress: Stage, crew: Crew = None) -
     progress("STEP and STL", 0, 1)
     conformity = export_standard(placement.standard, folder)
     progress("probing programs", 0, 1)
-    plan = _plan(project, placement)
     programs = make_programs(plan)
     paths = programs.write(folder / "programs")
     machines = []
@@ -163,7 +166,11 @@ def _generators(project: Project) -> list[np.random.Generator]:
 
 
 def _placement(
-    project: Project, workspace: Workspace, rng: np.random.Generator, progress: Stage
+    project: Project,
+    workspace: Workspace,
+    rng: np.random.Generator,
+    progress: Stage,
+    poses: Array | None = None,
 ) -> Placement:
     """Standard and touches for the project's machine."""
     return place(
@@ -175,6 +182,7 @@ def _placement(
         placement_options(project),
         progress,
         project.expected.distributions,
+        poses,
     )
 
 
