@@ -1,0 +1,66 @@
+"""A small design for every kind of machine: from the project file to programs and proof, no CAD."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.constraints import check
+from matstd import design
+from matstd.project_file import Project, read_project
+from matstd.reach import PICTURE, check_reach
+from matstd.wanted import frame, placement_options, probing
+from probe_paths.order_study import orders
+from probe_paths.picture import write_order_picture
+from probe_paths.program import make_programs
+from sensitivity.workspace import Workspace
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+MACHINES = {
+    "hsm600u": "[w C' B' X' f Y Z (C1) t]",
+    "machines/head-table": "[w C' X' f Y Z B (C1) t]",
+    "machines/trunnion": "[w C' A' Y' f X Z (C1) t]",
+    "machines/gantry": "[w f X Y Z C A t]",
+    "machines/vertical": "[w X' Y' f Z (C1) t]",
+    "machines/horizontal": "[w B' Z' f X Y (C1) t]",
+    "machines/four-axis": "[w A' X' Y' f Z (C1) t]",
+    "machines/upright": "[w B' X' f Y Z (C1) t]",
+}
+TOUCHES = 100
+
+
+def small(name: str) -> Project:
+    """One of the examples with few patches, poses and touches, and one machine to prove it on."""
+    project = read_project(EXAMPLES / f"{name}.toml")
+    few = project.standard.model_copy(update={"patches": 8, "poses": 8, "touches": TOUCHES})
+    return replace(project, standard=few, machines=1)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_a_design_for_every_kind_of_machine(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project = small(name)
+    assert project.chain.notation == MACHINES[name]
+    fewer = replace(placement_options(project), sites=90)
+    monkeypatch.setattr(design, "placement_options", lambda _: fewer)
+    rng_place, rng_proof = np.random.default_rng(project.seed).spawn(2)
+    poses = check_reach(project, tmp_path)
+    assert (tmp_path / PICTURE).stat().st_size > 0
+    workspace = Workspace(project.chain, project.workspace, project.probe_length)
+    placement = design._placement(project, workspace, rng_place, lambda *_: None, poses)
+    check(placement.standard, frame(project).limits)
+    assert len(placement.requests) == TOUCHES
+    assert (probing(project).reasons(placement.standard, placement.requests) == "").all()
+    plan = design._plan(project, placement)
+    found = orders(plan, placement.criterion.model, project.noise)
+    assert all(len(order.reversal) == len(project.chain.rotary_axes) for order in found)
+    assert all(np.isfinite([o.drift, *o.reversal]).all() and o.duration > 0.0 for o in found)
+    write_order_picture(tmp_path / "order.png", plan)
+    programs = make_programs(plan).write(tmp_path)
+    machine = design._prove(project, project.population, placement, programs, 0, rng_proof)
+    assert len(machine.campaign.run) == len(plan)
+    # what the touches predict: far better than nothing, and as well as they say themselves
+    assert machine.proof.factor > 5.0
+    assert machine.proof.rms_after < 2.0 * machine.proof.rms_u
