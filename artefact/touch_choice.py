@@ -155,9 +155,13 @@ def chosen_poses(
     """Table poses whose touches tell most, (K, R)."""
     tried = touches_at(standard, poses, pitch=3)
     tried = tried[aim.probing.is_reachable(tried)]
+    reached = tried
     tried = tried[aim.probing.has_room(standard, tried)]  # the way there is looked at later
     if not len(tried):
-        raise NotReachable("the machine reaches no touch on the standard at any table pose")
+        raise NotReachable(
+            "the machine reaches no touch on the standard at any table pose: "
+            + aim.probing.against(standard, reached)
+        )
     seen, group = np.unique(np.round(tried.rotary, 9), axis=0, return_inverse=True)
     take = max(4, options.touches // options.poses)
     chosen = best_groups(aim.purpose, aim.rows(tried), group.reshape(-1), options.poses, take)

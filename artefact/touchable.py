@@ -3,6 +3,7 @@
 Whoever chooses touches and whoever plans them asks here; they differ only in the margins they want.
 """
 
+from collections import Counter
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -197,6 +198,19 @@ class Probing:
         """Touches at which nothing comes near the probe above its ball, (N,)."""
         good: Mask = self._room(standard, wanted, 0.0).distance >= self.room
         return good
+
+    def against(self, standard: Standard, wanted: Requests) -> str:
+        """What is against touches none of which has room, or that are none, in words."""
+        if not len(wanted):
+            angle = self.steepest / DEG
+            return f"none is within {angle:g} degrees of the tool axis and within every travel"
+        near = self._room(standard, wanted, 0.0)
+        name, count = Counter(near.body.tolist()).most_common(1)[0]
+        return (
+            f"the probe comes nearer than {self.room:g} mm to {name} at "
+            f"{100.0 * count / len(wanted):.0f} % of those within its angle and travels; nearest "
+            f"miss {self.room - float(near.distance.max()):.2f} mm"
+        )
 
     def reasons(self, standard: Standard, wanted: Requests) -> Labels:
         """The first thing that is against each touch, in words; empty where nothing is, (N,)."""

@@ -20,10 +20,10 @@ from diagnosis.identification_file import write_identification
 from diagnosis.proof import Proof, probed_volume, prove
 from matstd.project_file import Project
 from matstd.reach import check_reach
-from matstd.wanted import frame, placement_options, probe, probing
+from matstd.wanted import frame, placement_options, plan_options, probe, probing
 from probe_paths.campaign import Campaign, simulate
 from probe_paths.contacts import VirtualMachine
-from probe_paths.plan import PlanOptions, TouchPlan
+from probe_paths.plan import TouchPlan
 from probe_paths.planner import plan_touches
 from probe_paths.program import ProgramSet, make_programs
 from sensitivity.crew import Crew
@@ -194,7 +194,7 @@ def _plan(project: Project, placement: Placement) -> TouchPlan:
         probe(project),
         project.setup,
         placement.requests,
-        PlanOptions(table_radius=project.limits.table_radius_mm),
+        plan_options(project),
     )
 
 

@@ -7,6 +7,7 @@ from artefact.standard import Base, Material
 from artefact.touchable import Probing
 from matstd.project_file import Project
 from matstd.standard_tables import BASE_THICKNESS, CORNER_RADIUS
+from probe_paths.plan import PlanOptions
 from probe_paths.probe import Probe
 from twin.units import DEG, KG_M3
 
@@ -14,10 +15,27 @@ _LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
 """Of the sphere centres above the seat, mm and as a share of the blank's height: as far apart as
 base and patches leave room for."""
 
+_ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
+"""Largest gap kept round the probe, mm, and the same as a share of the ball's radius."""
+
 
 def probe(project: Project) -> Probe:
     """The probe in the spindle."""
     return Probe(project.probe_radius, project.probe_length)
+
+
+def plan_options(project: Project) -> PlanOptions:
+    """How carefully touches are made: with half the room that they are chosen for."""
+    return PlanOptions(room=0.5 * _room(project), table_radius=project.limits.table_radius_mm)
+
+
+def _room(project: Project) -> float:
+    """Gap between the probe above its ball and anything solid, mm.
+
+    The stylus has two thirds of the ball's radius, so that beside a face it has a third of it and
+    never more: what a ball of 3 mm is given would bar a smaller one from every touch.
+    """
+    return min(_ROOM, _ROOM_OF_BALL * project.probe_radius)
 
 
 def probing(project: Project) -> Probing:
@@ -28,6 +46,7 @@ def probing(project: Project) -> Probing:
         project.setup,
         tool.shape,
         tool.length,
+        room=_room(project),
         table_radius=project.limits.table_radius_mm,
     )
 
