@@ -12,16 +12,34 @@ from artefact.reach.probe_clearance import (
     clearance,
     clearance_on_table,
 )
+from artefact.reach.table_face import table_face
 from artefact.reach.touchable import Mask, ProbeReach, Requests, joined
+from artefact.reach.within_reach import (
+    ANGLE,
+    Limit,
+    PlacesInReach,
+    places_on,
+    reach_of,
+    spread_poses,
+    turned,
+)
 
 __all__ = [
+    "ANGLE",
     "TABLE_RADIUS",
     "TABLE_THICKNESS",
+    "Limit",
     "Mask",
+    "PlacesInReach",
     "ProbeReach",
     "ProbeShape",
     "Requests",
     "clearance",
     "clearance_on_table",
     "joined",
+    "places_on",
+    "reach_of",
+    "spread_poses",
+    "table_face",
+    "turned",
 ]

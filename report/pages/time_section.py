@@ -19,7 +19,9 @@ def minutes(design: Design) -> dict[str, float]:
     for rival in placement.rivals[1:]:
         seconds = np.nan
         if rival.body is not None:
-            seconds = probing_time(rival.body, project.chain, probe, project.setup, rival.touches)
+            seconds = probing_time(
+                rival.body, project.chain, probe, project.setup, rival.touches, design.plan.options
+            )
         found[rival.name] = float(seconds) / MINUTE
     return found
 

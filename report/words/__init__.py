@@ -4,7 +4,12 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
-from report.words.artefact_words import alternative_words, criterion_words, percent
+from report.words.artefact_words import (
+    alternative_words,
+    comparison_remarks,
+    criterion_words,
+    percent,
+)
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
@@ -42,6 +47,7 @@ from report.words.sensitivity_words import (
 __all__ = [
     "alternative_words",
     "combination_words",
+    "comparison_remarks",
     "comparison_sentence",
     "criterion_words",
     "dominant_words",

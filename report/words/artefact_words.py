@@ -2,6 +2,7 @@
 
 from artefact.brief import StandardTable
 from artefact.compare import Alternative
+from artefact.place import Placement
 
 _CRITERIA = {
     "I": "mean variance of the predicted tool point over probed volume and workspace",
@@ -41,6 +42,21 @@ def alternative_words(other: Alternative) -> str:
     change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
     variance = f"mean predicted variance of the tool point {change} at equal touches"
     return f"{other.name}: {seen}; {variance}"
+
+
+def comparison_remarks(placement: Placement) -> list[str]:
+    """What has to be known of the comparison with other artefacts, one line each."""
+    remarks = [
+        f"Not compared with: {name}; this machine can make no touch on it."
+        for name in placement.unreachable
+    ]
+    wanted = len(placement.requests)
+    return remarks + [
+        f"{r.name}: {r.available} touches can be made on it, {wanted} are compared; "
+        "some are made more than once."
+        for r in placement.rivals
+        if r.available < wanted
+    ]
 
 
 def percent(value: float) -> str:
