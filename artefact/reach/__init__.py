@@ -5,6 +5,7 @@ those that can be made, the reason against each of the others, axis readings, an
 twin's effects understand them. A new hindrance is one more look in `ProbeReach`.
 """
 
+from artefact.reach.face_of_table import table_face
 from artefact.reach.probe_clearance import (
     TABLE_RADIUS,
     TABLE_THICKNESS,
@@ -12,7 +13,6 @@ from artefact.reach.probe_clearance import (
     clearance,
     clearance_on_table,
 )
-from artefact.reach.table_face import table_face
 from artefact.reach.touchable import Mask, ProbeReach, Requests, joined
 from artefact.reach.within_reach import (
     ANGLE,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.body import Plate, Standard, rows, unit
-from artefact.reach.table_face import table_face
+from artefact.reach.face_of_table import table_face
 from twin.errors import ShapeMismatch
 from twin.frames import Array, apply, inverse, turn
 
@@ -182,7 +182,7 @@ def clearance_on_table(
         T_table_tool: Of which the rotation tells the tool axis, shape (N, 4, 4).
         centre: Ball centres, table frame, shape (N, 3), mm.
         probe: Stylus, stem and body.
-        table: With the table's face at height zero (`artefact.table_face`).
+        table: With the table's face at height zero (`table_face`).
         enough: Room beyond which the exact figure does not matter, mm.
 
     Returns:

@@ -6,11 +6,10 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from report.words import percent
+from report.numbers import digits as digits
+from report.numbers import percent, signed
 from twin.files import write_whole
 from twin.versions import versions
-from twin.words import digits as digits
-from twin.words import signed
 
 _APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
 """Spaces between a number and its uncertainty or its unit."""

@@ -6,8 +6,9 @@ import numpy as np
 
 from probe_paths.campaign import Order, orders, probing_time
 from probe_paths.plan import Probe
+from report.numbers import percent
 from report.pages.design_result import Design
-from report.words import ordering_words, percent
+from report.words import ordering_words
 from twin.units import HOUR, MINUTE, UM, URAD
 
 

@@ -5,10 +5,8 @@ units, values with their uncertainty.
 """
 
 from report.words.artefact_words import (
-    alternative_words,
     comparison_remarks,
     criterion_words,
-    percent,
 )
 from report.words.diagnosis_words import (
     comparison_sentence,
@@ -45,7 +43,6 @@ from report.words.sensitivity_words import (
 )
 
 __all__ = [
-    "alternative_words",
     "combination_words",
     "comparison_remarks",
     "comparison_sentence",
@@ -58,7 +55,6 @@ __all__ = [
     "named_value",
     "ordering_words",
     "pair_words",
-    "percent",
     "place_words",
     "reason_words",
     "region_words",

@@ -3,6 +3,7 @@
 from artefact.brief import StandardTable
 from artefact.compare import Alternative
 from artefact.place import Placement
+from report.numbers import percent
 
 _CRITERIA = {
     "I": "mean variance of the predicted tool point over probed volume and workspace",
@@ -57,8 +58,3 @@ def comparison_remarks(placement: Placement) -> list[str]:
         for r in placement.rivals
         if r.available < wanted
     ]
-
-
-def percent(value: float) -> str:
-    """A share in percent."""
-    return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"

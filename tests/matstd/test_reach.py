@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from artefact.brief.project_file import Project, read_project
-from artefact.reach.table_face import table_face
+from artefact.reach.face_of_table import table_face
 from artefact.reach.touchable import Requests
 from artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
