@@ -32,6 +32,7 @@ VOCABULARY = {
     "twin.words",
     "twin.compute",
     "twin.versions",
+    "report.numbers",
 }
 """Modules that every room speaks: they lie below all parts and are imported as they are."""
 HEAVY = {"build123d", "OCP", "pyvista", "vtk", "matplotlib", "trimesh", "manifold3d"}

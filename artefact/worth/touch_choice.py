@@ -1,4 +1,11 @@
-"""Which table poses, and which touches in them, tell most on a standard that is there."""
+"""Which table poses, and which touches in them, tell most on a standard that is there.
+
+Table poses come from a grid of rotary readings: for each the best few touches on every face and
+sphere are taken, and the poses are chosen one after the other by what theirs add. At the chosen
+poses all touches on a grid of each face that machine and probe can make are candidates; the relaxed
+problem, in which a touch may be made by halves, bounds what any choice of them can reach, and its
+heaviest touches, exchanged until nothing is gained, are the choice.
+"""
 
 from dataclasses import dataclass, replace
 

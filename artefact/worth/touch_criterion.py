@@ -1,4 +1,12 @@
-"""What touches on a standard are worth: how well the tool point can be predicted after them."""
+"""What touches on a standard are worth: how well the tool point can be predicted after them.
+
+A touch is a row: what every expected error does to the deviation along its normal, in units of the
+touch's noise and of the error's own expected size. After touches with rows W the parameters have
+the covariance ``(1 + W^T W)^-1`` in those units, and the tool point at a pose has that of its own
+rows. A criterion condenses it into one number over many poses of the probed volume and of the
+user's workspace. The workpiece's set-up is a free parameter like any other: nobody knows where
+exactly the standard stands, and what is predicted is the tool relative to the workpiece.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -30,14 +38,8 @@ SETUP_SD = (1.0, 5e-3)
 """How far the standard may stand from where it is believed to stand, mm and rad. It is never known,
 so the set-up of the workpiece is free and the tool point is predicted relative to the standard."""
 
-CRITERIA = {
-    "I": "mean variance of the predicted tool point over probed volume and workspace",
-    "G": "largest variance of the predicted tool point at any pose of probed volume and workspace",
-    "D": "volume of what stays unknown of the parameters, in units of what is expected",
-    "A": "mean variance of the parameters, in units of what is expected",
-    "E": "variance of the least well determined error pattern, as the tool point feels it",
-}
-"""What touches can be chosen for."""
+CRITERIA = ("I", "G", "D", "A", "E")
+"""What touches can be chosen for, by the letters of optimal design."""
 
 _POSES = 400  # over which predictions are judged, in the probed volume and as many of the user's
 _SCATTER = 3000  # random touches that span all that touches can show

@@ -7,8 +7,7 @@ import numpy as np
 from probe_paths.campaign import Order, orders, probing_time
 from probe_paths.plan import Probe
 from report.pages.design_result import Design
-from report.pages.page import percent
-from report.words import ordering_words
+from report.words import ordering_words, percent
 from twin.units import HOUR, MINUTE, UM, URAD
 
 

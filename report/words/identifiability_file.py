@@ -7,6 +7,7 @@ from typing import Any
 
 from artefact.compare import IdentifiabilityReport
 from information.identifiability import Degree
+from report.numbers import shown
 from report.words.identifiability_words import (
     combination_words,
     degree_words,
@@ -19,7 +20,7 @@ from report.words.identifiability_words import (
 from report.words.parameter_words import in_words, short
 from twin.files import write_whole
 from twin.machine import Chain, Link
-from twin.units import DEG, shown
+from twin.units import DEG
 
 FORMAT = "identifiability/1"
 """Of the file."""

@@ -182,7 +182,7 @@ def test_what_the_example_only_mentions_is_accepted(tmp_path: Path, relation: st
     assert project.expected.dependence is not None
     chain = project.chain
     assert project.population.shapes_of(chain.symbol("EXX")) == ("linear", "sinusoidal")
-    assert project.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
+    assert project.expected.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
 
 
 def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
@@ -243,9 +243,9 @@ def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:
     path.write_text(path.read_text() + ranges)
     project = read_project(path)
     chain = project.chain
-    assert project.ranges.of(chain, chain.symbol("EXX")) == (3.0 * UM, 4.0 * UM)
-    assert project.ranges.of(chain, chain.symbol("EC0Y")) == (1.0 * URAD, 2.0 * URAD)
-    assert project.ranges.of(chain, chain.symbol("EYX")) == (50.0 * UM, 100.0 * UM)
+    assert project.expected.ranges.of(chain, chain.symbol("EXX")) == (3.0 * UM, 4.0 * UM)
+    assert project.expected.ranges.of(chain, chain.symbol("EC0Y")) == (1.0 * URAD, 2.0 * URAD)
+    assert project.expected.ranges.of(chain, chain.symbol("EYX")) == (50.0 * UM, 100.0 * UM)
 
 
 @pytest.mark.slow

@@ -6,9 +6,9 @@ from datetime import datetime
 import numpy as np
 import pytest
 
-from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.contact_solver import FIRST_MORNING, VirtualMachine
 from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import FIRST_MORNING, run_programs
+from probe_paths.campaign.virtual_run import run_programs
 from probe_paths.control.log import read_log
 from probe_paths.language.dialect import Dialect
 from probe_paths.language.masks import MaskLine, parse_mask

@@ -155,6 +155,8 @@ def _make_expansion(chain: Chain, arguments: Sequence[str]) -> Effect:
 
 
 def _propose_expansion(touches: Touches) -> Iterable[Effect]:
+    if not touches.instrument.is_ball_on_standard:
+        return ()
     return (ArtefactExpansion(sensor) for sensor in sensors(touches))
 
 

@@ -95,6 +95,8 @@ def make(chain: Chain, arguments: Sequence[str]) -> ArtefactForm:
 
 def propose(touches: Touches) -> Iterable[ArtefactForm]:
     """Every feature with enough touches."""
+    if not touches.instrument.is_ball_on_standard:
+        return
     names, counts = np.unique(touches.feature, return_counts=True)
     for name, count in zip(names, counts, strict=True):
         if name and count >= FORM_TOUCHES:

@@ -1,12 +1,13 @@
 """What a touch probe adds of its own: lobes, its effective radius, a stylus that bends."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from twin.frames import Array
-from twin.model import Inner, Kind, Parameter, Term, Where
+from twin.model import Effect, Inner, Kind, Parameter, Term, Where
 from twin.record import Touches
 from twin.units import UM
 
@@ -103,12 +104,18 @@ class StylusBending:
         return (Term(0, Where("bias"), n[:, 0] ** 2 + n[:, 1] ** 2),)
 
 
+def _if_touching(effect: Callable[[], Effect], touches: Touches) -> Iterable[Effect]:
+    """The effect where a ball touched a standard; a laser or a tracker has no stylus."""
+    return (effect(),) if touches.instrument.is_ball_on_standard else ()
+
+
 LOBING = Kind.of(
     ProbeLobing,
     formula="bias = sin(theta) (a cos(k phi) + b sin(k phi)), k = 2 to 6 lobes, tool frame",
     units="a, b: µm; k: 1",
     typical="3 to 8 µm with three lobes (kinematic), below 1 µm (strain gauge)",
     source="Estler et al., Precision Engineering 19 (1996): pre-travel of touch probes",
+    propose=partial(_if_touching, ProbeLobing),
 )
 RADIUS = Kind.of(
     ProbeRadius,
@@ -116,6 +123,7 @@ RADIUS = Kind.of(
     units="a: µm",
     typical="1 to 5 µm",
     source="ISO 10360-5 (effective size of the stylus tip)",
+    propose=partial(_if_touching, ProbeRadius),
 )
 BENDING = Kind.of(
     StylusBending,
@@ -123,4 +131,5 @@ BENDING = Kind.of(
     units="a: µm",
     typical="0.5 to 3 µm",
     source="cantilever F l^3/(3 E I); Estler et al. 1996",
+    propose=partial(_if_touching, StylusBending),
 )

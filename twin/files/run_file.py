@@ -15,7 +15,7 @@ from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
 from twin.machine import Chain
-from twin.record import IntArray, Run, Setup, Touches, aligned, computed_deviation
+from twin.record import Instrument, IntArray, Run, Setup, Touches, aligned, computed_deviation
 from twin.units import DEG, UM
 
 _OPTIONAL = (
@@ -56,6 +56,7 @@ class HeadTable(Table):
     format: str
     machine: str
     probe: ProbeTable
+    instrument: Instrument = Field(default=Instrument.TOUCH_PROBE, strict=False)
     u_um: float | None = Field(default=None, gt=0.0)
     setup: dict[str, SetupTable] = Field(default_factory=dict)
 
@@ -139,6 +140,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         q=q,
         length=np.full(n, head.probe.length_mm),
         radius=np.full(n, head.probe.radius_mm),
+        instrument=head.instrument,
         point=columns.points(table),
         normal=columns.normals(table, remarks),
         setups=setups,

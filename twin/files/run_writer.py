@@ -10,7 +10,7 @@ from twin.files.pose_file import reading_columns
 from twin.files.run_columns import FORCE, NORMAL, POINT
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
-from twin.record import Run, linear_approach
+from twin.record import Instrument, Run, linear_approach
 from twin.units import DEG, UM
 
 
@@ -35,6 +35,8 @@ def run_text(run: Run, machine: str) -> str:
     out.write(
         f"# probe = {{ radius_mm = {float(t.radius[0])!r}, length_mm = {float(t.length[0])!r} }}\n"
     )
+    if t.instrument is not Instrument.TOUCH_PROBE:
+        out.write(f'# instrument = "{t.instrument.value}"\n')
     if common_u:
         out.write(f"# u_um = {float(run.u[0]) / UM:.12g}\n")
     for setup in t.setups:

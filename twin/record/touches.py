@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from twin.errors import ShapeMismatch
 from twin.frames import Array, apply, inverse, turn
 from twin.machine import Chain, Reach, Where, checked_readings, linear_directions, reach, tip
+from twin.record.instrument import Instrument
 
 IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]
@@ -67,6 +68,7 @@ class Touches:
         force: Load on the tool in table-frame directions, (N, 3), N.
         feature: Label of the touched feature, (N,).
         pose: Label of the table pose, (N,).
+        instrument: What measured them all.
     """
 
     chain: Chain
@@ -84,6 +86,7 @@ class Touches:
     force: Array | None = None
     feature: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
     pose: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    instrument: Instrument = Instrument.TOUCH_PROBE
 
     def __post_init__(self) -> None:
         n = len(checked_readings(self.chain, self.q))
@@ -151,7 +154,8 @@ class Touches:
         return Signature(self.reach, self.normal_table)
 
 
-_PER_TOUCH = [f.name for f in fields(Touches) if f.name not in ("chain", "setups", "temperature")]
+_COMMON = ("chain", "setups", "temperature", "instrument")
+_PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
 
 
 def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
