@@ -4,6 +4,7 @@ import importlib
 import json
 import re
 import tomllib
+from enum import Enum
 from pathlib import Path
 
 import numpy as np
@@ -125,6 +126,7 @@ def test_every_key_is_described_with_its_default(name):
     for key, field in fields.items():
         default = field.get_default(call_default_factory=True, validated_data={})
         told = described[key]
+        default = default.value if isinstance(default, Enum) else default
         if isinstance(default, Table):
             assert told == "its defaults", key
         elif isinstance(default, dict) and default:
