@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print(f"matstd {args.command}: stopped, and nothing half-written is left", file=sys.stderr)
         return 130
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         theirs = _users_fault(error)
         if theirs is None:
             raise
@@ -55,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_BAD_INPUT
 
 
-def _users_fault(error: Exception) -> Exception | None:
+def _users_fault(error: BaseException) -> Exception | None:
     """A failure inside effects that the user wrote, as one line; None if it is our own."""
     from twin.library import users_fault, users_files, users_lines
 

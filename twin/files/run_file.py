@@ -87,9 +87,9 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks: list[str] = []
     run = _assemble(table, chain, head, remarks)
-    if "dev_um" not in table:
-        run, moved = aligned(run)
-        remarks += [columns.moved_setup(m) for m in moved]
+    placed, moved = aligned(run)
+    run = replace(placed, deviation=run.deviation) if "dev_um" in table else placed
+    remarks += [columns.moved_setup(m) for m in moved]
     run = checked_run(run, table, remarks)
     return replace(run, remarks=tuple(remarks))
 
