@@ -77,9 +77,9 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison) -> None:
     """The comparison in words."""
     from matstd.console import say
+    from report.numbers import signed
     from report.words import comparison_sentence, region_words, remark_sentence
     from twin.units import UM
-    from twin.words import signed
 
     say(comparison_sentence(found), style="bold")
     for region in found.where:

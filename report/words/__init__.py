@@ -4,6 +4,7 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
+from report.words.artefact_words import comparison_remarks, criterion_words
 from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
@@ -42,7 +43,9 @@ from report.words.sensitivity_words import (
 __all__ = [
     "best_rival",
     "combination_words",
+    "comparison_remarks",
     "comparison_sentence",
+    "criterion_words",
     "design_lines",
     "dominant_words",
     "family_words",

@@ -7,8 +7,8 @@ that the ball reaches on the standard, comes second and is named as such.
 from artefact.compare import Rival
 from artefact.place import Placement
 from diagnosis.answer import Proof
+from report.numbers import digits
 from twin.units import UM
-from twin.words import digits
 
 EQUAL = 1.05
 """Ratio of two predicted errors up to which they are called equal: no user would notice it."""
