@@ -6,7 +6,13 @@ collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of p
 `order`.
 """
 
-from probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
+from probe_paths.plan.clearance import (
+    ToolClearance,
+    readings_at,
+    solid_hull,
+    swing_height,
+    top_height,
+)
 from probe_paths.plan.frame import LINEAR, ProgramFrame
 from probe_paths.plan.heading import Heading, parse_heading
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, waypoints
@@ -27,6 +33,7 @@ __all__ = [
     "nearest_neighbours",
     "parse_heading",
     "plan_touches",
+    "readings_at",
     "requests_at",
     "solid_hull",
     "swing_height",
