@@ -31,6 +31,7 @@ VOCABULARY = {
     "twin.errors",
     "twin.words",
     "twin.compute",
+    "twin.display",
     "twin.versions",
     "report.numbers",
 }
