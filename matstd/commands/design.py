@@ -31,7 +31,7 @@ def run(args: argparse.Namespace) -> int:
 
     project, printed_by = read_project(args.project), asked_printer(args)
     with (
-        results_folder(args.output, args.force, [REFUSED, *REPORT_FILES]) as folder,
+        results_folder(args.output, args.force, REPORT_FILES, [REFUSED]) as folder,
         _pictured(folder, args.output),
     ):
         from matstd.console import stages
