@@ -34,8 +34,8 @@ def run(args: argparse.Namespace) -> int:
         results_folder(args.output, args.force, REPORT_FILES, [REFUSED]) as folder,
         _pictured(folder, args.output),
     ):
-        from matstd.console import stages
         from matstd.design import design
+        from matstd.progress import stages
         from report.pages import write_design_page
 
         with stages() as progress, connected(args.scheduler) as workers:
