@@ -14,6 +14,9 @@ from twin.errors import BadFile
 from twin.frames import Array
 from twin.record import IntArray
 
+LARGEST = 1e6
+"""A coordinate (mm, degrees) or a number of a touch beyond this was not logged by our programs."""
+
 _PAIR = re.compile(r"([A-Z]+)\s*([-+]?\d+(?:\.\d+)?)(?=\s|\Z)")
 _CLOCK = re.compile(r"(?:END )?T *(\d{1,2}): *(\d{1,2}): *(\d{1,2})\Z")
 _DATE = re.compile(r"DATE *(\d{4})- *(\d{1,2})- *(\d{1,2})\Z")
@@ -125,8 +128,11 @@ class _Reader:
         rest = _PAIR.sub("", text).strip()
         if rest or [n for n, _ in found] != list(names):
             raise self.refusal(repr(text), expected)
+        numbers = [float(v) for _, v in found]
+        if any(abs(number) > LARGEST for number in numbers):
+            raise self.refusal(repr(text), f"numbers below {LARGEST:g}")
         self.place += 1
-        return [float(v) for _, v in found]
+        return numbers
 
     def clock(self, day: datetime, after: datetime | None) -> datetime:
         """A time of day, on the day of `after` or, past midnight, on the next one."""
