@@ -160,3 +160,8 @@ def shown(unit: str) -> tuple[str, float]:
     head, slash, tail = unit.partition("/")
     label, factor = _SHOWN.get(head, (head, 1.0))
     return label + slash + tail, factor
+
+
+def percent(value: float) -> str:
+    """A share in percent."""
+    return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"

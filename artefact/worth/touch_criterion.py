@@ -10,6 +10,7 @@ exactly the standard stands, and what is predicted is the tool relative to the w
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ from sensitivity.first_order import Box, Workspace, latin_hypercube
 from sensitivity.population import Population, drawn_scales
 from twin.compute import blocks
 from twin.errors import DesignError, NotReachable
-from twin.frames import Array
+from twin.frames import Array, apply
 from twin.machine import Family
 from twin.model import Model
 from twin.record import at_poses
@@ -250,7 +251,10 @@ def _tips(
     """Deviation of the tip per unit of every parameter: probed volume, user's workspace."""
     chain = reach.chain
     limits = {name: workspace.limit(name) for name in chain.rotary_axes}
-    corners = np.array(volume) + reach.setup.T_table_artefact[:3, 3]
+    on_table = apply(
+        reach.setup.T_table_artefact, np.array(list(product(*zip(*volume, strict=True))))
+    )
+    corners = np.array([on_table.min(axis=0), on_table.max(axis=0)])
     box: Box = (tuple(corners[0]), tuple(corners[1]))
     probed = Workspace(chain, limits, reach.length, box)
     tips = []

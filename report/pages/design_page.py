@@ -20,7 +20,7 @@ from report.plots import (
 )
 from report.scenes import draw_standard
 from report.style import save
-from report.words import criterion_words
+from report.words import comparison_remarks, criterion_words
 from twin.errors import DesignError
 from twin.units import DEG, UM
 
@@ -40,7 +40,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
     Returns:
         What could not be drawn and why, one line each; the page says it too.
     """
-    remarks: list[str] = []
+    remarks: list[str] = comparison_remarks(design.placement)
     pictures = _standard_pictures(design, folder, remarks)
     maps = [*design.maps, *_volumes(design, folder, remarks)]
     write_touches_picture(folder / "plan_touches.png", design.plan)

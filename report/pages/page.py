@@ -7,8 +7,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from report.numbers import digits as digits
-from report.numbers import signed
-from report.words import percent
+from report.numbers import percent, signed
 from twin.files import write_whole
 from twin.versions import versions
 

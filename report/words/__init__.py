@@ -4,7 +4,10 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
-from report.words.artefact_words import criterion_words, percent
+from report.words.artefact_words import (
+    comparison_remarks,
+    criterion_words,
+)
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
@@ -41,6 +44,7 @@ from report.words.sensitivity_words import (
 
 __all__ = [
     "combination_words",
+    "comparison_remarks",
     "comparison_sentence",
     "criterion_words",
     "dominant_words",
@@ -51,7 +55,6 @@ __all__ = [
     "named_value",
     "ordering_words",
     "pair_words",
-    "percent",
     "place_words",
     "reason_words",
     "region_words",

@@ -1,6 +1,9 @@
-"""Sentences about a design: what its touches were chosen for."""
+"""Sentences about a design: what its touches were chosen for, what another way would buy."""
 
 from artefact.brief import StandardTable
+from artefact.compare import Alternative
+from artefact.place import Placement
+from report.numbers import percent
 
 _CRITERIA = {
     "I": "mean variance of the predicted tool point over probed volume and workspace",
@@ -26,6 +29,32 @@ def criterion_words(wanted: StandardTable) -> str:
     return ", ".join(words)
 
 
-def percent(value: float) -> str:
-    """A share in percent."""
-    return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"
+def alternative_words(other: Alternative) -> str:
+    """What another stylus length or set-up would buy."""
+    if not other.is_possible:
+        return f"{other.name}: {other.refusal}"
+    gained = other.rank_gained
+    seen = (
+        f"{gained} more combinations of machine errors seen"
+        if gained
+        else ("no combination more is seen")
+    )
+    ratio = other.variance_ratio
+    change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
+    variance = f"mean predicted variance of the tool point {change} at equal touches"
+    return f"{other.name}: {seen}; {variance}"
+
+
+def comparison_remarks(placement: Placement) -> list[str]:
+    """What has to be known of the comparison with other artefacts, one line each."""
+    remarks = [
+        f"Not compared with: {name}; this machine can make no touch on it."
+        for name in placement.unreachable
+    ]
+    wanted = len(placement.requests)
+    return remarks + [
+        f"{r.name}: {r.available} touches can be made on it, {wanted} are compared; "
+        "some are made more than once."
+        for r in placement.rivals
+        if r.available < wanted
+    ]

@@ -152,7 +152,6 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("gap_mm = 1.0", "gap_mm = -1.0", "limits.gap_mm"),
         ("gap_mm = 1.0", "gap_mm = 60.0", "8 patches fit on the blank; between them the ball"),
         ("B = [-90.0, 20.0]", "B = [28.0, 30.0]", "limits of B leave no room"),
-        ("origin_mm = [0.0, 0.0", "origin_mm = [2000.0, 0.0", "only 0 of 16000 poses"),
     ],
 )
 def test_bad_project(

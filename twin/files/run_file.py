@@ -126,8 +126,8 @@ def _check_columns(table: CsvTable, chain: Chain) -> None:
     sensors = [c for c in table.columns if columns.SENSOR.match(c)]
     known = [*names, *columns.POINT, *columns.NORMAL, *_OPTIONAL, *columns.FORCE]
     table.allow_only([*known, *directions, *sensors], " or T_<sensor>_degC")
-    table.require([*(reading_columns(chain)[a][0] for a in chain.programmed_axes)])
-    table.require([*columns.POINT, *columns.NORMAL])
+    needed = [reading_columns(chain)[axis][0] for axis in chain.programmed_axes]
+    table.require([*needed, *columns.POINT, *columns.NORMAL])
 
 
 def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]) -> Run:
