@@ -20,6 +20,7 @@ from diagnosis.next_measurement import Plan, plan
 from diagnosis.prior import Prior
 from diagnosis.regions import Region, regions
 from diagnosis.remarks import remarks
+from diagnosis.remembering import remembered
 from diagnosis.rounds import Round, Task, rounds, strongest, tuned
 from diagnosis.selection import LISTED, MOST_SETS, Search, Verified
 from diagnosis.sizes import sizes
@@ -72,6 +73,7 @@ def diagnose(
     known = {e.name for e in (*start.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     final = rounds(task, added, library, progress)
+    task, final = remembered(task, added, final, library, progress)
     return _result(task, added, final, progress, rng)
 
 

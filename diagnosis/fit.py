@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from diagnosis.gross import GrossErrors, find_gross
 from diagnosis.inner import Tangent, tangents
 from diagnosis.linear import BoolArray, LeftOut, Solution, left_out, solve
+from diagnosis.memory import Memory, Whitener, whitener
 from diagnosis.noise import Noise, noise_factor, replicate_factor
 from diagnosis.prior import Prior
 from twin.effect import Effect, Parameter
@@ -56,6 +57,8 @@ class Fit:
         gross: Test of every touch for gross errors.
         noise: What the noise is, against what is stated.
         widened: Factor by which the prior of the machine was widened, 1 unless it was exceeded.
+        memory: Of the noise, of which `X`, `y` and `solution` are freed in the rows used; None for
+            white noise.
     """
 
     run: Run
@@ -70,6 +73,7 @@ class Fit:
     gross: GrossErrors
     noise: Noise
     widened: float = 1.0
+    memory: Memory | None = None
 
     @cached_property
     def effects(self) -> tuple[Effect, ...]:
@@ -109,7 +113,22 @@ class Fit:
     @cached_property
     def residual(self) -> Array:
         """Measured minus predicted, all rows, (N,), mm."""
-        return (self.y - self.X @ self.solution.phi) * self.u
+        z = (self.y - self.X @ self.solution.phi) * self.weight
+        if self.whitener is not None:
+            z[self.used] = self.whitener.coloured(z[self.used])
+        return z * self.u
+
+    @property
+    def weight(self) -> float:
+        """Factor on the uncertainty of a row that counts for less than one observation."""
+        return _weight(self.memory)
+
+    @cached_property
+    def whitener(self) -> Whitener | None:
+        """Filter of the noise's memory over the rows used; None for white noise."""
+        if self.memory is None or not self.memory.is_filtered:
+            return None
+        return whitener(self.memory, self.run.touches, self.u, self.used)
 
     @property
     def rms(self) -> float:
@@ -156,7 +175,7 @@ class Fit:
             spread = (self.solution.spread(self.X[self.test_rows]) ** 2).sum(axis=1)
             error = self.residual[self.test_rows] / np.sqrt(1.0 + spread)
             return float(np.sqrt(np.mean(error**2)))
-        return self.held_out.rms * float(np.sqrt(np.mean(self.u[self.used] ** 2)))
+        return self.weight * self.held_out.rms * float(np.sqrt(np.mean(self.u[self.used] ** 2)))
 
     def of_effect(self, name: str) -> slice:
         """Places of one effect's parameters; raises KeyError."""
@@ -175,6 +194,7 @@ def fit_run(
     prior: Prior | None = None,
     free_inner: Array | None = None,
     gross: GrossErrors | None = None,
+    memory: Memory | None = None,
 ) -> Fit:
     """Fit a model and the set-ups of the standard to the rows of a run that are not held out.
 
@@ -187,7 +207,8 @@ def fit_run(
         prior: Of the model's parameters; None for what its effects state.
         free_inner: Linear parameters of the model, at which tangents of its inner parameters are
             added to the fit; None leaves the inner parameters where they are.
-        gross: Gross errors found before, to keep; None looks for them.
+        gross: Gross errors found before, to keep; None looks for them, as if noise were white.
+        memory: Of the noise; None for white noise.
 
     Raises:
         NotEnoughData: So few touches that nothing can be said.
@@ -203,20 +224,35 @@ def fit_run(
     moved = () if free_inner is None else tuple(tangents(model, run.touches, free_inner))
     A = columns((*model.effects, *setups, *moved), run.touches) / run.u[:, None]
     y = run.deviation / run.u
+    if memory is not None and memory.is_filtered:
+        gross = gross or fit_run(run, model, prior, free_inner).gross
+        kept = train & ~gross.rows
+        filter_ = whitener(memory, run.touches, run.u, kept)
+        A[kept], y[kept] = filter_.filtered(A[kept]), filter_.filtered(y[kept])
     free = Prior.of_effects((*setups, *moved))
-    factor, widened = 1.0, 1.0
+    factor, widened, weight = 1.0, 1.0, _weight(memory)
     for remaining in reversed(range(PASSES)):
-        belief = machine.widened(widened).joined(free)
-        X, rest = A @ belief.root / factor, (y - A @ belief.mean) / factor
+        belief = Prior(machine.mean, machine.root * _widening(model, widened)).joined(free)
+        whole = factor * weight
+        X, rest = A @ belief.root / whole, (y - A @ belief.mean) / whole
         solution, found = _solved(X, rest, train, gross)
-        chi2 = float(solution.residual @ solution.residual) * factor**2
+        chi2 = float(solution.residual @ solution.residual) * whole**2
         better = noise_factor(chi2, solution.dof)
         if abs(better / factor - 1.0) < SETTLED or not remaining:
             break
         factor, widened = better, max(widened, _widened(solution, len(machine)) * widened)
     used = train & ~found.rows
-    noise = _noise(run, solution, (rest - X @ solution.phi) * factor, used, factor)
-    return Fit(run, model, setups, moved, belief, X, rest, used, solution, found, noise, widened)
+    noise = _noise(run, solution, (rest - X @ solution.phi) * whole, used, factor)
+    return Fit(
+        run, model, setups, moved, belief, X, rest, used, solution, found, noise, widened, memory
+    )
+
+
+def _weight(memory: Memory | None) -> float:
+    """Root of the number of rows that count as one observation."""
+    if memory is None or memory.is_filtered:
+        return 1.0
+    return float(np.sqrt(memory.per_independent))
 
 
 def _noise(run: Run, solution: Solution, z: Array, used: BoolArray, factor: float) -> Noise:
@@ -233,6 +269,13 @@ def _solved(
         return find_gross(X, y, train)
     used = train & ~gross.rows
     return solve(X[used], y[used]), gross
+
+
+def _widening(model: Model, factor: float) -> Array:
+    """Factor on the prior of every parameter, (P, 1): none where its size was chosen already."""
+    shrunk = [getattr(e, "is_shrunk", False) for e in model.effects]
+    each = np.repeat(shrunk, [len(e.parameters) for e in model.effects])
+    return np.where(each, 1.0, factor)[:, None]
 
 
 def _widened(solution: Solution, machine: int) -> float:

@@ -165,4 +165,6 @@ def whitened(complement: Complement, features: Array, rows: IntArray) -> Array:
         features: Of all touches of the run, (all, K), mm per mm.
         rows: Which of the touches in use, (R,).
     """
+    if complement.whitener is not None:
+        return complement.whitener(features)[rows]
     return np.asarray(features[np.flatnonzero(complement.used)[rows]] / complement.u[rows, None])

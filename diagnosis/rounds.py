@@ -1,7 +1,7 @@
 """Gross errors, effects and structure in turn, until nothing changes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from diagnosis.edges import offered, without
 from diagnosis.evidence import EffectSet
 from diagnosis.fit import Fit, fit_run
 from diagnosis.gross import GrossErrors
+from diagnosis.memory import Memory
 from diagnosis.prior import Prior
 from diagnosis.refine import refined_set
 from diagnosis.screening import Library
@@ -42,6 +43,13 @@ they only imitate it."""
 SCREENINGS = 3
 """Most screenings of the library in one round of a long run."""
 
+STRETCHES = 5
+"""Stretches of time that are left out to weigh patterns against named effects."""
+
+BETTER = 0.8
+"""Share of the held-out error of patterns that named effects must reach to stay beside them: an
+effect that only imitates an unknown law is rarely much better than a pattern."""
+
 FREEDOM = 3.0
 """Factor on the prior of a found effect in its last fit: being found tells more of its size than
 what is usual, and an estimate shall not be drawn to zero."""
@@ -56,12 +64,14 @@ class Task:
         model: Machine and effects to begin with.
         prior: Of its parameters.
         is_known: Whether the prior is an earlier fit, rather than what is usual.
+        memory: Of the noise; None for white noise.
     """
 
     run: Run
     model: Model
     prior: Prior
     is_known: bool = False
+    memory: Memory | None = None
 
     def fit(
         self,
@@ -74,11 +84,11 @@ class Task:
         prior = self.prior
         for sized in effects:
             prior = prior.joined(self.found_prior(sized))
-        fit = fit_run(self.run, model, prior, gross=gross)
+        fit = fit_run(self.run, model, prior, gross=gross, memory=self.memory)
         if not free_inner or not effects:
             return fit
         theta = fit.theta[: len(model.parameters)]
-        return fit_run(self.run, model, prior, free_inner=theta, gross=fit.gross)
+        return fit_run(self.run, model, prior, theta, fit.gross, self.memory)
 
     def found_prior(self, sized: Sized) -> Prior:
         """Of the parameters of an effect that was added."""
@@ -187,12 +197,15 @@ def _judged(
     if not left:
         left = _beaten(at_start, nothing, chosen)
     nameless: list[Structure] = []
+    named = (search, chosen, left)
     while any(s.columns is not None for s in left) and len(nameless) < NAMELESS:
         nameless.append(strongest(left))
         fixed = np.hstack([s.columns for s in nameless if s.columns is not None])
         search = Search(search.pool, fixed, progress, search.budget)
         chosen = search.run(chosen.members)
         left = find_structure(chosen.effects, progress)
+    if _evicted(named[1], chosen):
+        (search, chosen, left), nameless = named, []
     return Round(
         base,
         library,
@@ -203,6 +216,26 @@ def _judged(
         tuple(left),
         tuple(nameless),
     )
+
+
+def _evicted(before: Chosen, after: Chosen) -> bool:
+    """Whether patterns without a name pushed out named effects that predict better than they do.
+
+    They are judged by long stretches of time left out: between neighbours a pattern of time always
+    runs well.
+    """
+    kept = {m.effect.name for m in after.members}
+    if all(m.effect.name in kept for m in before.members):
+        return False
+    return _by_stretches(before.effects) < BETTER * _by_stretches(after.effects)
+
+
+def _by_stretches(effects: EffectSet) -> float:
+    """Held-out error of a set when long stretches of time are left out."""
+    complement = effects.complement
+    order = np.argsort(complement.touches.time[complement.used], kind="stable")
+    groups = tuple(np.array_split(order, STRETCHES))
+    return EffectSet(replace(complement, groups=groups), effects.A).held_out.rms
 
 
 def _sized(chosen: Chosen) -> list[Sized]:
@@ -228,6 +261,20 @@ def _searched(
         names = [*names, *(n for n in further if n not in names)]
         found = [m.effect.name for m in chosen.members]
     return search, chosen
+
+
+def searched(
+    library: Library, found: Sequence[str], budget: Budget, progress: Progress = quiet
+) -> list[Sized]:
+    """Effects of the best set, without a look at patterns or at gross errors.
+
+    Args:
+        library: Candidates.
+        found: Names of effects to begin with.
+        budget: Sets that may be tried.
+        progress: Told of every step.
+    """
+    return _sized(_searched(library, found, budget, progress)[1])
 
 
 def _same(chosen: Chosen, found: Sequence[str]) -> bool:
