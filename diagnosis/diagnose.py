@@ -1,6 +1,7 @@
 """The diagnosis of a run: which effect the model lacks, how sure that is, what stays open."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,8 +16,10 @@ from diagnosis.candidates import (
 from diagnosis.detectable import detectable
 from diagnosis.evidence import EffectSet
 from diagnosis.fit import Fit
+from diagnosis.following import followed, told
 from diagnosis.gross import GrossErrors
 from diagnosis.next_measurement import Plan, plan
+from diagnosis.prediction import chosen_by_prediction, offered
 from diagnosis.prior import Prior
 from diagnosis.regions import Region, regions
 from diagnosis.remarks import remarks
@@ -29,7 +32,6 @@ from diagnosis.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from sensitivity.threads import one_blas_thread
 from twin.copies import counted_once
 from twin.effect import Effect
-from twin.library import proposals
 from twin.model import Model
 from twin.ordinary import ordinary_model
 from twin.run import Run
@@ -68,13 +70,20 @@ def diagnose(
     run = counted_once(run)
     start = model or ordinary_model(run.touches.chain)
     task = Task(run, start, prior or Prior.of_effects(start.effects), prior is not None)
-    library = proposals(run.touches) if candidates is None else list(candidates)
+    library = offered(run.touches) if candidates is None else list(candidates)
     added = tuned(task, named, progress)
     known = {e.name for e in (*start.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
-    final = rounds(task, added, library, progress)
-    task, final = remembered(task, added, final, library, progress)
-    return _result(task, added, final, progress, rng)
+    single = [e for e in library if not getattr(e, "is_shrunk", False)]
+    final = rounds(task, added, single, progress)
+    task, final = remembered(task, added, final, single, progress)
+    choice = chosen_by_prediction(task, added, final, library, progress)
+    if choice is not None:
+        task, final = followed(task, added, final, choice, single, progress)
+    result = _result(task, added, final, progress, rng)
+    if choice is None:
+        return result
+    return replace(result, choice=choice, remarks=(told(choice), *result.remarks))
 
 
 def _result(
@@ -147,7 +156,11 @@ def _classes(final: Round) -> list[ConfusionClass]:
     out = []
     for i, effect in enumerate(final.effects):
         others = final.effects[:i] + final.effects[i + 1 :]
-        out.append(confusion_class(final.pool, effect, others, final.fixed))
+        if effect.effect.name in final.chances:
+            out.append(ConfusionClass(effect, (), ()))
+            continue
+        found = confusion_class(final.pool, effect, others, final.fixed)
+        out.append(replace(found, sized=effect) if final.is_weighed else found)
     return out
 
 
@@ -160,7 +173,8 @@ def _steps(
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
     """The error falling: the model to begin with, named effects, found effects by their worth."""
-    p_values = [verified[m.effect.name].p_value for m in final.chosen.members]
+    names = [m.effect.name for m in final.chosen.members]
+    p_values = [final.chances.get(n, verified[n].p_value) for n in names]
     order = _by_worth(final)
     heads = [classes[i].sized for i in order]
     effects = [*added, *heads]

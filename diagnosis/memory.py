@@ -75,7 +75,7 @@ class Whitener:
     Attributes:
         used: Rows of the run that the fit uses, n of them, (N,).
         u: Their standard uncertainty, (n,), mm.
-        order: Rows one after the other, each but the first of a row next to the one before it, (n,).
+        order: Rows such that each, but the first of a chain, stands next to the one before it.
         before: The row before each, by number among them, -1 for none, (n,).
         kept: Correlation with it, (n,); zero where there is none.
         rows: Rows that are kept after the filter, by number; None for all.

@@ -1,4 +1,4 @@
-"""Choice by prediction: of several ways to explain a run the one that predicts what it has not seen.
+"""Choice by prediction: of several ways to explain a run the one that predicts unseen rows best.
 
 A search finds what fits. Where sensors share what they know, or where something is left that no
 effect explains, what fits best need not predict best, and the error of held-out rows flatters a set
@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.blocks import blocks, rms
+from diagnosis.bodies import bodies
 from diagnosis.candidates import Complement, Progress, Sized, quiet
 from diagnosis.field import sized_field
 from diagnosis.gross import GrossErrors
@@ -25,9 +26,11 @@ from diagnosis.screening import Library
 from diagnosis.selection import Budget
 from twin.effect import Effect
 from twin.effects.again import again
+from twin.effects.drives import drives
 from twin.effects.thermal_field import field
 from twin.frames import Array
-from twin.touches import IntArray
+from twin.library import proposals
+from twin.touches import IntArray, Touches
 
 SLOW = 4.0
 """Touches for one independent observation from which a residual is no longer nearly white."""
@@ -36,8 +39,8 @@ SETS = 300.0
 """Sets that the search of one block may try: a fifth of what a whole diagnosis may."""
 
 PLAINLY = 0.97
-"""Share of the error of the simpler way that another way must reach to be preferred: blocks are few,
-and 3 % are well inside their scatter."""
+"""Share of the error of the simpler way that another way must reach to be preferred: blocks are
+few, and 3 % are well inside their scatter."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,7 +48,7 @@ class Way:
     """A way of choosing, judged.
 
     Attributes:
-        name: `nothing`, `single effects`, `thermal field`.
+        name: `nothing`, `two time constants`, `single effects`, `thermal field`.
         effects: What it chooses with all rows in sight.
         errors: Plain root mean square error of every block left out, the choice made anew each
             time, (B,), mm.
@@ -99,22 +102,17 @@ def chosen_by_prediction(
         task: What is diagnosed.
         added: Effects that the user added.
         final: Result of the search.
-        candidates: Effects that may be found.
+        candidates: Effects that may be found, fields among them.
         progress: Told of every block.
     """
-    warm = field(task.run.touches)
-    if not (final.left or final.nameless) or warm is None:
+    if not (final.left or final.nameless) or not drives(task.run.touches):
         return None
     fit = task.fit((*added, *final.effects), final.base.gross)
     memory, gain = memory_of(fit)
     if gain < CLEARLY or memory.per_independent < SLOW:
         return None
     groups = blocks(fit, memory)
-    choosers = {
-        "nothing": lambda task, gross: (),
-        "single effects": lambda task, gross: named(task, added, gross, candidates),
-        "thermal field": lambda task, gross: (sized_field(task, added, gross, warm, groups),),
-    }
+    choosers = _choosers(added, candidates, groups)
     gross = final.base.gross
     ways = []
     for done, (name, chooser) in enumerate(choosers.items()):
@@ -127,6 +125,28 @@ def chosen_by_prediction(
             best = way
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(tuple(ways), best, len(groups), left[0] if left[1] >= CLEARLY else None)
+
+
+def offered(touches: Touches) -> list[Effect]:
+    """All that a diagnosis may find in a run: the library's proposals and the field of its drives."""
+    warm = field(touches)
+    return [*proposals(touches), *([warm] if warm is not None else [])]
+
+
+def _choosers(
+    added: tuple[Sized, ...], candidates: Sequence[Effect], groups: Sequence[IntArray]
+) -> dict[str, Chooser]:
+    """The ways that the candidates leave open, the simplest first."""
+    single = [e for e in candidates if not getattr(e, "is_shrunk", False)]
+    warm = next((e for e in candidates if getattr(e, "is_shrunk", False)), None)
+    out: dict[str, Chooser] = {"nothing": lambda task, gross: ()}
+    if {"thermal-lag", "thermal-static"} <= {e.kind for e in single}:
+        out["two time constants"] = lambda task, gross: bodies(task, added, gross)
+    if single:
+        out["single effects"] = lambda task, gross: named(task, added, gross, single)
+    if warm is not None:
+        out["thermal field"] = lambda task, gross: (sized_field(task, added, gross, warm, groups),)
+    return out
 
 
 def _errors(

@@ -1,7 +1,7 @@
 """Gross errors, effects and structure in turn, until nothing changes."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -108,6 +108,8 @@ class Round:
         at_start: Structure that the model to begin with leaves.
         left: Structure that the effects and the patterns leave.
         nameless: Patterns without a name that had to be put beside them.
+        chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
+        is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
     """
 
     base: Fit
@@ -118,6 +120,8 @@ class Round:
     at_start: tuple[Structure, ...]
     left: tuple[Structure, ...]
     nameless: tuple[Structure, ...]
+    chances: Mapping[str, float] = field(default_factory=dict)
+    is_weighed: bool = False
 
     @property
     def pool(self) -> Signatures:

@@ -8,6 +8,7 @@ from diagnosis.describe import Reported
 from diagnosis.detectable import Detectable
 from diagnosis.fit import Fit
 from diagnosis.next_measurement import Plan
+from diagnosis.prediction import Choice
 from diagnosis.regions import Region
 from diagnosis.structure import Structure
 from twin.effect import Effect
@@ -90,6 +91,7 @@ class Diagnosis:
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
         remarks: What else a user should know, one line each.
+        choice: How the set was chosen by prediction; None where the search left nothing to choose.
     """
 
     run: Run
@@ -103,6 +105,7 @@ class Diagnosis:
     detectable: tuple[Detectable, ...]
     plans: tuple[Plan, ...]
     remarks: tuple[str, ...]
+    choice: Choice | None = None
 
     @property
     def start(self) -> Fit:

@@ -30,8 +30,8 @@ def counted_once(run: Run) -> Run:
     """The run without copied rows, and a remark that says so; the run itself if there are none.
 
     A row that stands twice, its time included, is a copy. So are rows that agree with earlier ones
-    in all columns but the time to the last digit, if most touches that are repeated do: the noise of
-    real ones differs, unless it is read too coarsely to show.
+    in all columns but the time to the last digit, if most touches that are repeated do: the noise
+    of real ones differs, unless it is read too coarsely to show.
 
     Example:
         A file that was pasted twice under itself counts once.

@@ -1,4 +1,4 @@
-"""A body of the machine after every recorded drive, at once and through a few lags, shrunk together.
+"""A body of the machine after every drive, at once and through a few lags, shrunk together.
 
 Sensors of one machine share what they know. Picked one by one they stand in for each other, and
 which one is picked is chance; fitted together with one common prior each tells a little, and the
@@ -21,8 +21,8 @@ USAGE = "thermal-field(axis,drive,...)"
 LETTERS = "XYZABC"
 
 LAGS = (4.0 * MINUTE, 16.0 * MINUTE, 64.0 * MINUTE, 256.0 * MINUTE)
-"""Time constants, s, over the range of `thermal-lag`. Responses of neighbours to a step correlate by
-0.85 and more, so that a lag between two of them is a weighted mean of both to 5 %."""
+"""Time constants, s, over the range of `thermal-lag`. A lag between two neighbours is
+a weighted mean of both to 7 % of a step."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,120 @@
+"""The way that predicts best, followed: the set that was weighed is the set that is told and saved."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import ttest_1samp
+
+from diagnosis.candidates import Complement, Grid, Progress, Signatures, Sized, quiet, signatures
+from diagnosis.memory import Memory
+from diagnosis.prediction import Choice, Way
+from diagnosis.remembering import LOUDEST
+from diagnosis.rounds import Round, Task
+from diagnosis.screening import Library
+from diagnosis.selection import Chosen, Member, Search
+from diagnosis.structure import find_structure
+from twin.effect import Effect
+
+FEWEST = 30.0
+"""Independent observations that a run with a slow residual is taken to hold at least: a memory as
+long as the run has no length that the run could tell."""
+
+
+def followed(
+    task: Task,
+    added: tuple[Sized, ...],
+    final: Round,
+    choice: Choice,
+    candidates: Sequence[Effect],
+    progress: Progress = quiet,
+) -> tuple[Task, Round]:
+    """The task with rows that count as independent observations, and the chosen set in it.
+
+    Args:
+        task: What is diagnosed.
+        added: Effects that the user added.
+        final: Result of the search.
+        choice: Which way predicts best.
+        candidates: Effects that may be found, for what cannot be told apart.
+        progress: Told of every stage.
+    """
+    gross, best = final.base.gross, choice.best
+    plain = task.fit((*added, *best.effects), gross)
+    task = replace(task, memory=_slow(choice.memory, int(plain.used.sum())))
+    base = task.fit(added, gross)
+    # rows count for less, so a prior that was chosen beside whole rows must be wider by as much
+    effects = tuple(_wider(s, base.weight) for s in best.effects)
+    library = Library.of(Complement.of(base), candidates, progress)
+    search = Search(_pool(library, effects), None, progress)
+    members = [Member(*_place(search.pool, s), s.effect, s.scale) for s in effects]
+    chosen = search.chosen(members)
+    left = find_structure(chosen.effects, progress)
+    if not left and plain.noise.factor > LOUDEST:
+        left = list(final.left or final.nameless)
+    shrunk = {s.effect.name: _chance(choice) for s in effects if _is_shrunk(s)}
+    nothing = find_structure(search.chosen(()).effects, progress)
+    return task, Round(
+        base,
+        library,
+        search,
+        chosen,
+        effects,
+        tuple(nothing) or final.at_start,
+        tuple(left),
+        (),
+        shrunk,
+        is_weighed=True,
+    )
+
+
+def _slow(memory: Memory | None, rows: int) -> Memory | None:
+    """A memory by which rows count, not by which they are filtered."""
+    if memory is None:
+        return None
+    most = max(rows / FEWEST, 1.0)
+    correlation = min(memory.correlation, (most - 1.0) / (most + 1.0))
+    return replace(memory, correlation=correlation, is_filtered=False) if correlation > 0 else None
+
+
+def _is_shrunk(sized: Sized) -> bool:
+    return bool(getattr(sized.effect, "is_shrunk", False))
+
+
+def _wider(sized: Sized, weight: float) -> Sized:
+    return replace(sized, scale=sized.scale * weight) if _is_shrunk(sized) else sized
+
+
+def _pool(library: Library, effects: Sequence[Sized]) -> Signatures:
+    """Signatures of the chosen effects as they are, and of all other candidates of a usual run."""
+    names = {s.effect.name for s in effects}
+    tries = {g.effect.name: g.tries for g in library.grids}
+    own = [Grid(s.effect, (s.effect,), tries.get(s.effect.name, 1)) for s in effects]
+    others = [g for g in library.grids if g.effect.name not in names] if library.is_whole else []
+    return signatures(library.complement, [*own, *others], len(library.grids))
+
+
+def _place(pool: Signatures, sized: Sized) -> tuple[int, int]:
+    """Variant and candidate of an effect in a pool."""
+    variant = next(i for i, e in enumerate(pool.variants) if e.name == sized.effect.name)
+    return variant, int(pool.owner[variant])
+
+
+def _chance(choice: Choice) -> float:
+    """Probability by chance that left-out blocks are predicted so much better than by nothing.
+
+    Student's test of the logarithms of the errors, block by block: of few blocks it can never be
+    small, and that is honest.
+    """
+    nothing: Way = choice.ways[0]
+    gain = np.log(nothing.errors / choice.best.errors)
+    return float(ttest_1samp(gain, 0.0, alternative="greater").pvalue)
+
+
+def told(choice: Choice) -> str:
+    """The choice in one line: every way with its error."""
+    ways = "; ".join(f"{w.name} {1e3 * w.error:.2f} µm" for w in choice.ways)
+    return (
+        f"chosen by prediction: {choice.best.name}. Plain error of {choice.blocks} blocks left out "
+        f"in turn, the choice made anew without each: {ways}"
+    )
