@@ -17,7 +17,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
 
-EFFECTS = ("backlash(Y)", "thermal-expansion(Y,scaleY)", "thermal-lag(EZZ)", "coupling(EBX,Z)")
+EFFECTS = ("backlash(Y)", "thermal-expansion(Y,scaleY)", "thermal-lag(EZZ)", "periodic(EXX)")
 MACHINES = ("hsm600u", "fork", "hmc1995")
 
 

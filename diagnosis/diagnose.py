@@ -16,7 +16,7 @@ from diagnosis.candidates import (
 from diagnosis.detectable import detectable
 from diagnosis.evidence import EffectSet
 from diagnosis.fit import Fit
-from diagnosis.following import followed, told
+from diagnosis.following import followed, shares, told
 from diagnosis.gross import GrossErrors
 from diagnosis.next_measurement import Plan, plan
 from diagnosis.prediction import chosen_by_prediction, offered
@@ -32,6 +32,7 @@ from diagnosis.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from sensitivity.threads import one_blas_thread
 from twin.copies import counted_once
 from twin.effect import Effect
+from twin.effects.thermal_field import ThermalField
 from twin.model import Model
 from twin.ordinary import ordinary_model
 from twin.run import Run
@@ -83,7 +84,9 @@ def diagnose(
     result = _result(task, added, final, progress, rng)
     if choice is None:
         return result
-    return replace(result, choice=choice, remarks=(told(choice), *result.remarks))
+    fields = [e for e in result.found if isinstance(e, ThermalField)]
+    words = (told(choice), *(shares(result.fit, e) for e in fields))
+    return replace(result, choice=choice, remarks=(*words, *result.remarks))
 
 
 def _result(
@@ -160,7 +163,7 @@ def _classes(final: Round) -> list[ConfusionClass]:
             out.append(ConfusionClass(effect, (), ()))
             continue
         found = confusion_class(final.pool, effect, others, final.fixed)
-        out.append(replace(found, sized=effect) if final.is_weighed else found)
+        out.append(found.headed(effect) if final.is_weighed else found)
     return out
 
 
@@ -235,7 +238,7 @@ def _candidates(final: Round) -> tuple[Candidate, ...]:
                 member.effect.kind,
                 search.corrected(member.candidate, float(scores.p[variant])),
                 float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
-                effects.held_out.rms * float(np.sqrt(np.mean(u**2))),
+                float(np.sqrt(np.mean((effects.held_out.error * u) ** 2))),
                 float(effects.evidence - nothing.effects.evidence),
             )
         )

@@ -1,4 +1,4 @@
-"""The way that predicts best, followed: the set that was weighed is the set that is told and saved."""
+"""The way that predicts best, followed: the set that was weighed is the set told and saved."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,14 +7,21 @@ import numpy as np
 from scipy.stats import ttest_1samp
 
 from diagnosis.candidates import Complement, Grid, Progress, Signatures, Sized, quiet, signatures
+from diagnosis.fit import Fit
 from diagnosis.memory import Memory
 from diagnosis.prediction import Choice, Way
 from diagnosis.remembering import LOUDEST
 from diagnosis.rounds import Round, Task
 from diagnosis.screening import Library
-from diagnosis.selection import Chosen, Member, Search
+from diagnosis.selection import Member, Search
 from diagnosis.structure import find_structure
 from twin.effect import Effect
+from twin.effects.thermal_field import LETTERS, ThermalField
+from twin.model import columns
+from twin.units import UM
+
+LISTED = 6
+"""Drives of a field that are told."""
 
 FEWEST = 30.0
 """Independent observations that a run with a slow residual is taken to hold at least: a memory as
@@ -111,9 +118,26 @@ def _chance(choice: Choice) -> float:
     return float(ttest_1samp(gain, 0.0, alternative="greater").pvalue)
 
 
+def shares(fit: Fit, effect: ThermalField) -> str:
+    """What every drive of a field tells in it, the most first, in one line."""
+    theta = fit.theta[fit.of_effect(effect.name)]
+    C = columns([effect], fit.run.touches)[fit.used] * theta
+    places = [drive for _ in LETTERS for drive, _ in effect.places]
+    told = {}
+    for drive in effect.drives:
+        part = C[:, [p == drive for p in places]].sum(axis=1)
+        told[drive] = float(np.std(part))
+    ranked = sorted(told.items(), key=lambda item: -item[1])
+    words = ", ".join(f"{drive} {size / UM:.1f}" for drive, size in ranked[:LISTED])
+    return (
+        f"the field of {effect.axis} moves after {words} µm rms, which partly cancel; sensors that "
+        "share what they know stand in for one another, so their order is no finding"
+    )
+
+
 def told(choice: Choice) -> str:
     """The choice in one line: every way with its error."""
-    ways = "; ".join(f"{w.name} {1e3 * w.error:.2f} µm" for w in choice.ways)
+    ways = "; ".join(f"{w.name} {w.error / UM:.2f} µm" for w in choice.ways)
     return (
         f"chosen by prediction: {choice.best.name}. Plain error of {choice.blocks} blocks left out "
         f"in turn, the choice made anew without each: {ways}"

@@ -19,6 +19,7 @@ from diagnosis.candidates import Complement, Progress, Sized, quiet
 from diagnosis.field import sized_field
 from diagnosis.gross import GrossErrors
 from diagnosis.memory import CLEARLY, Memory
+from diagnosis.needed import needed
 from diagnosis.refine import refined_set
 from diagnosis.remembering import memory_of
 from diagnosis.rounds import Round, Task, searched
@@ -128,7 +129,7 @@ def chosen_by_prediction(
 
 
 def offered(touches: Touches) -> list[Effect]:
-    """All that a diagnosis may find in a run: the library's proposals and the field of its drives."""
+    """All that a diagnosis may find in a run: proposals of the library and the field of drives."""
     warm = field(touches)
     return [*proposals(touches), *([warm] if warm is not None else [])]
 
@@ -143,7 +144,7 @@ def _choosers(
     if {"thermal-lag", "thermal-static"} <= {e.kind for e in single}:
         out["two time constants"] = lambda task, gross: bodies(task, added, gross)
     if single:
-        out["single effects"] = lambda task, gross: named(task, added, gross, single)
+        out["single effects"] = lambda task, gross: named(task, added, gross, single, groups)
     if warm is not None:
         out["thermal field"] = lambda task, gross: (sized_field(task, added, gross, warm, groups),)
     return out
@@ -173,7 +174,11 @@ def without(task: Task, rows: IntArray) -> Task:
 
 
 def named(
-    task: Task, added: tuple[Sized, ...], gross: GrossErrors, candidates: Sequence[Effect]
+    task: Task,
+    added: tuple[Sized, ...],
+    gross: GrossErrors,
+    candidates: Sequence[Effect],
+    groups: Sequence[IntArray],
 ) -> tuple[Sized, ...]:
     """Single effects by search, then those with inner parameters once more beside themselves.
 
@@ -182,6 +187,7 @@ def named(
         added: Effects that the user added.
         gross: Gross errors, as they were found.
         candidates: Effects that may be found.
+        groups: Rows of the run in every block; each effect must lower the error of blocks left out.
     """
     complement = Complement.of(task.fit(added, gross))
     found: list[Sized] = []
@@ -193,4 +199,4 @@ def named(
         more = [a for s in found if (a := again(s.effect)) is not None]
         if not more:
             break
-    return tuple(found)
+    return needed(complement, found, groups)

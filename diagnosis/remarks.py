@@ -19,7 +19,7 @@ LISTED = 20
 def remarks(fit: Fit) -> tuple[str, ...]:
     """Everything noteworthy in a fit: units, what the reader of the file noticed, the rest."""
     units = mixed_units(fit)
-    out = [*units, *fit.run.remarks, *_touches(fit)]
+    out = [*units, *fit.run.remarks, *_memory(fit), *_touches(fit)]
     out += ([] if units else _noise(fit)) + _gross(fit)
     if fit.widened > 1.0:
         out.append(
@@ -44,9 +44,9 @@ def _touches(fit: Fit) -> list[str]:
             "can be seen; the stated uncertainty is leant on"
         )
         stated = float(np.sqrt(np.mean(fit.run.u**2)))
-        if fit.test_rms > DOUBTFUL * stated:
+        if fit.freed_rms > DOUBTFUL * stated:
             out.append(
-                f"the error of held-out touches is {fit.test_rms / stated:.1f} times the stated "
+                f"the error of held-out touches is {fit.freed_rms / stated:.1f} times the stated "
                 "noise, with too few touches to say whether anything is missing: probe more"
             )
     t = fit.run.touches
@@ -58,6 +58,29 @@ def _touches(fit: Fit) -> list[str]:
             "blocks instead of by pose"
         )
     return out
+
+
+def memory_words(fit: Fit) -> str:
+    """What the noise remembers, `correlation 0.82 from touch to touch`; "" for white noise."""
+    memory = fit.memory
+    if memory is None:
+        return ""
+    place = " at one place" if memory.by_place else ""
+    over = f"over {memory.step:.3g} s" if memory.step else "from touch to touch"
+    return f"correlation {memory.correlation:.2f} {over}{place}"
+
+
+def _memory(fit: Fit) -> list[str]:
+    """Noise that remembers, or a residual that is slow."""
+    if fit.memory is None:
+        return []
+    rows = int(fit.used.sum())
+    count = f"{rows} touches count as {rows / fit.memory.per_independent:.0f} independent ones"
+    if fit.memory.is_filtered:
+        return [f"the noise remembers, {memory_words(fit)}: of whatever is slow {count}"]
+    return [
+        f"what is left is slow, {memory_words(fit)}: in probabilities and uncertainties {count}"
+    ]
 
 
 def _noise(fit: Fit) -> list[str]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from diagnosis.describe import Reported
 from diagnosis.fit import Fit
+from diagnosis.remarks import memory_words
 from diagnosis.residuals import Comparison
 from diagnosis.verdict import Diagnosis, Step, Verdict
 from twin.effect import Tunable
@@ -101,9 +102,11 @@ def noise_words(fit: Fit) -> str:
     """The noise as found, and as stated where that is another."""
     stated = stated_noise(fit.run)
     found = stated * fit.noise.factor
+    remembers = fit.memory is not None and fit.memory.is_filtered
+    after = f" and remembers ({memory_words(fit)})" if remembers else ""
     if fit.noise.is_wrongly_stated:
-        return f"{microns(found)} (stated: {microns(stated)})"
-    return microns(stated)
+        return f"{microns(found)} (stated: {microns(stated)}){after}"
+    return f"{microns(stated)}{after}"
 
 
 def excess(fit: Fit) -> float:
@@ -118,6 +121,12 @@ def clause(words: str) -> str:
 
 
 def _fall(diagnosis: Diagnosis) -> str:
+    if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
+        first, best = diagnosis.choice.ways[0], diagnosis.choice.best
+        return (
+            f"the plain error of blocks left out, the choice made anew without each, falls from "
+            f"{microns(first.error)} to {microns(best.error)}"
+        )
     return (
         f"the error of held-out touches falls from {microns(diagnosis.start.test_rms)} to "
         f"{microns(diagnosis.fit.test_rms)}"
@@ -188,6 +197,20 @@ def comparison_sentence(found: Comparison) -> str:
     if not found.structure:
         return f"{text} What is left looks like noise."
     return f"{text} What is left is not noise: {clause(found.structure[0].words)}."
+
+
+BROKEN = 1.1
+"""Error over what was promised from which a promise is called broken; the figures themselves
+scatter by a few per cent."""
+
+
+def promise_sentence(found: Comparison, promised: float) -> str:
+    """The error of a prediction beside the one that its model promised (mm), in plain words."""
+    word = "worse than" if found.rms > BROKEN * promised else "as good as"
+    return (
+        f"That is {word} was promised: {microns(found.rms)} beside {microns(promised)}, the error "
+        "of rows that the model had not seen when it was made."
+    )
 
 
 def rivals_words(step: Step, most: int = 2) -> str:

@@ -39,6 +39,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
     from twin.ordinary import ordinary_model
+    from twin.units import UM
 
     run, saved = read_inputs(args.run_file, args.model, args.effects, "so that it flatters it")
     model = saved.model if saved else ordinary_model(run.touches.chain)
@@ -57,18 +58,20 @@ def run(args: argparse.Namespace) -> int:
             show("report", 0, 1)
             title = Path(args.run_file).name
             write_compare_page(found, folder, title, np.random.default_rng(0))
-    _tell(args, found)
+    _tell(args, found, saved.source.held_out_um * UM if saved else 0.0)
     return 0
 
 
-def _tell(args: argparse.Namespace, found: Comparison) -> None:
-    """The comparison in words."""
-    from diagnosis.sentences import comparison_sentence
+def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
+    """The comparison in words, and beside what the model promised (mm, 0 for nothing)."""
+    from diagnosis.sentences import comparison_sentence, promise_sentence
     from matstd.console import say
     from twin.units import UM
     from twin.words import signed
 
     say(comparison_sentence(found), style="bold")
+    if promised > 0.0 and found.is_prediction:
+        say(promise_sentence(found, promised))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region.words}: {mean} ({int(region.rows.sum())} touches)")
