@@ -6,8 +6,10 @@ from enum import Enum
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.next_measurement import Plan
+from diagnosis.choice import Choice
 from diagnosis.fit import Fit, Reported
-from diagnosis.residual import Region, Remark, Structure
+from diagnosis.remarks import Remark
+from diagnosis.residual import Region, Structure
 from twin.model import Effect
 from twin.record import Run
 
@@ -88,6 +90,7 @@ class Diagnosis:
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
         remarks: What else a user should know.
+        choice: How the set was chosen by prediction; None where the search left nothing to choose.
     """
 
     run: Run
@@ -101,6 +104,7 @@ class Diagnosis:
     detectable: tuple[Detectable, ...]
     plans: tuple[Plan, ...]
     remarks: tuple[Remark, ...]
+    choice: Choice | None = None
 
     @property
     def start(self) -> Fit:

@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis.fit.identification import Fit
 from twin.frames import Array
-from twin.model import Effect, Inner, inner_values
+from twin.model import Effect, Inner, columns, inner_values
 from twin.units import DEG, MINUTE, UM, URAD
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
@@ -103,7 +103,9 @@ def reported(
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
     out = list(_inner(fit, effect, wider, settled or {}))
-    if len(theta) > 1:
+    if getattr(effect, "is_shrunk", False):
+        out.append(explained_rms(fit, effect, theta, covariance))
+    elif len(theta) > 1:
         out.append(size(effect, theta, covariance))
     for i, parameter in enumerate(effect.parameters):
         suffix, factor = file_unit(parameter.unit)
@@ -119,6 +121,26 @@ def reported(
             )
         )
     return tuple(out)
+
+
+def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
+    """Deviation that an effect of many parameters explains, root mean square over the rows used.
+
+    Of parameters that share what they know neither one nor their length means anything.
+    """
+    C = columns([effect], fit.run.touches)[fit.used]
+    explained = C @ theta
+    rms = float(np.sqrt(np.mean(explained**2)))
+    # d rms / d theta = C^T C theta / (n rms)
+    slope = C.T @ explained / max(len(C) * rms, 1e-300)
+    return Reported(
+        quantity="amplitude",
+        unit="um",
+        value=rms / UM,
+        u=float(np.sqrt(slope @ covariance @ slope)) / UM,
+        factor=UM,
+        role=Role.SIZE,
+    )
 
 
 def size(effect: Effect, theta: Array, covariance: Array) -> Reported:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from diagnosis.answer import Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Comparison, Condition, Shape, Side, Structure
+from report.words.remark_words import memory_words
 from twin.record import Run
 from twin.units import UM
 from twin.words import condition, digits, listed, noun, span, with_uncertainty
@@ -87,9 +88,11 @@ def noise_words(fit: Fit) -> str:
     """The noise as found, and as stated where that is another."""
     stated = stated_noise(fit.run)
     found = stated * fit.noise.factor
+    remembers = fit.memory is not None and fit.memory.is_filtered
+    after = f" and remembers ({_memory(fit)})" if remembers else ""
     if fit.noise.is_wrongly_stated:
-        return f"{microns(found)} (stated: {microns(stated)})"
-    return microns(stated)
+        return f"{microns(found)} (stated: {microns(stated)}){after}"
+    return f"{microns(stated)}{after}"
 
 
 def excess(fit: Fit) -> float:
@@ -133,6 +136,12 @@ def structure_clause(found: Structure) -> str:
 
 
 def _fall(diagnosis: Diagnosis) -> str:
+    if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
+        first, best = diagnosis.choice.ways[0], diagnosis.choice.best
+        return (
+            f"the plain error of blocks left out, the choice made anew without each, falls from "
+            f"{microns(first.error)} to {microns(best.error)}"
+        )
     return (
         f"the error of held-out touches falls from {microns(diagnosis.start.test_rms)} to "
         f"{microns(diagnosis.fit.test_rms)}"
@@ -205,6 +214,28 @@ def comparison_sentence(found: Comparison) -> str:
     if not found.structure:
         return f"{text} What is left looks like noise."
     return f"{text} What is left is not noise: {structure_clause(found.structure[0])}."
+
+
+BROKEN = 1.1
+"""Error over what was promised from which a promise is called broken; the figures themselves
+scatter by a few per cent."""
+
+
+def promise_sentence(found: Comparison, promised: float) -> str:
+    """The error of a prediction beside the one that its model promised (mm), in plain words."""
+    word = "worse than" if found.rms > BROKEN * promised else "as good as"
+    return (
+        f"That is {word} was promised: {microns(found.rms)} beside {microns(promised)}, the error "
+        "of rows that the model had not seen when it was made."
+    )
+
+
+def _memory(fit: Fit) -> str:
+    """What the noise of a fit remembers; empty for white noise."""
+    memory = fit.memory
+    if memory is None:
+        return ""
+    return memory_words(memory.correlation, memory.step, memory.by_place)
 
 
 def rivals_words(step: Step, most: int = 2) -> str:

@@ -12,7 +12,7 @@ from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.unit_mistakes import unit_mistake
-from diagnosis.residual.run_remarks import remarks
+from diagnosis.remarks.run_remarks import remarks
 from matstd.cli import main
 from report.words.remark_words import remark_sentence
 from twin.errors import BadFile

@@ -38,8 +38,8 @@ from report.words.diagnosis_words import (
 )
 from twin.effects.backlash import KIND as BACKLASH
 from twin.effects.periodic import KIND as PERIODIC
-from twin.effects.thermal_lag import KIND as LAG
 from twin.library.ordinary import ordinary_model
+from twin.thermal.thermal_lag import KIND as LAG
 from twin.units import MINUTE, NM, UM
 from twin.words import with_uncertainty
 
