@@ -16,7 +16,7 @@ from diagnosis.fit import fit_run
 from diagnosis.following import followed
 from diagnosis.memory import Memory
 from diagnosis.needed import needed
-from diagnosis.prediction import Choice, Way, chosen_by_prediction, offered, without
+from diagnosis.prediction import Choice, chosen_by_prediction, offered, without
 from diagnosis.prior import Prior
 from diagnosis.residuals import compare
 from diagnosis.rounds import Task, rounds
@@ -107,7 +107,7 @@ def test_both_time_constants_of_a_body_are_found_within_what_is_stated() -> None
 def test_a_large_effect_does_not_hide_what_is_small_beside_it() -> None:
     """Evidence by the size of what is left: half the residual over n rows is n log 2, whatever
     the model to begin with leaves.
-    """  # noqa: D205
+    """
     task = task_of(record())
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     base = task.fit((), gross)
@@ -192,12 +192,17 @@ def test_a_second_effect_without_a_first_takes_its_name() -> None:
 def chosen() -> tuple[Task, Choice]:
     """A choice with a slow wandering that nothing recorded explains."""
     task = task_of(record(wander=6.0))
-    single = [e for e in offered(task.run.touches) if e.kind.startswith("thermal-")]
-    single = [e for e in single if e.kind != "thermal-field"]
+    single = single_of(task.run)
     final = rounds(task, (), single)
-    choice = chosen_by_prediction(task, (), final, offered(task.run.touches))
+    choice = chosen_by_prediction(task, (), final, [*single, field(task.run.touches)])
     assert choice is not None
     return task, choice
+
+
+def single_of(run: Run) -> list:
+    """Few candidates, so that every block is soon searched."""
+    kinds = ("thermal-lag", "thermal-static")
+    return [e for e in offered(run.touches) if e.kind in kinds and "EZZ" in e.name]
 
 
 def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
@@ -205,7 +210,6 @@ def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
     task, choice = chosen
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     way = next(w for w in choice.ways if w.name == "two time constants")
-    memory = Memory(0.97)
     assert choice.blocks == len(way.errors)
     assert way.rows.sum() == N
     first = np.arange(way.rows[0])
@@ -216,14 +220,12 @@ def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
     assert way.errors[0] == pytest.approx(error, rel=1e-6)
     total = np.sqrt(np.sum(way.rows * way.errors**2) / N)
     assert way.error == pytest.approx(total)
-    assert choice.best.error == min(w.error for w in choice.ways) or choice.best is way
-    assert memory.per_independent > 1.0
+    assert choice.best.error <= 1.05 * min(w.error for w in choice.ways)
 
 
 def test_the_set_that_was_weighed_is_the_set_that_is_told(chosen) -> None:
-    task, choice = chosen
-    library = [e for e in offered(task.run.touches) if e.kind != "thermal-field"]
-    result = diagnose(task.run, candidates=[*library, field(task.run.touches)])
+    task, _ = chosen
+    result = diagnose(task.run, candidates=[*single_of(task.run), field(task.run.touches)])
     assert result.choice is not None
     told = [e.name for e in result.found]
     assert sorted(told) == sorted(s.effect.name for s in result.choice.best.effects)
@@ -235,16 +237,15 @@ def test_the_set_that_was_weighed_is_the_set_that_is_told(chosen) -> None:
 
 def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
     task, choice = chosen
-    single = [e for e in offered(task.run.touches) if e.kind.startswith("thermal-")]
-    single = [e for e in single if e.kind != "thermal-field"]
+    single = single_of(task.run)
     way = next(w for w in choice.ways if w.name == "two time constants")
     other = Choice(choice.ways, way, choice.blocks, Memory(0.9))
     slow, final = followed(task, (), rounds(task, (), single), other, single)
-    assert slow.memory is not None and not slow.memory.is_filtered
+    assert slow.memory is not None
+    assert not slow.memory.is_filtered
     complement = final.search.complement
     assert complement.count < N / 7.0
     assert complement.dof < complement.count
-    assert isinstance(way, Way)
 
 
 def test_a_broken_promise_is_said() -> None:
