@@ -7,10 +7,17 @@ from typing import NamedTuple
 import numpy as np
 
 from diagnosis.fit import Fit
-from twin.effect import Effect, Tunable
+from diagnosis.linear import BoolArray
+from twin.effect import Effect, Inner, Tunable
 from twin.frames import Array
 from twin.model import columns
 from twin.units import DEG, MINUTE, UM, URAD
+
+AT_END = 1e-3
+"""Share of an end of a scan within which a value lies at it."""
+
+UNSEEN = 0.99
+"""Share of its prior uncertainty that a parameter keeps if no touch sees it."""
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
@@ -25,12 +32,15 @@ class Reported:
         value: In that unit.
         u: Standard uncertainty, or None where the run gives none.
         factor: One of that unit in the base unit.
+        bound: -1 or 1 where it lies at the lower or upper end of what was scanned, and is no more
+            than a bound; 0 for an estimate.
     """
 
     name: str
     value: float
     u: float | None
     factor: float
+    bound: int = 0
 
 
 class Settled(NamedTuple):
@@ -84,7 +94,7 @@ def reported(
     if getattr(effect, "is_shrunk", False):
         out.append(moved(fit, effect, theta, covariance))
     elif len(theta) > 1:
-        out.append(size(effect, theta, covariance))
+        out.append(size(effect, theta, covariance, _is_seen(fit, place)))
     for i, parameter in enumerate(effect.parameters):
         suffix, factor = file_unit(parameter.unit)
         name = f"{parameter.name.replace(' ', '_')}_{suffix}"
@@ -106,18 +116,30 @@ def moved(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported
     return Reported("amplitude_um", rms / UM, float(np.sqrt(slope @ covariance @ slope)) / UM, UM)
 
 
-def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
+def _is_seen(fit: Fit, place: slice) -> BoolArray:
+    """Which parameters the run says anything of; all, where it says nothing of any."""
+    u = np.sqrt(np.diag(fit.covariance[place, place]))
+    seen = np.asarray(u < UNSEEN * fit.prior.sd[place])
+    return seen if seen.any() else np.ones(len(u), dtype=bool)
+
+
+def size(
+    effect: Effect, theta: Array, covariance: Array, seen: BoolArray | None = None
+) -> Reported:
     """Length of those parameters that share the unit of the first, with its uncertainty.
 
-    Of a sine and a cosine it is the amplitude; of a displacement its length. Noise across a vector
-    makes it longer, ``E|v|^2 = |v_true|^2 + tr C_across``: that is taken off, three quarters of the
-    square at most, and its own scatter ``tr C_across^2 / (2 |v|^2)`` is in the uncertainty.
+    Parameters that no touch sees, such as a slip across the only direction that was probed, are
+    left out. Of a sine and a cosine it is the amplitude; of a displacement its length. Noise across
+    a vector makes it longer, ``E|v|^2 = |v_true|^2 + tr C_across``: that is taken off, three
+    quarters of the square at most, and its own scatter ``tr C_across^2 / (2 |v|^2)`` is in the uncertainty.
 
     Reference:
         Gudbjartsson and Patz, Magnetic Resonance in Medicine 34 (1995) 910 (Rician bias).
     """
     units = [p.unit for p in effect.parameters]
-    same = np.array([unit == units[0] for unit in units])
+    seen = np.ones(len(units), dtype=bool) if seen is None else seen
+    first = units[int(np.argmax(seen))]
+    same = seen & np.array([unit == first for unit in units])
     part, C = theta[same], covariance[np.ix_(same, same)]
     squared = max(float(part @ part), 1e-300)
     direction = part / np.sqrt(squared)
@@ -126,7 +148,7 @@ def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
     length = np.sqrt(max(squared - float(np.trace(across)), 0.25 * squared))
     variance = direction @ C @ direction + float((across**2).sum()) / (2.0 * squared)
     u = float(np.sqrt(max(variance, 0.0)))
-    suffix, factor = file_unit(units[0])
+    suffix, factor = file_unit(first)
     return Reported(f"amplitude_{suffix}", float(length) / factor, u / factor, factor)
 
 
@@ -136,7 +158,7 @@ def _inner(
     """Inner parameters with the uncertainty that their tangents give."""
     if not isinstance(effect, Tunable):
         return []
-    described = {p.name: p.unit for p in effect.inner(fit.run.touches)}
+    described = {p.name: p for p in effect.inner(fit.run.touches)}
     u = {
         tangent.index: float(np.sqrt(fit.covariance[place, place][0, 0])) * wider
         for tangent in fit.tangents
@@ -145,11 +167,20 @@ def _inner(
     }
     out = []
     for i, (name, value) in enumerate(effect.tuning.items()):
-        suffix, factor = inner_unit(name, described.get(name, "1"))
+        suffix, factor = inner_unit(name, described[name].unit if name in described else "1")
         value, own = settled.get(i, (value, u.get(i)))
-        out.append(
-            Reported(
-                f"{name}{suffix}", value / factor, None if own is None else own / factor, factor
-            )
-        )
+        bound = _bound(described, name, value)
+        known = None if own is None or bound else own / factor
+        out.append(Reported(f"{name}{suffix}", value / factor, known, factor, bound))
     return out
+
+
+def _bound(described: Mapping[str, Inner], name: str, value: float) -> int:
+    """Whether a time constant or a period lies at an end of its scan."""
+    if name not in described or not name.startswith(("tau", "period")):
+        return 0
+    grid = np.asarray(described[name].grid, dtype=float)
+    if len(grid) < 2:
+        return 0
+    at_low, at_high = value < grid.min() * (1.0 + AT_END), value > grid.max() * (1.0 - AT_END)
+    return -1 if at_low else 1 if at_high else 0

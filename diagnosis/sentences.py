@@ -47,12 +47,17 @@ def named_value(reported: Reported) -> tuple[str, str]:
         ('time constant', '42.1 ± 3.3 min')
         >>> named_value(Reported("instant_s", 7083.0, None, 1.0))
         ('instant', '1.97 h')
+        >>> named_value(Reported("tau_min", 2.0, None, 60.0, bound=-1))
+        ('time constant', 'at most 2.00 min')
     """
     name, unit = next(
         ((reported.name[: -len(end)], unit) for end, unit in _UNITS if reported.name.endswith(end)),
         (reported.name, ""),
     )
     words = _WORDS.get(name, name).replace("_", " ")
+    if reported.bound:
+        side = "at most" if reported.bound < 0 else "at least"
+        return words, f"{side} {digits(reported.value, 3)} {unit}".rstrip()
     if unit == "s" and reported.u is None:
         return words, span(reported.value)
     return words, with_uncertainty(reported.value, reported.u, unit)

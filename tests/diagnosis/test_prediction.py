@@ -20,7 +20,7 @@ from diagnosis.prediction import Choice, chosen_by_prediction, offered, without
 from diagnosis.prior import Prior
 from diagnosis.residuals import compare
 from diagnosis.rounds import Task, rounds
-from diagnosis.sentences import promise_sentence
+from diagnosis.sentences import named_value, promise_sentence
 from diagnosis.sizes import sizes
 from matstd.inputs import candidates
 from twin.chain import Axis, make_chain
@@ -267,3 +267,31 @@ def test_candidates_are_narrowed_by_kind_and_by_name() -> None:
         candidates(["thermal-statik"], [], run)
     with pytest.raises(DesignError, match="nothing is left to look for"):
         candidates(["drift"], ["drift"], run)
+
+
+def test_a_time_constant_at_the_end_of_its_scan_is_a_bound() -> None:
+    """A body that follows within seconds: all that the scan can say is `at most two minutes`."""
+    run = record()
+    quick = replace(run, deviation=12.0 * UM * (run.touches.temperature["frame"] - 20.0))
+    noise = np.random.default_rng(8).normal(size=N) * UM
+    task = task_of(replace(quick, deviation=quick.deviation + noise))
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    lag_frame = parse_effect("thermal-lag(EZZ,frame)", run.touches.chain).tuned(120.0)
+    (told,) = sizes(task, [Sized(lag_frame, 4.0)], gross, Complement.of(task.fit((), gross)))
+    tau = next(r for r in told if r.name == "tau_min")
+    assert (tau.bound, tau.u) == (-1, None)
+    assert named_value(tau) == ("time constant", "at most 2.00 min")
+
+
+def test_a_slip_is_as_large_as_the_direction_that_was_probed_says() -> None:
+    """Across the gauge nothing is seen: the prior of those directions is no uncertainty."""
+    run = record()
+    step = np.where(run.touches.time > 7000.0, 9.0 * UM, 0.0)
+    noise = np.random.default_rng(9).normal(size=N) * UM
+    task = task_of(replace(run, deviation=step + noise))
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    slip = parse_effect("artefact-slip", run.touches.chain).tuned(7000.0)
+    (told,) = sizes(task, [Sized(slip, 4.0)], gross, Complement.of(task.fit((), gross)))
+    size = next(r for r in told if r.name.startswith("amplitude"))
+    assert abs(size.value - 9.0) < 3.0 * size.u
+    assert size.u < 1.0
