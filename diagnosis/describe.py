@@ -131,7 +131,8 @@ def size(
     Parameters that no touch sees, such as a slip across the only direction that was probed, are
     left out. Of a sine and a cosine it is the amplitude; of a displacement its length. Noise across
     a vector makes it longer, ``E|v|^2 = |v_true|^2 + tr C_across``: that is taken off, three
-    quarters of the square at most, and its own scatter ``tr C_across^2 / (2 |v|^2)`` is in the uncertainty.
+    quarters of the square at most, and its own scatter ``tr C_across^2 / (2 |v|^2)`` is in the
+    uncertainty.
 
     Reference:
         Gudbjartsson and Patz, Magnetic Resonance in Medicine 34 (1995) 910 (Rician bias).

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from diagnosis import prediction
 from diagnosis.blocks import blocks
 from diagnosis.bodies import bodies
 from diagnosis.candidates import Complement, Sized, projected
@@ -164,6 +165,18 @@ def test_the_size_of_a_field_is_that_of_ridge_regression_by_blocks() -> None:
     errors = {f: error(f) for f in (1.0 / 16.0, 1.0, 16.0)}
     assert len(SIZES) == 13
     assert errors[1.0] < 1.02 * min(errors.values())
+
+
+def test_a_long_run_is_judged_by_an_even_choice_of_its_instants(monkeypatch) -> None:
+    monkeypatch.setattr(prediction, "MOST_ROWS", N // 2)
+    run = record()
+    twice = run[np.repeat(np.arange(N), 2)]  # two gauges that read together
+    task = task_of(twice)
+    small = prediction.thinned(task, task.fit())
+    kept = small.run.touches.time[small.run.split != "test"]
+    assert len(kept) == N // 2
+    assert np.all(np.unique(kept, return_counts=True)[1] == 2)
+    assert np.ptp(np.diff(np.unique(kept))) == 0.0
 
 
 def test_an_effect_that_predicts_nothing_is_not_needed() -> None:
