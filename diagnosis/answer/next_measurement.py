@@ -196,7 +196,7 @@ def _joined(first: Touches, second: Touches) -> Touches:
     merged = {}
     for field in fields(Touches):
         a, b = getattr(first, field.name), getattr(second, field.name)
-        if field.name in ("chain", "setups") or a is None:
+        if field.name in ("chain", "setups", "instrument") or a is None:
             merged[field.name] = a
         elif field.name in ("temperature", "value"):
             merged[field.name] = {k: np.concatenate([a[k], b[k]]) for k in a}

@@ -19,7 +19,7 @@ from diagnosis.choice.field import sized_field
 from diagnosis.choice.needed import needed
 from diagnosis.choice.remembering import memory_of
 from diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
-from diagnosis.fit import CLEARLY, GrossErrors, Memory
+from diagnosis.fit import CLEARLY, Fit, GrossErrors, Memory
 from diagnosis.search import Budget, DiagnosisTask, Library, SearchState, refined_set, searched
 from twin.effects import again
 from twin.frames import Array
@@ -33,6 +33,9 @@ SLOW = 4.0
 
 SETS = 300.0
 """Sets that the search of one block may try: a fifth of what a whole diagnosis may."""
+
+MOST_ROWS = 4000
+"""Rows by which ways of choosing are judged: the searches of all blocks go through them."""
 
 PLAINLY = 0.97
 """Share of the error of the simpler way that another way must reach to be preferred: blocks are
@@ -107,7 +110,9 @@ def chosen_by_prediction(
     memory, gain = memory_of(fit)
     if gain < CLEARLY or memory.per_independent < SLOW:
         return None
-    groups = blocks(fit, memory)
+    task = thinned(task, fit)
+    fit = task.fit((*added, *final.effects), final.base.gross)
+    groups = blocks(fit, memory_of(fit)[0])
     choosers = _choosers(added, candidates, groups)
     gross = final.base.gross
     ways = []
@@ -159,6 +164,17 @@ def _errors(
         effects = chooser(part, gross)
         out.append(rms(part.fit((*added, *effects), gross).residual[group]))
     return np.array(out)
+
+
+def thinned(task: DiagnosisTask, fit: Fit) -> DiagnosisTask:
+    """The task, of a long run with an even choice of its instants alone; each is kept whole."""
+    rows = np.flatnonzero(fit.used)
+    time = task.run.touches.time
+    instants = np.unique(time[rows])
+    every = -(-len(rows) // MOST_ROWS)
+    if every == 1 or len(instants) < len(blocks(fit, None)) * every:
+        return task
+    return without(task, rows[~np.isin(time[rows], instants[::every])])
 
 
 def without(task: DiagnosisTask, rows: IntArray) -> DiagnosisTask:

@@ -109,7 +109,9 @@ class ResidualSpace:
         groups = tuple(g for g in (place[k][place[k] >= 0] for k in self.groups) if len(g))
         filter_ = None if self.whitener is None else replace(self.whitener, rows=rows)
         thin = replace(self, used=used, u=self.u[rows], Q=Q, residual=residual, dof=dof)
-        return replace(thin, groups=groups, whitener=filter_)
+        whole = self.independent
+        independent = None if whole is None else whole * kept / n
+        return replace(thin, groups=groups, whitener=filter_, independent=independent)
 
     def columns(self, effects: Sequence[Effect]) -> Array:
         """Whitened columns of effects, scaled by their prior, (N, K)."""

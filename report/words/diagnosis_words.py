@@ -47,8 +47,13 @@ def named_value(reported: Reported) -> tuple[str, str]:
         ('time constant', '42.1 ± 3.3 min')
         >>> named_value(Reported("instant", "s", 7083.0, None, 1.0, Role.INNER))
         ('instant', '1.97 h')
+        >>> named_value(Reported("tau", "min", 2.0, None, 60.0, Role.INNER, bound=-1))
+        ('time constant', 'at most 2.00 min')
     """
     words = _WORDS.get(reported.quantity, reported.quantity).replace("_", " ")
+    if reported.bound:
+        side = "at most" if reported.bound < 0 else "at least"
+        return words, f"{side} {digits(reported.value, 3)} {unit_words(reported.unit)}".rstrip()
     if reported.unit == "s" and reported.u is None:
         return words, span(reported.value)
     return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))

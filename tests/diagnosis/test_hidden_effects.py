@@ -132,7 +132,7 @@ def test_two_at_once(case, diagnosed) -> None:
     for step in d.steps[1:]:
         size = amplitude(step.reported)
         assert abs(abs(size.value) - told[step.effect.name]) < WITHIN * size.u
-    rms = [step.fit.test_rms for step in d.steps]
+    rms = [step.fit.freed_rms for step in d.steps]
     assert rms[0] > rms[1] > rms[2]
     assert rms[2] == pytest.approx(added_noise(*TWO[:2]), rel=HELD_OUT)
 

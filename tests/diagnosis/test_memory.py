@@ -85,8 +85,9 @@ def test_memory_is_found_beside_a_hundred_parameters(clean, correlation) -> None
     memory, gain = likely_memory(run.touches, fit.u, fit.used, fit.X, fit.y)
     assert gain > CLEARLY
     length = memory.time / np.median(np.diff(run.touches.time)) if memory.time else memory.length
-    # the length of a memory from n touches scatters by sqrt(2 length / n), 23 % of the longest
-    assert length == pytest.approx(-1.0 / np.log(correlation), rel=0.5)
+    free = len(run) - fit.solution.effective_parameters
+    u = np.sqrt((1.0 - correlation**2) / free)  # of a correlation from so many independent steps
+    assert np.exp(-1.0 / length) == pytest.approx(correlation, abs=3.0 * u)
 
 
 def test_white_noise_has_none(case) -> None:

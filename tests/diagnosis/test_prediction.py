@@ -8,12 +8,13 @@ from scipy.integrate import solve_ivp
 
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.sizes import sizes
+from diagnosis.choice import prediction
 from diagnosis.choice.blocks import blocks
 from diagnosis.choice.bodies import bodies
 from diagnosis.choice.field import SIZES, sized_field
 from diagnosis.choice.following import followed
 from diagnosis.choice.needed import needed
-from diagnosis.choice.prediction import Choice, Way, chosen_by_prediction, offered, without
+from diagnosis.choice.prediction import Choice, chosen_by_prediction, offered, without
 from diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from diagnosis.evidence.evidence import EffectSet
 from diagnosis.fit.identification import fit_run
@@ -22,7 +23,7 @@ from diagnosis.fit.prior import Prior
 from diagnosis.residual.comparison import compare
 from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
 from matstd.inputs import candidates
-from report.words.diagnosis_words import promise_sentence
+from report.words.diagnosis_words import named_value, promise_sentence
 from twin.errors import DesignError
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
@@ -166,6 +167,18 @@ def test_the_size_of_a_field_is_that_of_ridge_regression_by_blocks() -> None:
     assert errors[1.0] < 1.02 * min(errors.values())
 
 
+def test_a_long_run_is_judged_by_an_even_choice_of_its_instants(monkeypatch) -> None:
+    monkeypatch.setattr(prediction, "MOST_ROWS", N // 2)
+    run = record()
+    twice = run[np.repeat(np.arange(N), 2)]  # two gauges that read together
+    task = task_of(twice)
+    small = prediction.thinned(task, task.fit())
+    kept = small.run.touches.time[small.run.split != "test"]
+    assert len(kept) == N // 2
+    assert np.all(np.unique(kept, return_counts=True)[1] == 2)
+    assert np.ptp(np.diff(np.unique(kept))) == 0.0
+
+
 def test_an_effect_that_predicts_nothing_is_not_needed() -> None:
     run = record()
     task = task_of(run)
@@ -194,12 +207,17 @@ def test_a_second_effect_without_a_first_takes_its_name() -> None:
 def chosen() -> tuple[DiagnosisTask, Choice]:
     """A choice with a slow wandering that nothing recorded explains."""
     task = task_of(record(wander=6.0))
-    single = [e for e in offered(task.run.touches) if e.kind.startswith("thermal-")]
-    single = [e for e in single if e.kind != "thermal-field"]
+    single = single_of(task.run)
     final = search_until_stable(task, (), single)
-    choice = chosen_by_prediction(task, (), final, offered(task.run.touches))
+    choice = chosen_by_prediction(task, (), final, [*single, field(task.run.touches)])
     assert choice is not None
     return task, choice
+
+
+def single_of(run: Run) -> list:
+    """Few candidates, so that every block is soon searched."""
+    kinds = ("thermal-lag", "thermal-static")
+    return [e for e in offered(run.touches) if e.kind in kinds and "EZZ" in e.name]
 
 
 def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
@@ -207,7 +225,6 @@ def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
     task, choice = chosen
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     way = next(w for w in choice.ways if w.name == "two time constants")
-    memory = Memory(0.97)
     assert choice.blocks == len(way.errors)
     assert way.rows.sum() == N
     first = np.arange(way.rows[0])
@@ -218,14 +235,12 @@ def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
     assert way.errors[0] == pytest.approx(error, rel=1e-6)
     total = np.sqrt(np.sum(way.rows * way.errors**2) / N)
     assert way.error == pytest.approx(total)
-    assert choice.best.error == min(w.error for w in choice.ways) or choice.best is way
-    assert memory.per_independent > 1.0
+    assert choice.best.error <= 1.05 * min(w.error for w in choice.ways)
 
 
 def test_the_set_that_was_weighed_is_the_set_that_is_told(chosen) -> None:
     task, _ = chosen
-    library = [e for e in offered(task.run.touches) if e.kind != "thermal-field"]
-    result = diagnose(task.run, candidates=[*library, field(task.run.touches)])
+    result = diagnose(task.run, candidates=[*single_of(task.run), field(task.run.touches)])
     assert result.choice is not None
     told = [e.name for e in result.found]
     assert sorted(told) == sorted(s.effect.name for s in result.choice.best.effects)
@@ -237,8 +252,7 @@ def test_the_set_that_was_weighed_is_the_set_that_is_told(chosen) -> None:
 
 def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
     task, choice = chosen
-    single = [e for e in offered(task.run.touches) if e.kind.startswith("thermal-")]
-    single = [e for e in single if e.kind != "thermal-field"]
+    single = single_of(task.run)
     way = next(w for w in choice.ways if w.name == "two time constants")
     other = Choice(choice.ways, way, choice.blocks, Memory(0.9))
     slow, final = followed(task, (), search_until_stable(task, (), single), other, single)
@@ -247,7 +261,6 @@ def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
     complement = final.search.complement
     assert complement.count < N / 7.0
     assert complement.dof < complement.count
-    assert isinstance(way, Way)
 
 
 def test_a_broken_promise_is_said() -> None:
@@ -269,3 +282,33 @@ def test_candidates_are_narrowed_by_kind_and_by_name() -> None:
         candidates(["thermal-statik"], [], run)
     with pytest.raises(DesignError, match="nothing is left to look for"):
         candidates(["drift"], ["drift"], run)
+
+
+def test_a_time_constant_at_the_end_of_its_scan_is_a_bound() -> None:
+    """A body that follows within seconds: all that the scan can say is `at most two minutes`."""
+    run = record()
+    quick = replace(run, deviation=12.0 * UM * (run.touches.temperature["frame"] - 20.0))
+    noise = np.random.default_rng(8).normal(size=N) * UM
+    task = task_of(replace(quick, deviation=quick.deviation + noise))
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    lag_frame = parse_effect("thermal-lag(EZZ,frame)", run.touches.chain).tuned(120.0)
+    (told,) = sizes(
+        task, [ScaledEffect(lag_frame, 4.0)], gross, ResidualSpace.of(task.fit((), gross))
+    )
+    tau = next(r for r in told if r.name == "tau_min")
+    assert (tau.bound, tau.u) == (-1, None)
+    assert named_value(tau) == ("time constant", "at most 2.00 min")
+
+
+def test_a_slip_is_as_large_as_the_direction_that_was_probed_says() -> None:
+    """Across the gauge nothing is seen: the prior of those directions is no uncertainty."""
+    run = record()
+    step = np.where(run.touches.time > 7000.0, 9.0 * UM, 0.0)
+    noise = np.random.default_rng(9).normal(size=N) * UM
+    task = task_of(replace(run, deviation=step + noise))
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    slip = parse_effect("artefact-slip", run.touches.chain).tuned(7000.0)
+    (told,) = sizes(task, [ScaledEffect(slip, 4.0)], gross, ResidualSpace.of(task.fit((), gross)))
+    size = next(r for r in told if r.name.startswith("amplitude"))
+    assert abs(size.value - 9.0) < 3.0 * size.u
+    assert size.u < 1.0
