@@ -15,6 +15,7 @@ COMMANDS = {
     "import": "tables of instruments, CMMs and spreadsheets made a run file",
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
+    "new": "a commented minimal file to start from: machine, project, run or effect",
     "effects": "the effects that can be added, each with its formula and units",
 }
 
@@ -46,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print(f"matstd {args.command}: stopped, and nothing half-written is left", file=sys.stderr)
         return 130
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         theirs = _users_fault(error)
         if theirs is None:
             raise
@@ -54,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_BAD_INPUT
 
 
-def _users_fault(error: Exception) -> Exception | None:
+def _users_fault(error: BaseException) -> Exception | None:
     """A failure inside effects that the user wrote, as one line; None if it is our own."""
     from twin.library import users_fault, users_files, users_lines
 

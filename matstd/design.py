@@ -11,15 +11,16 @@ import numpy as np
 from artefact.body import write_standard
 from artefact.brief import Project
 from artefact.compare import identifiability_report
-from artefact.place import Placement, place
+from artefact.place import Placement, design_standard
 from cad_out.verify import export_standard
 from diagnosis.answer import probed_volume, prove
 from diagnosis.fit import fit_run
-from matstd.from_project import blank, placement_options, probe, probe_reach
+from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
+from matstd.reach import check_reach
 from matstd.streams import streams
 from probe_paths.campaign import VirtualMachine, simulate
 from probe_paths.emit import make_programs
-from probe_paths.plan import PlanOptions, TouchPlan, plan_touches
+from probe_paths.plan import TouchPlan, plan_touches
 from report.maps import draw_maps, draw_path
 from report.pages import Design, Proven
 from report.words import sampling_words, write_identifiability, write_identification
@@ -29,6 +30,7 @@ from sensitivity.population import Population, drawn_errors
 from sensitivity.study import run_study, write_study
 from twin.compute import Progress
 from twin.files import errors_toml, write_run, write_whole
+from twin.frames import Array
 from twin.model import contribution
 
 PROOF_POSES = 2000
@@ -48,10 +50,13 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         DesignError: A stage that cannot do its work; its message says which constraint binds.
     """
     rng = streams(project.seed)
+    progress("reach", 0, 1)
+    poses = check_reach(project, folder)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
-    placement = _placement(project, workspace, rng.placement, progress)
+    placement = _placement(project, workspace, rng.placement, progress, poses)
+    plan = _plan(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
     progress("what can be told apart", 0, 1)
     known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
@@ -73,7 +78,6 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     progress("STEP and STL", 0, 1)
     conformity = export_standard(placement.standard, folder)
     progress("probing programs", 0, 1)
-    plan = _plan(project, placement)
     programs = make_programs(plan)
     paths = programs.write(folder / "programs")
     machines = []
@@ -100,10 +104,14 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
 
 
 def _placement(
-    project: Project, workspace: Workspace, rng: np.random.Generator, progress: Progress
+    project: Project,
+    workspace: Workspace,
+    rng: np.random.Generator,
+    progress: Progress,
+    poses: Array | None = None,
 ) -> Placement:
     """Standard and touches for the project's machine."""
-    return place(
+    return design_standard(
         probe_reach(project),
         blank(project),
         workspace,
@@ -111,6 +119,7 @@ def _placement(
         project.population,
         placement_options(project),
         progress,
+        poses,
     )
 
 
@@ -122,7 +131,7 @@ def _plan(project: Project, placement: Placement) -> TouchPlan:
         probe(project),
         project.setup,
         placement.requests,
-        PlanOptions(table_radius=project.limits.table_radius_mm),
+        plan_options(project),
     )
 
 

@@ -22,7 +22,8 @@ def results_folder(
     Args:
         out: Where the results shall stand.
         force: Whether results of an earlier run may be replaced.
-        ours: Patterns of the names of results that not every run has.
+        ours: Patterns of the names of results that not every run has; a folder that holds nothing
+            else counts as empty.
 
     Raises:
         DesignError: The folder holds something and nobody asked to replace it, or it cannot be
@@ -31,7 +32,7 @@ def results_folder(
     out = Path(out)
     if out.exists() and not out.is_dir():
         raise DesignError(f"{out}: is a file, expected a folder or a name that is free")
-    if not force and out.exists() and any(out.iterdir()):
+    if not force and out.exists() and any(not _is_ours(p, ours) for p in out.iterdir()):
         raise DesignError(f"{out}: is there already; choose another folder or give --force")
     work = out.parent / f".{out.name}-{secrets.token_hex(4)}"
     try:  # from before the folder is made: an interrupt can come at any moment
@@ -50,3 +51,7 @@ def results_folder(
         raise DesignError(f"{out}: cannot be written ({error.strerror or error})") from error
     finally:
         shutil.rmtree(work, ignore_errors=True)
+
+
+def _is_ours(path: Path, ours: Sequence[str]) -> bool:
+    return any(path.match(pattern) for pattern in ours)

@@ -20,7 +20,7 @@ ROOMS = (
     "report",
     "matstd",
 )
-PAGES = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "examples").rglob("*.md")]
+PAGES = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")]
 SOURCES = [f for room in ROOMS for f in sorted((ROOT / room).rglob("*.py"))]
 IDS = [f.relative_to(ROOT).as_posix() for f in [*PAGES, *SOURCES]]
 OURS = re.compile(r"`((?:{})(?:[./]\w+)+)(?:\([^`]*\))?`".format("|".join(ROOMS)))

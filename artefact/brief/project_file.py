@@ -28,7 +28,7 @@ from twin.files import (
     read_machine,
     read_text,
 )
-from twin.machine import Chain, Ranges
+from twin.machine import Chain
 from twin.record import Setup
 from twin.units import DEG, UM
 
@@ -116,11 +116,6 @@ class Project:
     setup: Setup
     noise: float
     machines: int
-
-    @property
-    def ranges(self) -> Ranges:
-        """Expected amplitudes of the errors."""
-        return self.expected.ranges
 
     @property
     def population(self) -> Population:

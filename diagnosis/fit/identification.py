@@ -12,6 +12,7 @@ from diagnosis.fit.linear import BoolArray, LeftOut, Solution, left_out, solve
 from diagnosis.fit.memory import Memory, Whitener, whitener
 from diagnosis.fit.noise import Noise, noise_factor, replicate_factor
 from diagnosis.fit.prior import Prior
+from twin.display import Shown
 from twin.effects import setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array
@@ -41,8 +42,8 @@ MIN_TOUCHES = 8
 """Fewer touches than this do not even place a standard and leave something to judge it by."""
 
 
-@dataclass(frozen=True, eq=False)
-class Fit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(Shown):
     """A model fitted to a run.
 
     Parameters stand in the order: effects of the model, set-ups, tangents of inner parameters.

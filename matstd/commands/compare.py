@@ -73,6 +73,7 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
     """The comparison in words, and beside what the model promised (mm, 0 for nothing)."""
     from matstd.console import say
+    from report.numbers import signed
     from report.words import (
         comparison_sentence,
         promise_sentence,
@@ -80,7 +81,6 @@ def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
         remark_sentence,
     )
     from twin.units import UM
-    from twin.words import signed
 
     say(comparison_sentence(found), style="bold")
     if promised > 0.0 and found.is_prediction:

@@ -1,8 +1,14 @@
 """`matstd design`: the main job, from a project file to a folder that proves itself."""
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 from matstd.workers import add_scheduler
+
+REFUSED = "reach-refused.png"
+"""Picture of what the machine reaches, all that a refused run leaves in its folder."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,7 +26,10 @@ def run(args: argparse.Namespace) -> int:
     from matstd.workers import connected
 
     project = read_project(args.project)
-    with results_folder(args.output, args.force) as folder:
+    with (
+        results_folder(args.output, args.force, [REFUSED]) as folder,
+        _pictured(folder, args.output),
+    ):
         from matstd.console import stages
         from matstd.design import design
         from report.pages import write_design_page
@@ -40,3 +49,20 @@ def run(args: argparse.Namespace) -> int:
         )
     print(f"{args.output}: look at report.html")
     return 0
+
+
+@contextmanager
+def _pictured(folder: Path, out: str) -> Iterator[None]:
+    """Keep the picture of what is reached where reach is what stopped the run, and say where."""
+    from matstd.reach import PICTURE
+    from twin.errors import NotReachable
+
+    try:
+        yield
+    except NotReachable as error:
+        picture = Path(out) / REFUSED
+        if not (folder / PICTURE).exists():
+            raise
+        picture.parent.mkdir(exist_ok=True)
+        (folder / PICTURE).replace(picture)
+        raise NotReachable(f"{error}; {picture} shows what is reached") from error

@@ -166,9 +166,9 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
 def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
+    from report.numbers import digits
     from report.words import values
     from twin.units import UM
-    from twin.words import digits
 
     return (
         step.effect.name if step.effect is not None else "starting model",

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from artefact.body import FreeformPatch, max_slope, min_concave_radius
-from artefact.worth import CRITERIA, touch_curve
+from artefact.worth import touch_curve
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
-from report.pages.page import digits, percent, write_page
+from report.pages.page import digits, write_page
 from report.pages.study_page import draw_study_volumes, study_content
 from report.pages.time_section import minutes, order_content
 from report.plots import (
@@ -20,6 +20,7 @@ from report.plots import (
 )
 from report.scenes import draw_standard
 from report.style import save
+from report.words import comparison_remarks, criterion_words
 from twin.errors import DesignError
 from twin.units import DEG, UM
 
@@ -39,7 +40,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
     Returns:
         What could not be drawn and why, one line each; the page says it too.
     """
-    remarks: list[str] = []
+    remarks: list[str] = comparison_remarks(design.placement)
     pictures = _standard_pictures(design, folder, remarks)
     maps = [*design.maps, *_volumes(design, folder, remarks)]
     write_touches_picture(folder / "plan_touches.png", design.plan)
@@ -106,7 +107,7 @@ def _standard(design: Design) -> dict[str, Any]:
     return {
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
         "certificate": design.placement.certificate,
-        "criterion": _criterion(design),
+        "criterion": criterion_words(design.project.standard),
         "comparison": [
             {
                 "name": r.name,
@@ -147,22 +148,6 @@ def _standard(design: Design) -> dict[str, Any]:
             ),
         ],
     }
-
-
-def _criterion(design: Design) -> str:
-    """What the touches were chosen for, in words."""
-    wanted = design.project.standard
-    words = [CRITERIA[wanted.criterion]]
-    if wanted.drawn_machines:
-        which = "" if wanted.worst_share == 1.0 else f"the worst {percent(wanted.worst_share)} of "
-        words.append(f"averaged over {which}{wanted.drawn_machines} drawn machines")
-    if wanted.potential and wanted.criterion == "D":
-        words.append("with the effects of the library beside them")
-    elif wanted.potential:
-        words.append(
-            f"with a share of {percent(wanted.potential)} for showing effects of the library"
-        )
-    return ", ".join(words)
 
 
 def _at_most(um: float) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 from artefact.compare import Alone, IdentifiabilityReport
 from information.identifiability import STRONG, Degree, FreedomFamily, Resolution, ties
 from report.maps import draw_ties
+from report.numbers import shown
 from report.pages.design_result import Design
 from report.pages.page import digits
 from report.style import save
@@ -22,7 +23,7 @@ from report.words import (
     short,
 )
 from twin.machine import Chain, Link
-from twin.units import DEG, shown
+from twin.units import DEG
 
 CORRELATION = "correlation.png"
 """Picture of the parameters that the touches tie together."""

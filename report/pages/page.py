@@ -6,10 +6,10 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
+from report.numbers import digits as digits
+from report.numbers import percent, signed
 from twin.files import write_whole
 from twin.versions import versions
-from twin.words import digits as digits
-from twin.words import signed
 
 _APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
 """Spaces between a number and its uncertainty or its unit."""
@@ -55,11 +55,6 @@ def picture(path: str | Path) -> str:
     path = Path(path)
     kind = {".png": "image/png", ".svg": "image/svg+xml"}[path.suffix]
     return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
-
-
-def percent(value: float) -> str:
-    """A share in percent."""
-    return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"
 
 
 def p_value(value: float) -> str:

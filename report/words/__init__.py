@@ -4,10 +4,13 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
+from report.words.artefact_words import (
+    comparison_remarks,
+    criterion_words,
+)
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
-    named_value,
     promise_sentence,
     region_words,
     rivals_words,
@@ -41,13 +44,14 @@ from report.words.sensitivity_words import (
 
 __all__ = [
     "combination_words",
+    "comparison_remarks",
     "comparison_sentence",
+    "criterion_words",
     "dominant_words",
     "family_words",
     "gist",
     "in_words",
     "microns",
-    "named_value",
     "ordering_words",
     "pair_words",
     "place_words",

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from diagnosis.answer import Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Comparison, Condition, Shape, Side, Structure
+from report.numbers import condition, digits, noun, span, with_uncertainty
 from report.words.remark_words import memory_words
 from twin.record import Run
 from twin.units import UM
-from twin.words import condition, digits, listed, noun, span, with_uncertainty
+from twin.words import listed
 
 _UNITS = {
     "um_per_m_K": "µm/(m K)",

@@ -5,8 +5,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from artefact.compare import IdentifiabilityReport
+from artefact.compare import Alternative, IdentifiabilityReport
 from information.identifiability import Degree
+from report.numbers import shown
+from report.words.artefact_words import alternative_words
 from report.words.identifiability_words import (
     combination_words,
     degree_words,
@@ -19,7 +21,7 @@ from report.words.identifiability_words import (
 from report.words.parameter_words import in_words, short
 from twin.files import write_whole
 from twin.machine import Chain, Link
-from twin.units import DEG, shown
+from twin.units import DEG
 
 FORMAT = "identifiability/1"
 """Of the file."""
@@ -75,8 +77,13 @@ def as_json(known: IdentifiabilityReport) -> dict[str, Any]:
             for a in known.alone
         ],
         "degrees": [_degree(d, chain) for d in known.degrees],
-        "alternatives": [asdict(a) for a in known.alternatives],
+        "alternatives": [_alternative(a) for a in known.alternatives],
     }
+
+
+def _alternative(other: Alternative) -> dict[str, Any]:
+    plain = {key: value for key, value in asdict(other).items() if key != "refusal"}
+    return plain | {"words": alternative_words(other)}
 
 
 def _reading(link: Link, limits: tuple[float, float]) -> tuple[str, list[float]]:

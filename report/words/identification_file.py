@@ -7,9 +7,10 @@ from typing import Any
 
 from diagnosis.answer import Proof
 from diagnosis.fit import Estimable, Fit, estimable
+from report.numbers import shown
 from report.words.identifiability_words import combination_words, freedom_words
 from twin.files import write_whole
-from twin.units import UM, shown
+from twin.units import UM
 
 FORMAT = "identification/1"
 

@@ -87,9 +87,9 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks: list[str] = []
     run = _assemble(table, chain, head, remarks)
-    if "dev_um" not in table:
-        run, moved = aligned(run)
-        remarks += [columns.moved_setup(m) for m in moved]
+    placed, moved = aligned(run)
+    run = replace(placed, deviation=run.deviation) if "dev_um" in table else placed
+    remarks += [columns.moved_setup(m) for m in moved]
     run = checked_run(run, table, remarks)
     return replace(run, remarks=tuple(remarks))
 
@@ -126,8 +126,8 @@ def _check_columns(table: CsvTable, chain: Chain) -> None:
     sensors = [c for c in table.columns if columns.SENSOR.match(c) or columns.OWN.match(c)]
     known = [*names, *columns.POINT, *columns.NORMAL, *_OPTIONAL, *columns.FORCE]
     table.allow_only([*known, *directions, *sensors], " or T_<sensor>_degC or V_<name>_<unit>")
-    table.require([*(reading_columns(chain)[a][0] for a in chain.programmed_axes)])
-    table.require([*columns.POINT, *columns.NORMAL])
+    needed = [reading_columns(chain)[axis][0] for axis in chain.programmed_axes]
+    table.require([*needed, *columns.POINT, *columns.NORMAL])
 
 
 def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]) -> Run:

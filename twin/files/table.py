@@ -66,15 +66,16 @@ class CsvTable:
         return name in self.columns
 
     def require(self, names: Iterable[str]) -> None:
-        """Raise BadFile for the first column that is missing."""
-        for name in names:
-            if name not in self.columns:
-                raise BadFile(
-                    self.path,
-                    f"line {self.header_line}",
-                    f"no column {name} among {', '.join(self.columns)}",
-                    f"a column {name}",
-                )
+        """Raise BadFile where columns are missing, all of them at once."""
+        missing = [name for name in names if name not in self.columns]
+        if missing:
+            expected = ", ".join(missing)
+            raise BadFile(
+                self.path,
+                f"line {self.header_line}",
+                f"no column {' and no '.join(missing)} among {', '.join(self.columns)}",
+                f"a column {expected}" if len(missing) == 1 else f"columns {expected}",
+            )
 
     def allow_only(self, known: Sequence[str], pattern: str = "") -> None:
         """Raise BadFile for the first column that is not known."""

@@ -19,6 +19,8 @@ _NO_TEXT = {
 }
 """How files begin that users take for text, and what they are."""
 
+_TWICE = re.compile(r"Cannot declare \((.+?),?\) twice")
+
 _DECIMAL_COMMA = re.compile(r"=\s*-?\d+,\d+\s*$")
 
 
@@ -57,16 +59,28 @@ def _one_line_end(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def parse_toml(text: str, path: str | Path, first_line: int = 1) -> dict[str, Any]:
-    """Tables of a TOML text; raises BadFile with the line."""
+def parse_toml(
+    text: str, path: str | Path, first_line: int = 1, twice: str = "it once"
+) -> dict[str, Any]:
+    """Tables of a TOML text.
+
+    Args:
+        text: The text.
+        path: The file, for messages.
+        first_line: Line number of the text in the file.
+        twice: What is expected of a table that stands in two places; `{name}` is its name.
+
+    Raises:
+        BadFile: The line, what stood there, what was expected.
+    """
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise _no_toml(error, text, path, first_line) from error
+        raise _no_toml(error, text, path, first_line, twice) from error
 
 
 def _no_toml(
-    error: tomllib.TOMLDecodeError, text: str, path: str | Path, first_line: int
+    error: tomllib.TOMLDecodeError, text: str, path: str | Path, first_line: int, twice: str
 ) -> BadFile:
     """The line that is no TOML, and why."""
     why, _, place = str(error).partition(" (at ")
@@ -74,10 +88,15 @@ def _no_toml(
     lines = text.splitlines()
     number = int(match.group(1)) if match else len(lines)
     line = lines[number - 1].strip() if 0 < number <= len(lines) else ""
+    place = f"line {first_line + number - 1}"
+    repeated = _TWICE.match(why)
+    if repeated:
+        name = re.sub(r"', '", ".", repeated.group(1)).strip("'")
+        return BadFile(path, place, f"table [{name}] a second time", twice.format(name=name))
     comma = " and a point in decimal numbers" if _DECIMAL_COMMA.search(line) else ""
     expected = f"a whole, valid TOML file{comma} ({why[:1].lower()}{why[1:]})"
     found = repr(line[:60]) if line else "an end"
-    return BadFile(path, f"line {first_line + number - 1}", found, expected)
+    return BadFile(path, place, found, expected)
 
 
 def checked(model: type[T], data: object, path: str | Path, within: str = "") -> T:
@@ -112,7 +131,15 @@ def _as_bad_file(
         expected = f"one of {', '.join(known)}" if known else "a key of the format"
         return BadFile(path, key, f"an unknown key{did_you_mean(steps[-1], known)}", expected)
     if first["type"] == "missing":
-        return BadFile(path, key, "nothing", "this key")
+        lacking = [
+            str(e["loc"][-1])
+            for e in found
+            if e["type"] == "missing" and e["loc"][:-1] == first["loc"][:-1]
+        ]
+        if len(lacking) == 1:
+            return BadFile(path, key, "nothing", "this key")
+        table = ".".join(key.split(".")[:-1]) or "file"
+        return BadFile(path, table, "nothing for several keys", f"the keys {', '.join(lacking)}")
     message = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     return BadFile(path, key, repr(first["input"]), message)
 

@@ -16,16 +16,20 @@ from twin.library.catalogue import (
     users_files,
 )
 from twin.library.ordinary import ordinary_model
+from twin.library.sized_effect import SizedEffect, parse_sized_effect, parse_sizes
 from twin.library.trial import try_effect, try_kind, users_fault, users_lines
 
 __all__ = [
     "Kind",
+    "SizedEffect",
     "is_visible",
     "kinds",
     "load_installed_effects",
     "load_user_effects",
     "ordinary_model",
     "parse_effect",
+    "parse_sized_effect",
+    "parse_sizes",
     "proposals",
     "register",
     "try_effect",

@@ -212,12 +212,24 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
     except SyntaxError as cause:
         found = f"{(cause.text or '').strip()!r} ({cause.msg})"
         raise BadFile(path, f"line {cause.lineno}", found, "Python") from cause
-    except Exception as cause:  # whatever a user's file does wrong is one line about that file
+    except (Exception, SystemExit) as cause:  # whatever is wrong is one line about that file
         raise users_fault(cause, path, "file", "a Python file that runs") from cause
     own = {id(k): k for k in vars(module).values() if isinstance(k, Kind)}
     if not own:
-        raise BadFile(path, "file", "no Kind", "at least one twin.library.Kind at its top level")
+        raise BadFile(path, "file", "no Kind", "at least one twin.Kind at its top level")
+    for kind in own.values():
+        _check_card(kind, path)
     return tuple(_register_from(kind, path) for kind in own.values())
+
+
+def _check_card(kind: Kind, path: Path) -> None:
+    """What a user wrote into a `Kind` is text, or can be called, where it has to be."""
+    for name in ("word", "arguments", "formula", "units", "typical", "source", "about"):
+        if not isinstance(getattr(kind, name), str):
+            raise BadFile(path, f"Kind '{kind.word}'", f"{name} = {getattr(kind, name)!r}", "text")
+    for name in ("make", "propose"):
+        if not callable(getattr(kind, name)):
+            raise BadFile(path, f"Kind '{kind.word}'", f"{name} of no function", "a function")
 
 
 def users_files() -> dict[str, Path]:
