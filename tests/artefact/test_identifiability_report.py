@@ -21,7 +21,7 @@ from artefact.worth.touch_criterion import criterion_for, random_touches
 from information.identifiability.estimable_combinations import combinations
 from information.identifiability.freedoms import Resolution
 from probe_paths.plan.probe import Probe
-from report.words.identifiability_file import as_json, write_identifiability
+from report.identifiability.identifiability_file import as_json, write_identifiability
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from twin.machine.chain import Axis, make_chain

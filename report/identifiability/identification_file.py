@@ -7,8 +7,8 @@ from typing import Any
 
 from diagnosis.answer import Proof
 from diagnosis.fit import Estimable, Fit, estimable
+from report.identifiability.identifiability_words import combination_words, freedom_words
 from report.numbers import shown
-from report.words.identifiability_words import combination_words, freedom_words
 from twin.files import write_whole
 from twin.units import UM
 

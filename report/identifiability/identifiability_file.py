@@ -7,9 +7,7 @@ from typing import Any
 
 from artefact.compare import Alternative, IdentifiabilityReport
 from information.identifiability import Degree
-from report.numbers import shown
-from report.words.artefact_words import alternative_words
-from report.words.identifiability_words import (
+from report.identifiability.identifiability_words import (
     combination_words,
     degree_words,
     freedom_words,
@@ -18,7 +16,9 @@ from report.words.identifiability_words import (
     reason_words,
     resolution_words,
 )
-from report.words.parameter_words import in_words, short
+from report.identifiability.parameter_words import in_words, short
+from report.numbers import shown
+from report.words import alternative_words
 from twin.files import write_whole
 from twin.machine import Chain, Link
 from twin.units import DEG
