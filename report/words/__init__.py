@@ -25,6 +25,7 @@ from report.words.identifiability_file import write_identifiability
 from report.words.identifiability_words import (
     combination_words,
     family_words,
+    freedom_words,
     gist,
     pair_words,
     reason_words,
@@ -49,6 +50,7 @@ __all__ = [
     "criterion_words",
     "dominant_words",
     "family_words",
+    "freedom_words",
     "gist",
     "in_words",
     "microns",
