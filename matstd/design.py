@@ -21,9 +21,10 @@ from matstd.streams import streams
 from probe_paths.campaign import VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import TouchPlan, plan_touches
+from report.identifiability import write_identifiability, write_identification
 from report.maps import draw_maps, draw_path
 from report.pages import Design, Proven
-from report.words import sampling_words, write_identifiability, write_identification
+from report.words import sampling_words
 from sensitivity.first_order import Workspace
 from sensitivity.montecarlo import Workers
 from sensitivity.population import Population, drawn_errors

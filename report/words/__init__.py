@@ -5,13 +5,13 @@ units, values with their uncertainty.
 """
 
 from report.words.artefact_words import (
+    alternative_words,
     comparison_remarks,
     criterion_words,
 )
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
-    named_value,
     region_words,
     rivals_words,
     sizes,
@@ -21,18 +21,6 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.identifiability_file import write_identifiability
-from report.words.identifiability_words import (
-    combination_words,
-    family_words,
-    freedom_words,
-    gist,
-    pair_words,
-    reason_words,
-    resolution_words,
-)
-from report.words.identification_file import write_identification
-from report.words.parameter_words import in_words, short
 from report.words.probe_words import ordering_words
 from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (
@@ -44,27 +32,18 @@ from report.words.sensitivity_words import (
 )
 
 __all__ = [
-    "combination_words",
+    "alternative_words",
     "comparison_remarks",
     "comparison_sentence",
     "criterion_words",
     "dominant_words",
-    "family_words",
-    "freedom_words",
-    "gist",
-    "in_words",
     "microns",
-    "named_value",
     "ordering_words",
-    "pair_words",
     "place_words",
-    "reason_words",
     "region_words",
     "remark_sentence",
-    "resolution_words",
     "rivals_words",
     "sampling_words",
-    "short",
     "sizes",
     "stated_noise",
     "structure_words",
@@ -73,6 +52,4 @@ __all__ = [
     "unsampled",
     "values",
     "verdict_sentence",
-    "write_identifiability",
-    "write_identification",
 ]
