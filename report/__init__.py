@@ -7,7 +7,8 @@ is a number in a result.
 
     style   paper, colours and labels of every picture
     words   sentences, for pages and for the console
-    identifiability   what touches can and cannot tell apart, in words and files
+    identifiability
+            what touches can know, in words and in result files
     maps    sensitivities and volumetric error over a workspace or along a path
     plots   plans, proofs, residuals, effects
     scenes  pictures in three dimensions, rendered in a process of their own

@@ -6,10 +6,12 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+
 if TYPE_CHECKING:
     from diagnosis.residual import Comparison
 
-OURS = ("pictures/*.png", "report.html")
+OURS = ("pictures/*.png", *REPORT_FILES)
 """Results that not every comparison leaves."""
 
 
@@ -25,6 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
     )
     parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
+    add_pdf(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
@@ -45,6 +48,7 @@ def run(args: argparse.Namespace) -> int:
         args.run_file, args.model, args.effects, "so the agreement is optimistic"
     )
     model = saved.model if saved else ordinary_model(run.touches.chain)
+    printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         found = compare(
             run,
@@ -65,6 +69,7 @@ def run(args: argparse.Namespace) -> int:
             show("report", 0, 1)
             title = Path(args.run_file).name
             write_compare_page(found, folder, title, np.random.default_rng(0))
+            print_report(folder, printed_by)
     _tell(args, found)
     return 0
 

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
     from diagnosis.files import SavedModel
     from twin.record import Run
 
-OURS = ("next_measurement_*.csv", "pictures/*.png", "report.html")
+OURS = ("next_measurement_*.csv", "pictures/*.png", *REPORT_FILES)
 """Results that not every diagnosis leaves."""
 
 
@@ -44,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
     )
     parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
+    add_pdf(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
@@ -58,6 +61,7 @@ def run(args: argparse.Namespace) -> int:
 
     same = "so that its estimates are made anew: no touch counts twice"
     run, saved = read_inputs(args.run_file, args.model, args.effects, same)
+    printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         result = _diagnosed(
             args, run, saved, lambda share, doing: show(doing, int(100 * share), 100)
@@ -69,6 +73,7 @@ def run(args: argparse.Namespace) -> int:
             show("report", 0, 1)
             title = Path(args.run_file).name
             write_diagnosis_page(result, folder, title, np.random.default_rng(0))
+            print_report(folder, printed_by)
     _tell(args, result)
     return 0
 

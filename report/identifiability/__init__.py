@@ -1,7 +1,7 @@
-"""What touches can and cannot tell apart: parameters and freedoms in words, and the files of them.
+"""What touches can and cannot know of a machine, in words and in the files that carry them.
 
-`IdentifiabilityReport` and what a fit determines (`Estimable`) go in, names and sentences of a
-metrologist come out; identifiability.json and identification.json hold them beside their numbers.
+Names of parameters in plain words, combinations that are known, freedoms with what makes and what
+would resolve them; `identifiability.json` and `identification.json`.
 """
 
 from report.identifiability.identifiability_file import write_identifiability

@@ -4,11 +4,8 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
-from report.words.artefact_words import (
-    alternative_words,
-    comparison_remarks,
-    criterion_words,
-)
+from report.words.artefact_words import alternative_words, comparison_remarks, criterion_words
+from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
@@ -33,13 +30,16 @@ from report.words.sensitivity_words import (
 
 __all__ = [
     "alternative_words",
+    "best_rival",
     "comparison_remarks",
     "comparison_sentence",
     "criterion_words",
+    "design_lines",
     "dominant_words",
     "microns",
     "ordering_words",
     "place_words",
+    "proof_line",
     "region_words",
     "remark_sentence",
     "rivals_words",
@@ -51,5 +51,6 @@ __all__ = [
     "unit_words",
     "unsampled",
     "values",
+    "verdict_of_design",
     "verdict_sentence",
 ]

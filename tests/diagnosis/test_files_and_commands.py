@@ -447,7 +447,7 @@ def backwards(rows):
     ("change", "phrase"),
     [
         (with_all("T_spindle_degC", lambda i, row: "20.0"), "T_spindle_degC is constant at 20"),
-        (with_value("T_spindle_degC", "nan"), "the sensor is left out"),
+        (with_value("T_spindle_degC", "nan"), "before and after it are joined by a line"),
         (lambda rows: [rows[0], *rows], "1 row stands twice; copies are left out"),
         (backwards, "time_s goes back"),
         (lambda rows: rows[:26], "1 table pose only"),
