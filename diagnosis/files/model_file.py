@@ -45,7 +45,8 @@ class SourceEntry(Table):
     """`[source]`: what the estimates rest upon.
 
     `revision` counts the runs that the model has learnt from, one after the other; `learnt_from`
-    has their fingerprints, so that no touch is counted twice.
+    has their fingerprints, so that no touch is counted twice. `held_out_um` is the plain error that
+    the model promises for rows it has not seen; 0 where it promises none.
     """
 
     run: str
@@ -55,6 +56,7 @@ class SourceEntry(Table):
     revision: int = 1
     learnt_from: list[str] = Field(default_factory=list)
     made_with: str = ""
+    held_out_um: float = 0.0
 
 
 class ModelTable(Table):

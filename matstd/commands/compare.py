@@ -43,6 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.inputs import read_inputs
     from report.words import remark_sentence, structure_words
     from twin.library import ordinary_model
+    from twin.units import UM
 
     run, saved = read_inputs(
         args.run_file, args.model, args.effects, "so the agreement is optimistic"
@@ -70,18 +71,25 @@ def run(args: argparse.Namespace) -> int:
             title = Path(args.run_file).name
             write_compare_page(found, folder, title, np.random.default_rng(0))
             print_report(folder, printed_by)
-    _tell(args, found)
+    _tell(args, found, saved.source.held_out_um * UM if saved else 0.0)
     return 0
 
 
-def _tell(args: argparse.Namespace, found: Comparison) -> None:
-    """The comparison in words."""
+def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
+    """The comparison in words, and beside what the model promised (mm, 0 for nothing)."""
     from matstd.console import say
     from report.numbers import signed
-    from report.words import comparison_sentence, region_words, remark_sentence
+    from report.words import (
+        comparison_sentence,
+        promise_sentence,
+        region_words,
+        remark_sentence,
+    )
     from twin.units import UM
 
     say(comparison_sentence(found), style="bold")
+    if promised > 0.0 and found.is_prediction:
+        say(promise_sentence(found, promised))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")

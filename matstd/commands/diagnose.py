@@ -45,6 +45,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
     )
+    parser.add_argument(
+        "--only",
+        metavar="KIND",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="look for effects of these kinds alone, or of these names",
+    )
+    parser.add_argument(
+        "--without",
+        metavar="KIND",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="do not look for effects of these kinds, or of these names",
+    )
     parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
     add_pdf(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
@@ -88,13 +104,15 @@ def _diagnosed(
     import numpy as np
 
     from diagnosis.answer import diagnose
-    from matstd.inputs import is_learnt_from, named_effects
+    from matstd.inputs import candidates, is_learnt_from, named_effects
     from twin.library import ordinary_model
 
     start = saved.model if saved else ordinary_model(run.touches.chain)
     known = saved.estimates if saved and not is_learnt_from(saved, run) else None
     added = named_effects(args.add, start.effects, run)
-    return diagnose(run, start, known, added, progress=progress, rng=np.random.default_rng(0))
+    found = candidates(args.only, args.without, run)
+    rng = np.random.default_rng(0)
+    return diagnose(run, start, known, added, found, progress, rng)
 
 
 def _write(
@@ -112,7 +130,9 @@ def _write(
     fit = result.fit if args.auto else result.steps[len(args.add)].fit
     before = saved if saved and not is_learnt_from(saved, result.run) else None
     made_with = f"material-standard {versions()['material-standard']}"
-    write_model(folder / "model.toml", fit, Path(args.run_file).name, before, made_with)
+    promised = result.choice.best.error if fit is result.fit and result.choice else None
+    name = Path(args.run_file).name
+    write_model(folder / "model.toml", fit, name, before, made_with, promised)
     for i, plan in enumerate(result.plans, start=1):
         write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
 

@@ -9,6 +9,7 @@ from report.words.design_words import best_rival, design_lines, proof_line, verd
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
+    promise_sentence,
     region_words,
     rivals_words,
     sizes,
@@ -39,6 +40,7 @@ __all__ = [
     "microns",
     "ordering_words",
     "place_words",
+    "promise_sentence",
     "proof_line",
     "region_words",
     "remark_sentence",

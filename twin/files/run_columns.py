@@ -16,6 +16,8 @@ from twin.units import DEG, UM
 BoolArray = NDArray[np.bool_]
 
 SENSOR = re.compile(r"T_(\w+)_degC\Z")
+OWN = re.compile(r"V_(\w+_\w+)\Z")
+"""A column of the user's own: name and unit."""
 POINT = ("px_mm", "py_mm", "pz_mm")
 NORMAL = ("nx", "ny", "nz")
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
@@ -95,6 +97,24 @@ def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Ar
             remarks.append(
                 f"{column} is constant at {values[0]:g} degC: it cannot explain anything"
             )
+        out[match.group(1)] = values
+    return out
+
+
+def own_columns(table: CsvTable, remarks: list[str]) -> dict[str, Array]:
+    """Columns `V_name_unit` of the user's own; one with gaps is left out and told."""
+    out = {}
+    for column in table.columns:
+        match = OWN.match(column)
+        if match is None:
+            continue
+        values = table.numbers(column, finite=False, largest=np.inf)
+        missing = np.flatnonzero(~np.isfinite(values))
+        if len(missing):
+            line = table.lines[int(missing[0])]
+            gaps = f"line {line}: {column} has no number in {_rows(len(missing))}"
+            remarks.append(f"{gaps}; the column is left out")
+            continue
         out[match.group(1)] = values
     return out
 

@@ -123,9 +123,9 @@ def _check_columns(table: CsvTable, chain: Chain) -> None:
     """Needed columns are there, and none that nobody understands."""
     names = [column for column, _ in reading_columns(chain).values()]
     directions = [f"dir{axis}" for axis in chain.axes]
-    sensors = [c for c in table.columns if columns.SENSOR.match(c)]
+    sensors = [c for c in table.columns if columns.SENSOR.match(c) or columns.OWN.match(c)]
     known = [*names, *columns.POINT, *columns.NORMAL, *_OPTIONAL, *columns.FORCE]
-    table.allow_only([*known, *directions, *sensors], " or T_<sensor>_degC")
+    table.allow_only([*known, *directions, *sensors], " or T_<sensor>_degC or V_<name>_<unit>")
     needed = [reading_columns(chain)[axis][0] for axis in chain.programmed_axes]
     table.require([*needed, *columns.POINT, *columns.NORMAL])
 
@@ -153,6 +153,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         force=columns.force(table),
         feature=np.array(table.text("feature") if "feature" in table else [""] * n),
         pose=columns.poses(table, chain, q, setup),
+        value=columns.own_columns(table, remarks),
     )
     signs = columns.approach(table, chain, q, touches.normal_table)
     touches = replace(touches, approach=signs)
