@@ -3,9 +3,8 @@
 import pytest
 from made_up import MACHINES, made_up
 
-from twin.effects.titles import component_title, location_title
 from twin.library.catalogue import find_kinds, kinds, parse_effect, proposals, title_of
-from twin.machine.symbols import Family, parse_symbol
+from twin.machine.symbols import parse_symbol
 from twin.model.effect import Titled
 
 
@@ -90,6 +89,4 @@ def test_every_effect_has_a_title_of_its_own(label) -> None:
     ],
 )
 def test_errors_in_words(symbol, title) -> None:
-    parsed = parse_symbol(symbol)
-    is_component = parsed.family is Family.COMPONENT
-    assert (component_title if is_component else location_title)(parsed) == title
+    assert parse_symbol(symbol).title == title

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.effects.titles import component_title
 from twin.frames import Array
 from twin.machine import Chain, Family, Symbol
 from twin.model import (
@@ -57,9 +56,7 @@ class Coupling:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(
-            f"{component_title(self.symbol)}, which changes with {self.other}", self.symbol.link
-        )
+        return Title(f"{self.symbol.title}, which changes with {self.other}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:

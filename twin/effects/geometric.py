@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.effects.titles import component_title
 from twin.machine import SHAPES, Chain, Family, Ranges, ShapeName, Symbol, shape
 from twin.model import (
     Effect,
@@ -63,7 +62,7 @@ class ComponentError:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(component_title(self.symbol), self.symbol.link)
+        return Title(self.symbol.title, self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -118,7 +117,7 @@ class HigherOrder:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(component_title(self.symbol), self.symbol.link)
+        return Title(self.symbol.title, self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.effects.titles import motion
 from twin.machine import Chain, Family, Symbol
 from twin.model import (
     Effect,
@@ -47,7 +46,7 @@ class RamSag:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(f"sag of {self.symbol.link} {motion(self.symbol)}", self.symbol.link)
+        return Title(f"sag of {self.symbol.link} {self.symbol.motion}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.effects.titles import location_title
 from twin.machine import Chain, Family, Ranges, Symbol
 from twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
 from twin.record import Touches
@@ -37,7 +36,7 @@ class LocationError:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(location_title(self.symbol), self.symbol.link)
+        return Title(self.symbol.title, self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:

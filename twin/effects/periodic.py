@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.effects.titles import component_title
 from twin.machine import Chain, Family, Symbol
 from twin.model import (
     Inner,
@@ -53,7 +52,7 @@ class Periodic:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(f"{component_title(self.symbol)}, which repeats", self.symbol.link)
+        return Title(f"{self.symbol.title}, which repeats", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -108,7 +107,7 @@ class Harmonic:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(f"{component_title(self.symbol)}, which repeats", self.symbol.link)
+        return Title(f"{self.symbol.title}, which repeats", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.effects.titles import motion
 from twin.errors import UnknownEffect
 from twin.frames import Array
 from twin.machine import Chain, Family, Symbol
@@ -73,7 +72,7 @@ class ThermalLag:
         """`growth along Z after switching on`: which body grows is seldom seen."""
         what = "tilt" if self.symbol.is_angular else "growth"
         cause = {"": "switching on", SPINDLE: "the spindle speed"}.get(self.drive, self.drive)
-        return Title(f"{what} {motion(self.symbol)} after {cause}", self.symbol.link)
+        return Title(f"{what} {self.symbol.motion} after {cause}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
