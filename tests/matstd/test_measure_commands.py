@@ -299,5 +299,5 @@ def test_a_model_file_that_was_edited_badly_is_refused(
 def test_results_of_another_day_are_not_overwritten(folder, tmp_path, capsys, command) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     assert main([command, str(folder / "run.csv"), "-o", str(tmp_path), "--no-report"]) == BAD
-    assert "is there already; choose another folder or give --force" in capsys.readouterr().err
+    assert "already exists; choose another folder or give --force" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]
