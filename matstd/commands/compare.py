@@ -38,9 +38,9 @@ def run(args: argparse.Namespace) -> int:
 
     from diagnosis.files import write_comparison, write_residuals
     from diagnosis.residual import compare
-    from matstd.console import stages
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
+    from matstd.progress import stages
     from report.words import remark_sentence, structure_words
     from twin.library import ordinary_model
     from twin.units import UM

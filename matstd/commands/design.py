@@ -31,11 +31,11 @@ def run(args: argparse.Namespace) -> int:
 
     project, printed_by = read_project(args.project), asked_printer(args)
     with (
-        results_folder(args.output, args.force, [REFUSED, *REPORT_FILES]) as folder,
+        results_folder(args.output, args.force, REPORT_FILES, [REFUSED]) as folder,
         _pictured(folder, args.output),
     ):
-        from matstd.console import stages
         from matstd.design import design
+        from matstd.progress import stages
         from report.pages import write_design_page
 
         with stages() as progress, connected(args.scheduler) as workers:

@@ -71,9 +71,9 @@ def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
     import numpy as np
 
-    from matstd.console import stages
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
+    from matstd.progress import stages
 
     same = "so that its estimates are made anew: no touch counts twice"
     run, saved = read_inputs(args.run_file, args.model, args.effects, same)

@@ -76,7 +76,7 @@ def _study(args: argparse.Namespace) -> int:
 
     project, printed_by = read_project(args.source, _settings(args)), asked_printer(args)
     with results_folder(args.output, args.force, REPORT_FILES) as folder:
-        from matstd.console import stages
+        from matstd.progress import stages
         from matstd.study_run import study_project
 
         with stages() as progress, connected(args.scheduler) as workers:

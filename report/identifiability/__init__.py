@@ -8,6 +8,7 @@ from report.identifiability.identifiability_file import write_identifiability
 from report.identifiability.identifiability_words import (
     combination_words,
     family_words,
+    freedom_words,
     gist,
     pair_words,
     reason_words,
@@ -19,6 +20,7 @@ from report.identifiability.parameter_words import in_words, short
 __all__ = [
     "combination_words",
     "family_words",
+    "freedom_words",
     "gist",
     "in_words",
     "pair_words",

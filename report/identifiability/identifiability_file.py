@@ -27,7 +27,7 @@ FORMAT = "identifiability/1"
 """Of the file."""
 
 
-def as_json(known: IdentifiabilityReport) -> dict[str, Any]:
+def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:
     """The record as plain data, units in the names of the keys."""
     g, chain = known.gauge, known.chain
     names = [short(name) for name in known.model.names]
@@ -109,4 +109,4 @@ def _rounded(value: float) -> float:
 
 def write_identifiability(path: Path, known: IdentifiabilityReport) -> None:
     """Write the record as a JSON file, whole or not at all."""
-    write_whole(path, json.dumps(as_json(known), indent=1, ensure_ascii=False) + "\n")
+    write_whole(path, json.dumps(identifiability_table(known), indent=1, ensure_ascii=False) + "\n")
