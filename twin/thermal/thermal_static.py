@@ -52,9 +52,6 @@ class ThermalStatic:
         """In the words of those who run machines."""
         what = "tilt" if self.symbol.is_angular else "growth"
         return Title(f"{what} {self.symbol.motion} with {self.sensor}", self.symbol.link)
-            f"{'tilt' if self.symbol.is_angular else 'growth'} {self.symbol.motion} with {self.sensor}",
-            self.symbol.link,
-        )
 
     @property
     def parameters(self) -> Sequence[Parameter]:
