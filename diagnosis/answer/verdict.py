@@ -7,8 +7,10 @@ from typing import Any
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.next_measurement import Plan
+from diagnosis.choice import Choice
 from diagnosis.fit import Fit, Reported
-from diagnosis.residual import Region, Remark, Structure
+from diagnosis.remarks import Remark
+from diagnosis.residual import Region, Structure
 from twin.display import Tabular
 from twin.model import Effect
 from twin.record import Run
@@ -91,6 +93,7 @@ class Diagnosis(Tabular):
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
         remarks: What else a user should know.
+        choice: How the set was chosen by prediction; None where the search left nothing to choose.
     """
 
     run: Run
@@ -104,6 +107,7 @@ class Diagnosis(Tabular):
     detectable: tuple[Detectable, ...]
     plans: tuple[Plan, ...]
     remarks: tuple[Remark, ...]
+    choice: Choice | None = None
 
     def columns(self) -> dict[str, list[Any]]:
         """Every step in which the error falls; the first is the starting model."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
+from diagnosis.remarks import Remark, remarks
 from diagnosis.residual.failing_regions import Region, regions
-from diagnosis.residual.run_remarks import Remark, remarks
 from diagnosis.residual.structure import Structure, find_structure
 from twin.compute import one_blas_thread
 from twin.display import Tabular

@@ -21,6 +21,9 @@ from twin.errors import BadFile
 from twin.frames import Array
 from twin.record import IntArray
 
+LARGEST = 1e6
+"""A coordinate (mm, degrees) or a number of a touch beyond this was not logged by our programs."""
+
 _PAIR = re.compile(r"([A-Z]+)\s*([-+]?\d+(?:\.\d+)?)(?=\s|\Z)")
 _CLOCK = re.compile(r"(?:END )?T *(\d{1,2}): *(\d{1,2}): *(\d{1,2})\Z")
 _WHOLE_CLOCK = len("T  0:  0:  0")
@@ -317,7 +320,8 @@ def _numbers(text: str, names: Sequence[str]) -> list[float] | None:
     found = _PAIR.findall(text)
     if _PAIR.sub("", text).strip() or [n for n, _ in found] != list(names):
         return None
-    return [float(v) for _, v in found]
+    numbers = [float(v) for _, v in found]
+    return numbers if all(abs(number) < LARGEST for number in numbers) else None
 
 
 def _are_counters(values: Sequence[float]) -> bool:

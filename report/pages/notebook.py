@@ -17,11 +17,12 @@ from artefact.compare import IdentifiabilityReport
 from diagnosis.answer import Diagnosis
 from diagnosis.fit import Fit
 from diagnosis.residual import Comparison
+from report.identifiability import gist
 from report.maps import draw_regions
 from report.pages.page import picture
 from report.plots import draw_fall, draw_over_variables, ranked_variables
 from report.style import save
-from report.words import comparison_sentence, gist, microns, study_words, verdict_sentence
+from report.words import comparison_sentence, microns, study_words, verdict_sentence
 from sensitivity.shares import regions
 from sensitivity.study import Study
 from twin.display import Tabular
