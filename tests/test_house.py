@@ -58,6 +58,7 @@ EXCUSED = {
     "probe_paths/control/log_clock.py": "remarks of a reader on single lines, like its refusals",
     "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
+    "probe_paths/plan/planner.py": "what a refusal says of the probe on its way in",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
     "artefact/place/placement.py": "what a refusal appends to the limit that binds",
