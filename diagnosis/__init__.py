@@ -19,7 +19,7 @@ should know about a run is a record in `residual.run_remarks`, its sentence in `
 new effect needs nothing here.
 """
 
-from diagnosis.answer import Diagnosis, Proof, Step, Verdict, diagnose, prove
+from diagnosis.answer import Comparison, Diagnosis, Proof, Step, Verdict, compare, diagnose, prove
 from diagnosis.files import (
     SavedModel,
     read_model,
@@ -29,7 +29,7 @@ from diagnosis.files import (
     write_residuals,
 )
 from diagnosis.fit import Estimable, Fit, Prior, estimable, fit_run
-from diagnosis.residual import Comparison, Region, Structure, compare
+from diagnosis.residual import Region, Structure
 
 PARTS = ("fit", "evidence", "residual", "search", "answer", "files")
 """From bottom to top: each imports only from those before it."""

@@ -6,7 +6,17 @@ shown, `next_measurement` touches that tell look-alikes apart, `proof` compares 
 """
 
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
+from diagnosis.answer.comparison import Comparison, GroupResidual, compare
 from diagnosis.answer.detectable import Detectable
+from diagnosis.answer.geometry_functionals import Quantity
+from diagnosis.answer.learnt_geometry import (
+    Correction,
+    Estimate,
+    GeometryRow,
+    LadderStep,
+    LearntGeometry,
+    Rung,
+)
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.answer.proof import Proof, probed_volume, prove
 from diagnosis.answer.run_diagnosis import diagnose
@@ -15,13 +25,23 @@ from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 __all__ = [
     "CONFUSED",
     "Candidate",
+    "Comparison",
     "ConfusionClass",
+    "Correction",
     "Detectable",
     "Diagnosis",
+    "Estimate",
+    "GeometryRow",
+    "GroupResidual",
+    "LadderStep",
+    "LearntGeometry",
     "Plan",
     "Proof",
+    "Quantity",
+    "Rung",
     "Step",
     "Verdict",
+    "compare",
     "diagnose",
     "probed_volume",
     "prove",

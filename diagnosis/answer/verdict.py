@@ -5,6 +5,7 @@ from enum import Enum
 
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
+from diagnosis.answer.learnt_geometry import LearntGeometry
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.fit import Fit, Reported
 from diagnosis.residual import Region, Remark, Structure
@@ -87,6 +88,7 @@ class Diagnosis:
         where: Regions where the same residual fails, drawn by what the found effects explain.
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
+        geometry: What the run says of the machine's geometry.
         remarks: What else a user should know.
     """
 
@@ -100,6 +102,7 @@ class Diagnosis:
     where: tuple[Region, ...]
     detectable: tuple[Detectable, ...]
     plans: tuple[Plan, ...]
+    geometry: LearntGeometry
     remarks: tuple[Remark, ...]
 
     @property

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from diagnosis.residual import Comparison
+    from diagnosis.answer import Comparison
 
 OURS = ("pictures/*.png", "report.html")
 """Results that not every comparison leaves."""
@@ -33,8 +33,8 @@ def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
     import numpy as np
 
+    from diagnosis.answer import compare
     from diagnosis.files import write_comparison, write_residuals
-    from diagnosis.residual import compare
     from matstd.console import stages
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
@@ -72,7 +72,13 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison) -> None:
     """The comparison in words."""
     from matstd.console import say
-    from report.words import comparison_sentence, region_words, remark_sentence
+    from report.words import (
+        comparison_sentence,
+        ladder_sentence,
+        noted_lines,
+        region_words,
+        remark_sentence,
+    )
     from twin.units import UM
     from twin.words import signed
 
@@ -80,6 +86,8 @@ def _tell(args: argparse.Namespace, found: Comparison) -> None:
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
+    for line in (ladder_sentence(found.geometry), *noted_lines(found.geometry)):
+        say(f"- {line}")
     for remark in found.remarks:
         say(f"- {remark_sentence(remark)}")
     first = "" if args.no_report else "report.html, "

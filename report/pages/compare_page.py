@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.residual import Comparison
+from diagnosis.answer import Comparison
+from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
     Picture,
@@ -57,6 +58,7 @@ def write_compare_page(
         pictures=residual_pictures(place, "residual", found.fit, z),
         patterns=pattern_pictures(place, found.fit, found.structure, rng),
         gross=gross_rows(found.fit),
+        geometry=geometry_section(found.geometry),
         worst_line=int(found.run.line[worst]),
         worst_um=float(found.residual[worst]) / UM,
         worst_normalised=float(found.normalised[worst]),

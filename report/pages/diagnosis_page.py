@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import file_unit
+from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
     Picture,
@@ -94,6 +95,7 @@ def write_diagnosis_page(
         before=residual_pictures(place, "before", result.start),
         after=residual_pictures(place, "after", result.fit) if len(result.steps) > 1 else [],
         on_standard=_on_standard(result, place),
+        geometry=geometry_section(result.geometry),
         detectable=_detectable(result.detectable),
         plans=[_plan(p.tells_apart, p.touches, p.separation) for p in result.plans],
         gross=gross_rows(result.fit),

@@ -17,6 +17,12 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
+from report.words.geometry_words import (
+    correction_line,
+    geometry_lines,
+    ladder_sentence,
+    noted_lines,
+)
 from report.words.identifiability_file import write_identifiability
 from report.words.identifiability_words import (
     combination_words,
@@ -35,11 +41,15 @@ from report.words.sensitivity_words import study_words, unsampled
 __all__ = [
     "combination_words",
     "comparison_sentence",
+    "correction_line",
     "family_words",
+    "geometry_lines",
     "gist",
     "in_words",
+    "ladder_sentence",
     "microns",
     "named_value",
+    "noted_lines",
     "ordering_words",
     "pair_words",
     "reason_words",

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from diagnosis.answer import Diagnosis, Step, Verdict
+from diagnosis.answer import Comparison, Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
-from diagnosis.residual import Comparison, Condition, Shape, Side, Structure
+from diagnosis.residual import Condition, Shape, Side, Structure
 from twin.record import Run
 from twin.units import UM
 from twin.words import condition, digits, listed, noun, span, with_uncertainty

@@ -5,11 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
+from diagnosis.answer.learnt_geometry import LearntGeometry, learnt_geometry
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
-from diagnosis.residual.failing_regions import Region, regions
-from diagnosis.residual.run_remarks import Remark, remarks
-from diagnosis.residual.structure import Structure, find_structure
+from diagnosis.residual import Region, Remark, Structure, find_structure, regions, remarks
 from twin.compute import one_blas_thread
 from twin.frames import Array
 from twin.model import Model
@@ -47,6 +46,8 @@ class Comparison:
             and of the prediction where it was made without this run.
         structure: What the residual varies with, the most certain first.
         where: Regions where the model fails.
+        geometry: What the run says of the machine's geometry, and what of it changed since the
+            model was made, if it is one of an earlier run.
         remarks: What else a user should know.
     """
 
@@ -55,6 +56,7 @@ class Comparison:
     u: Array
     structure: tuple[Structure, ...]
     where: tuple[Region, ...]
+    geometry: LearntGeometry
     remarks: tuple[Remark, ...]
 
     @property
@@ -165,6 +167,7 @@ def compare(
         u=u,
         structure=found,
         where=regions(fit),
+        geometry=learnt_geometry(fit, estimates),
         remarks=remarks(fit),
     )
 
