@@ -6,7 +6,7 @@ the search and the reports know it from then on.
 
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
-from twin.effects.probe import normal_in_tool
+from twin.effects.probe import ProbeRadius, normal_in_tool
 from twin.effects.setup_error import setup_errors
 from twin.effects.thermal_lag import SPINDLE, ThermalLag
 
@@ -15,6 +15,7 @@ __all__ = [
     "ComponentError",
     "HigherOrder",
     "LocationError",
+    "ProbeRadius",
     "ThermalLag",
     "component",
     "normal_in_tool",
