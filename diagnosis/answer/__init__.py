@@ -7,7 +7,9 @@ shown, `next_measurement` touches that tell look-alikes apart, `proof` compares 
 
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.comparison import Comparison, GroupResidual, compare
+from diagnosis.answer.description_faults import Fault
 from diagnosis.answer.detectable import Detectable
+from diagnosis.answer.fault_trial import DescriptionFault, description_faults, faults_of_refused
 from diagnosis.answer.geometry_functionals import Quantity
 from diagnosis.answer.learnt_geometry import (
     Correction,
@@ -28,9 +30,11 @@ __all__ = [
     "Comparison",
     "ConfusionClass",
     "Correction",
+    "DescriptionFault",
     "Detectable",
     "Diagnosis",
     "Estimate",
+    "Fault",
     "GeometryRow",
     "GroupResidual",
     "LadderStep",
@@ -42,7 +46,9 @@ __all__ = [
     "Step",
     "Verdict",
     "compare",
+    "description_faults",
     "diagnose",
+    "faults_of_refused",
     "probed_volume",
     "prove",
 ]

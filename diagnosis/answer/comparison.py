@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from diagnosis.answer.fault_trial import DescriptionFault, description_faults
 from diagnosis.answer.learnt_geometry import LearntGeometry, learnt_geometry
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
@@ -48,6 +49,7 @@ class Comparison:
         where: Regions where the model fails.
         geometry: What the run says of the machine's geometry, and what of it changed since the
             model was made, if it is one of an earlier run.
+        faults: Mistakes in the description that would make the run fit.
         remarks: What else a user should know.
     """
 
@@ -57,6 +59,7 @@ class Comparison:
     structure: tuple[Structure, ...]
     where: tuple[Region, ...]
     geometry: LearntGeometry
+    faults: tuple[DescriptionFault, ...]
     remarks: tuple[Remark, ...]
 
     @property
@@ -168,6 +171,7 @@ def compare(
         structure=found,
         where=regions(fit),
         geometry=learnt_geometry(fit, estimates),
+        faults=description_faults(fit, progress),
         remarks=remarks(fit),
     )
 

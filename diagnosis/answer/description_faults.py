@@ -16,7 +16,7 @@ from twin.effects import LocationError, ProbeRadius
 from twin.frames import Array
 from twin.machine import Chain, Link
 from twin.model import Effect
-from twin.record import Run, Touches, computed_deviation
+from twin.record import Run, Touches, aligned, computed_deviation
 from twin.units import DEG
 
 FREE_LENGTH = 20.0
@@ -165,9 +165,19 @@ def _is_computed(run: Run) -> bool:
 
 
 def recomputed(run: Run, touches: Touches) -> Run:
-    """The run with its deviations as another description has them."""
+    """The run with its deviations as another description has them, its set-ups placed anew.
+
+    Where the standard stands was perhaps found with the wrong description.
+    """
+    if _is_computed(run):
+        return placed(replace(run, touches=touches, deviation=computed_deviation(touches)))
     before, after = computed_deviation(run.touches), computed_deviation(touches)
     return replace(run, touches=touches, deviation=run.deviation + after - before)
+
+
+def placed(run: Run) -> Run:
+    """The run with its set-ups where its touches say, if its readings tell that."""
+    return aligned(run)[0] if _is_computed(run) else run
 
 
 def _with_touches(run: Run, fault: Fault, axes: Sequence[str], touches: Touches) -> Suspect:

@@ -10,6 +10,7 @@ told are those of that fit.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 
@@ -19,17 +20,17 @@ from diagnosis.answer.description_faults import (
     corrected,
     free_sd,
     has_minutes_for_seconds,
-    recomputed,
+    placed,
     suspects,
 )
 from diagnosis.evidence import Progress, quiet
 from diagnosis.fit import PRIOR_DOF, Fit, Solution, fit_run, solve, unit_mistake
-from twin.effects import ProbeRadius, setup_errors
+from twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, setup_errors
 from twin.errors import NotEnoughData
-from twin.frames import Array, rotation, turned_about
+from twin.frames import Array, apply, inverse
 from twin.library import ordinary_model
 from twin.model import Effect, columns
-from twin.record import Run
+from twin.record import Run, Setup, Touches
 
 TOUCHES = 400
 """Touches that suspects are tried on: more change no answer, and thirty suspects take seconds."""
@@ -58,6 +59,10 @@ mistake in the description, and must not pass for the zero of a table or the len
 BEYOND = 5.0
 """A number of the description is wrong beyond so many usual standard deviations of the error that
 does the same; what is smaller is an error of the machine or of the probe, and found as such."""
+
+MOVED = 30.0
+"""Most log odds that a set-up costs which stands elsewhere than stated by many times its freedom:
+with the standard turned about, one axis the other way looks like another."""
 
 STEPS = 3
 """Turns in which a number is found and moved exactly: a zero wrong by a degree needs two."""
@@ -107,46 +112,49 @@ class DescriptionFault:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Trial:
-    """A suspect with its numbers found, and its evidence."""
+    """A suspect, the how manyth, with its numbers found, and its evidence."""
 
+    index: int
     suspect: Suspect
     theta: Array
     u: Array
     evidence: float
 
 
-def description_faults(run: Run, progress: Progress = quiet) -> tuple[DescriptionFault, ...]:
+def description_faults(before: Fit, progress: Progress = quiet) -> tuple[DescriptionFault, ...]:
     """Mistakes in the description of a run or its machine that make it fit; usually none.
 
     Args:
-        run: As it is described, whatever its deviations are.
+        before: Fit of the run as it is described, whatever its deviations are.
         progress: Told of the suspects.
     """
-    model = ordinary_model(run.touches.chain)
-    try:
-        before = fit_run(run, model)
-    except NotEnoughData:
-        return ()
+    run = before.run
     named = [_clock(before)] if has_minutes_for_seconds(run) else []
     excess = max(before.widened, before.noise.factor)
     is_absurd = excess > ABSURD or unit_mistake(before) is not None
-    run = run if is_absurd else _aligned(run)
-    few = _few(run)
-    right = _evidence(few, (), np.zeros(0))[0]
-    tried = list(zip(suspects(few, is_absurd), suspects(run, is_absurd), strict=True))
+    few = placed(_few(run))
+    right = _evidence(few, (), np.zeros(0))[0] - _moved_setups(run.touches.setups, few.touches)
     trials = []
-    for i, (thin, whole) in enumerate(tried):
-        trials.append(_trial(thin, whole))
-        progress((i + 1) / len(tried), "mistakes in the description")
+    for i, suspect in enumerate(suspects(few, is_absurd)):
+        moved = _moved_setups(run.touches.setups, suspect.run.touches)
+        trials.append(_trial(i, suspect, moved))
+        progress(0.5, "mistakes in the description")
     trials = sorted(trials, key=lambda t: -t.evidence)
-    top = trials[0].evidence
-    close = [t for t in trials if t.evidence > max(right + NAMED, top - CLASS)]
-    told = [_told(before, t, right) for t in close]
+    close = [t for t in trials if t.evidence > max(right + NAMED, trials[0].evidence - CLASS)]
+    told = [_told(before, t, right, is_absurd) for t in close]
     # an axis has many places on the other side that differ in nothing
     kept = list({(t.fault, t.axes): t for t in reversed(told) if t is not None}.values())[::-1]
     if kept:
         named.append(replace(kept[0], alike=tuple(kept[1:])))
     return tuple(named)
+
+
+def faults_of_refused(run: Run) -> tuple[DescriptionFault, ...]:
+    """The same for a run that its reader has refused; nothing where not even that can be fitted."""
+    try:
+        return description_faults(fit_run(run, ordinary_model(run.touches.chain)))
+    except (NotEnoughData, np.linalg.LinAlgError):
+        return ()
 
 
 def _clock(fit: Fit) -> DescriptionFault:
@@ -177,41 +185,35 @@ def _usual_size(suspect: Suspect) -> Iterator[Effect]:
         yield ordinary.get(effect.name, effect)
 
 
-def _aligned(run: Run) -> Run:
-    """The run with its set-ups turned and moved exactly to where they fit best.
-
-    A standard that stands turned by ten milliradians leaves five micrometres that are no longer
-    linear; they must not make a suspect of whatever else turns.
-    """
-    for _ in range(STEPS):
-        t = run.touches
-        fit = fit_run(run, ordinary_model(t.chain))
-        moved = {s.name: s for s in t.setups}
-        for effect in setup_errors(t):
-            theta = fit.theta[fit.of_effect(effect.name)]
-            place = turned_about(np.array(effect.centre), rotation(theta[3:]), theta[:3])
-            here = moved[effect.setup]
-            moved[effect.setup] = replace(here, T_table_artefact=place @ here.T_table_artefact)
-        run = recomputed(run, replace(t, setups=tuple(moved[s.name] for s in t.setups)))
-    return run
+def _moved_setups(stated: Sequence[Setup], touches: Touches) -> float:
+    """Log odds against set-ups that had to be moved so far from where they are stated to stand."""
+    cost = 0.0
+    for before, after in zip(stated, touches.setups, strict=True):
+        step = after.T_table_artefact @ inverse(before.T_table_artefact)
+        middle = apply(before.T_table_artefact, touches.point.mean(axis=0))
+        shift = float(np.linalg.norm(apply(step, middle) - middle)) / (SETUPS * SHIFT_SD)
+        turn = float(np.linalg.norm(step[:3, :3] - np.eye(3))) / (SETUPS * TURN_SD)
+        cost += min(0.5 * (shift**2 + turn**2), MOVED)
+    return cost
 
 
-def _trial(thin: Suspect, whole: Suspect) -> _Trial:
+def _trial(index: int, suspect: Suspect, moved: float) -> _Trial:
     """Numbers of a suspect, found and moved exactly in turns, and its evidence at the end.
 
     Args:
-        thin: The suspect on some of the touches.
-        whole: The same on all.
+        index: The how manyth it is.
+        suspect: On some of the touches.
+        moved: Log odds against where it puts the set-ups.
     """
-    total = np.zeros(sum(len(e.parameters) for e in thin.free))
-    at = thin
+    total = np.zeros(sum(len(e.parameters) for e in suspect.free))
+    at = suspect
     for remaining in reversed(range(STEPS)):
         evidence, theta, u = _evidence(at.run, at.free, total)
-        if not thin.free or not remaining:
+        if not suspect.free or not remaining:
             break
         total = total + theta
-        at = corrected(thin, total)
-    return _Trial(whole, total, u, evidence)
+        at = corrected(suspect, total)
+    return _Trial(index=index, suspect=suspect, theta=total, u=u, evidence=evidence - moved)
 
 
 def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array, Array]:
@@ -253,7 +255,7 @@ def _log_evidence(solution: Solution, objective: float, n: int) -> float:
     return -0.5 * (n + PRIOR_DOF) * float(np.log(max(objective, 1e-9) + PRIOR_DOF)) - 0.5 * log_det
 
 
-def _told(before: Fit, trial: _Trial, right: float) -> DescriptionFault | None:
+def _told(before: Fit, trial: _Trial, right: float, is_absurd: bool) -> DescriptionFault | None:
     """A mistake with the figures of the whole run; None where undoing it does not make it fit.
 
     A number is named for what it gains beside the usual errors of the machine. An axis or a sign
@@ -263,6 +265,7 @@ def _told(before: Fit, trial: _Trial, right: float) -> DescriptionFault | None:
     usual = [p.sd for e in _usual_size(suspect) for p in e.parameters]
     if suspect.free and (np.abs(trial.theta) < BEYOND * np.array(usual)).all():
         return None
+    suspect = next(islice(suspects(before.run, is_absurd), trial.index, None))  # on all touches
     undone = corrected(suspect, trial.theta) if suspect.free else suspect
     chain = undone.run.touches.chain
     after = fit_run(undone.run, ordinary_model(chain))

@@ -6,6 +6,7 @@ import numpy as np
 
 from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
 from diagnosis.answer.detectable import detectable
+from diagnosis.answer.fault_trial import description_faults
 from diagnosis.answer.learnt_geometry import learnt_geometry
 from diagnosis.answer.next_measurement import Plan, plan
 from diagnosis.answer.sizes import sizes
@@ -129,6 +130,7 @@ def _result(
             task.prior if task.is_known else None,
             steps[0].fit if len(steps) > 1 else None,
         ),
+        faults=description_faults(steps[0].fit, progress),
         remarks=_remarks(steps[-1].fit, final),
     )
 

@@ -5,6 +5,7 @@ from enum import Enum
 
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
+from diagnosis.answer.fault_trial import DescriptionFault
 from diagnosis.answer.learnt_geometry import LearntGeometry
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.fit import Fit, Reported
@@ -89,6 +90,7 @@ class Diagnosis:
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
         geometry: What the run says of the machine's geometry.
+        faults: Mistakes in the description that would make the run fit.
         remarks: What else a user should know.
     """
 
@@ -103,6 +105,7 @@ class Diagnosis:
     detectable: tuple[Detectable, ...]
     plans: tuple[Plan, ...]
     geometry: LearntGeometry
+    faults: tuple[DescriptionFault, ...]
     remarks: tuple[Remark, ...]
 
     @property

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResidual, Plan, Step
+from diagnosis.files.fault_table import fault_table
 from diagnosis.files.geometry_table import geometry_table
 from diagnosis.fit import file_unit
 from diagnosis.residual import Condition, Region, Side
@@ -48,6 +49,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         "detectable": [_detectable(d) for d in result.detectable],
         "next_measurement": [_plan(p) for p in result.plans],
         "geometry": geometry_table(result.geometry),
+        "description_faults": fault_table(result.faults),
         "remarks": list(remarks),
     }
 
@@ -96,6 +98,7 @@ def comparison_table(
         "poses": [_group(g) for g in found.poses],
         "features": [_group(g) for g in found.features],
         "geometry": geometry_table(found.geometry),
+        "description_faults": fault_table(found.faults),
         "remarks": list(remarks),
     }
 

@@ -74,6 +74,7 @@ def _tell(args: argparse.Namespace, found: Comparison) -> None:
     from matstd.console import say
     from report.words import (
         comparison_sentence,
+        fault_sentences,
         ladder_sentence,
         noted_lines,
         region_words,
@@ -86,6 +87,8 @@ def _tell(args: argparse.Namespace, found: Comparison) -> None:
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
+    for sentence in fault_sentences(found.faults):
+        say(f"- {sentence}", style="bold")
     for line in (ladder_sentence(found.geometry), *noted_lines(found.geometry)):
         say(f"- {line}")
     for remark in found.remarks:

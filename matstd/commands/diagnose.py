@@ -118,6 +118,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
     from matstd.console import console, say
     from report.words import (
+        fault_sentences,
         ladder_sentence,
         noted_lines,
         remark_sentence,
@@ -137,6 +138,8 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     for step in result.steps:
         if step.effect is not None and step.confusion is not None and step.confusion.rivals:
             say(f"- {step.effect.name} cannot be told from {rivals_words(step, TOLD)}")
+    for sentence in fault_sentences(result.faults):
+        say(f"- {sentence}", style="bold")
     for line in (ladder_sentence(result.geometry), *noted_lines(result.geometry)):
         say(f"- {line}")
     for remark in result.remarks:

@@ -16,7 +16,12 @@ from report.pages.residual_section import (
     setting,
 )
 from report.plots import draw_on_standard, is_spread
-from report.words import comparison_sentence, remark_sentence, structure_words
+from report.words import (
+    comparison_sentence,
+    fault_sentences,
+    remark_sentence,
+    structure_words,
+)
 from twin.units import UM
 
 PAGE = "report.html"
@@ -50,6 +55,7 @@ def write_compare_page(
         title=title,
         found=found,
         sentence=comparison_sentence(found),
+        faults=fault_sentences(found.faults),
         remarks=[remark_sentence(r) for r in found.remarks],
         where=region_rows(found.where),
         structure=[{"words": structure_words(s), "p": s.p_value} for s in found.structure],

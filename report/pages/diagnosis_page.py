@@ -31,6 +31,7 @@ from report.plots import (
 )
 from report.style import series
 from report.words import (
+    fault_sentences,
     remark_sentence,
     sizes,
     structure_words,
@@ -81,6 +82,7 @@ def write_diagnosis_page(
         title=title,
         result=result,
         sentence=verdict_sentence(result),
+        faults=fault_sentences(result.faults),
         remarks=[remark_sentence(r) for r in result.remarks],
         where=region_rows(result.where),
         depends_on=[

@@ -17,6 +17,7 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
+from report.words.fault_words import fault_sentences
 from report.words.geometry_words import (
     correction_line,
     geometry_lines,
@@ -43,6 +44,7 @@ __all__ = [
     "comparison_sentence",
     "correction_line",
     "family_words",
+    "fault_sentences",
     "geometry_lines",
     "gist",
     "in_words",

@@ -7,11 +7,13 @@ the search and the reports know it from then on.
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
 from twin.effects.probe import ProbeRadius, normal_in_tool
-from twin.effects.setup_error import setup_errors
+from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 from twin.effects.thermal_lag import SPINDLE, ThermalLag
 
 __all__ = [
+    "SHIFT_SD",
     "SPINDLE",
+    "TURN_SD",
     "ComponentError",
     "HigherOrder",
     "LocationError",

@@ -85,11 +85,15 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     if not len(table):
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks: list[str] = []
-    run = _assemble(table, chain, head, remarks)
+    stated = run = _assemble(table, chain, head, remarks)
     if "dev_um" not in table:
         run, moved = aligned(run)
         remarks += [columns.moved_setup(m) for m in moved]
-    run = checked_run(run, table, remarks)
+    try:
+        run = checked_run(run, table, remarks)
+    except BadFile as refusal:
+        refusal.facts["run"] = stated  # for whoever can say which mistake makes it so
+        raise
     return replace(run, remarks=tuple(remarks))
 
 
