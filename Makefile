@@ -1,6 +1,7 @@
 # All set-up on a fresh machine with Python 3.11 or later, git and make:
 #   make design   the main job, into out/hsm600u
 #   make test     the tests
+#   make api      the pages of the Python interface, docs/api.md and out/api
 PYTHON ?= python3
 BIN := .venv/bin
 ifeq ($(OS),Windows_NT)
@@ -8,7 +9,7 @@ BIN := .venv/Scripts
 PYTHON = py -3
 endif
 
-.PHONY: design test proof lint benchmark clean
+.PHONY: design test proof lint benchmark api clean
 
 .venv/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
@@ -31,6 +32,10 @@ lint: .venv/installed
 
 benchmark: .venv/installed
 	$(BIN)/python -m benchmarks
+
+api: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[docs]"
+	$(BIN)/python docs/make_api.py
 
 clean:
 	$(PYTHON) -c "import shutil; [shutil.rmtree(d, ignore_errors=True) for d in ('.venv', 'build', 'out')]"

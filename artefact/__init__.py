@@ -2,9 +2,10 @@
 
 A standard is one body with freeform patches, datum spheres and a datum plane. From a project (the
 machine, its probe, the user's workspace, the errors that are expected, a blank and its limits)
-`place` makes the body and chooses the touches on it:
+`design_standard` makes the body and chooses the touches on it:
 
-    Project -> Blank, ProbeReach, Population -> place -> Placement (Standard, Requests, Criterion)
+    Project -> Blank, ProbeReach, Population -> design_standard -> Placement
+    Placement = Standard, Requests, Criterion, rivals, certificate
     Placement -> identifiability_report -> what the touches can and cannot know
     Standard -> write_standard -> standard.toml, which CAD and probing programs start from
 
@@ -30,7 +31,7 @@ from artefact.body import (
 from artefact.brief import Project, read_project
 from artefact.compare import IdentifiabilityReport, Rival, identifiability_report
 from artefact.layout import Blank, Fittings, Site, standard_from_sites
-from artefact.place import Placement, PlacementOptions, place
+from artefact.place import Placement, PlacementOptions, design_standard
 from artefact.reach import ProbeReach, Requests
 from artefact.worth import Criterion
 
@@ -56,9 +57,9 @@ __all__ = [
     "check",
     "constraints",
     "contact",
+    "design_standard",
     "graph_patch",
     "identifiability_report",
-    "place",
     "read_project",
     "read_standard",
     "standard_from_sites",

@@ -20,6 +20,7 @@ def run(name: str, *arguments: str) -> None:
 def main() -> None:
     """Run them all."""
     run("design_run")
+    run("design_machines")
     run("jacobians")
     run("montecarlo")
     run("placement_certificate")

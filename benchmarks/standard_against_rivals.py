@@ -14,7 +14,7 @@ import numpy as np
 from artefact.brief import read_project
 from artefact.compare import Rival
 from artefact.layout import Blank, Fittings
-from artefact.place import PlacementOptions, place
+from artefact.place import PlacementOptions, design_standard
 from artefact.reach import ProbeReach
 from artefact.worth import TouchOptions
 from probe_paths.plan import Probe
@@ -30,7 +30,7 @@ def rivals_of(seed: int) -> tuple[Rival, ...]:
     """The standard of one seed first, then what it is compared with."""
     project = read_project(PROJECT)
     probe = Probe(project.probe_radius, project.probe_length)
-    placement = place(
+    placement = design_standard(
         ProbeReach(project.chain, project.setup, probe.shape, probe.length),
         Blank(fittings=Fittings(sphere_heights=(60.0, 95.0, 130.0))),
         Workspace(project.chain, project.workspace, project.probe_length),

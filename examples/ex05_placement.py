@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from artefact.layout import Blank
-from artefact.place import PlacementOptions, place
+from artefact.place import PlacementOptions, design_standard
 from artefact.reach import ProbeReach
 from artefact.worth import TouchOptions
 from probe_paths.plan import Probe
@@ -28,7 +28,7 @@ def main():
     chain, probe = read_machine(HERE / "hsm600u-machine.toml"), Probe()
     reach = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     workspace = Workspace(chain, LIMITS, probe.length)
-    placed = place(reach, Blank(), workspace, np.random.default_rng(600), options=OPTIONS)
+    placed = design_standard(reach, Blank(), workspace, np.random.default_rng(600), options=OPTIONS)
     return {
         "placement": placed,
         "not predicted before any touch, µm": placed.prior_rms[0] / UM,

@@ -15,6 +15,7 @@ COMMANDS = {
     "import": "tables of instruments, CMMs and spreadsheets made a run file",
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
+    "new": "a commented minimal file to start from: machine, project, run or effect",
     "effects": "the effects that can be added, each with its formula and units",
 }
 
@@ -31,11 +32,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser(arguments)
     args = parser.parse_args(arguments)
-    from matstd.console import clean_stop
+    from matstd.stop import STOPPED, clean_stop, stopped_words
     from twin.errors import DesignError
 
     try:
-        with clean_stop():
+        with clean_stop(args.command):
             return int(args.run(args) or 0)
     except DesignError as error:
         print(f"matstd {args.command}: {error}", file=sys.stderr)
@@ -44,9 +45,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
         return 0
     except KeyboardInterrupt:
-        print(f"matstd {args.command}: stopped, and nothing half-written is left", file=sys.stderr)
-        return 130
-    except Exception as error:
+        print(stopped_words(args.command), file=sys.stderr)
+        return STOPPED
+    except (Exception, SystemExit) as error:
         theirs = _users_fault(error)
         if theirs is None:
             raise
@@ -54,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_BAD_INPUT
 
 
-def _users_fault(error: Exception) -> Exception | None:
+def _users_fault(error: BaseException) -> Exception | None:
     """A failure inside effects that the user wrote, as one line; None if it is our own."""
     from twin.library import users_fault, users_files, users_lines
 

@@ -11,47 +11,54 @@ import numpy as np
 from artefact.body import write_standard
 from artefact.brief import Project
 from artefact.compare import identifiability_report
-from artefact.place import Placement, place
+from artefact.place import Placement, design_standard
 from cad_out.verify import export_standard
-from diagnosis.answer import probed_volume, prove
+from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.fit import fit_run
-from matstd.from_project import blank, placement_options, probe, probe_reach
+from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
+from matstd.reach import check_reach
 from matstd.streams import streams
 from probe_paths.campaign import VirtualMachine, simulate
 from probe_paths.emit import make_programs
-from probe_paths.plan import PlanOptions, TouchPlan, plan_touches
+from probe_paths.plan import TouchPlan, plan_touches
+from report.identifiability import write_identifiability, write_identification
 from report.maps import draw_maps, draw_path
 from report.pages import Design, Proven
-from report.words import write_identifiability, write_identification
-from sensitivity.first_order import Workspace
-from sensitivity.montecarlo import Crew
-from sensitivity.population import Population, drawn_errors
+from report.words import sampling_words
+from sensitivity.first_order import Workspace, latin_hypercube
+from sensitivity.montecarlo import Workers
+from sensitivity.population import drawn_errors
 from sensitivity.study import run_study, write_study
 from twin.compute import Progress
 from twin.files import errors_toml, write_run, write_whole
+from twin.frames import Array
 from twin.model import contribution
+from twin.record import at_poses
 
 PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""
 
 
-def design(project: Project, folder: Path, progress: Progress, crew: Crew = None) -> Design:
+def design(project: Project, folder: Path, progress: Progress, workers: Workers = None) -> Design:
     """Run all stages and write their files into a folder.
 
     Args:
         project: What shall be designed, for which machine.
         folder: Empty folder.
         progress: Told what is going on.
-        crew: Who draws the random machines of the maps; None for this process.
+        workers: Who draws the random machines of the maps; None for this process.
 
     Raises:
         DesignError: A stage that cannot do its work; its message says which constraint binds.
     """
     rng = streams(project.seed)
+    progress("reach", 0, 1)
+    poses = check_reach(project, folder)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
-    placement = _placement(project, workspace, rng.placement, progress)
+    placement = _placement(project, workspace, rng.placement, progress, poses)
+    plan = _plan(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
     progress("what can be told apart", 0, 1)
     known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
@@ -65,21 +72,21 @@ def design(project: Project, folder: Path, progress: Progress, crew: Crew = None
         progress=progress,
         tolerance=project.tolerance,
         digits=project.digits,
-        crew=crew,
+        workers=workers,
     )
-    write_study(study, folder / "sensitivity")
+    write_study(study, folder / "sensitivity", sampling_words(study.volumetric))
     maps = draw_maps(study, folder / "sensitivity", rng.maps)
     maps += draw_path(study, folder / "sensitivity")
     progress("STEP and STL", 0, 1)
     conformity = export_standard(placement.standard, folder)
     progress("probing programs", 0, 1)
-    plan = _plan(project, placement)
     programs = make_programs(plan)
     paths = programs.write(folder / "programs")
     machines = []
     for seed in range(project.machines):
         progress("proof on the twin", seed, project.machines)
-        machines.append(_prove(project, population, placement, paths, seed, rng.proof.spawn(1)[0]))
+        machine = _prove(project, workspace, placement, paths, seed, rng.proof.spawn(1)[0])
+        machines.append(machine)
     first = machines[0]
     write_whole(folder / "errors.toml", errors_toml(first.errors))
     write_run(folder / "run.csv", first.campaign.run, "machine.toml")
@@ -100,10 +107,14 @@ def design(project: Project, folder: Path, progress: Progress, crew: Crew = None
 
 
 def _placement(
-    project: Project, workspace: Workspace, rng: np.random.Generator, progress: Progress
+    project: Project,
+    workspace: Workspace,
+    rng: np.random.Generator,
+    progress: Progress,
+    poses: Array | None = None,
 ) -> Placement:
     """Standard and touches for the project's machine."""
-    return place(
+    return design_standard(
         probe_reach(project),
         blank(project),
         workspace,
@@ -111,6 +122,7 @@ def _placement(
         project.population,
         placement_options(project),
         progress,
+        poses,
     )
 
 
@@ -122,20 +134,21 @@ def _plan(project: Project, placement: Placement) -> TouchPlan:
         probe(project),
         project.setup,
         placement.requests,
-        PlanOptions(table_radius=project.limits.table_radius_mm),
+        plan_options(project),
     )
 
 
 def _prove(
     project: Project,
-    population: Population,
+    workspace: Workspace,
     placement: Placement,
     programs: list[Path],
     seed: int,
     rng: np.random.Generator,
 ) -> Proven:
     """Probe one random machine by the text of the programs, identify it, compare with its truth."""
-    rng_errors, rng_noise, rng_poses = rng.spawn(3)
+    rng_errors, rng_noise, rng_volume, rng_workspace = rng.spawn(4)
+    population = project.population
     errors = drawn_errors(population, rng_errors)
     machine = VirtualMachine(
         project.chain, lambda touches: contribution(errors, touches), noise=project.noise
@@ -143,5 +156,15 @@ def _prove(
     table = project.limits.table_radius_mm
     campaign = simulate(programs, placement.standard, machine, rng_noise, table_radius=table)
     fit = fit_run(campaign.run, population.expected())
-    poses = probed_volume(campaign.run, PROOF_POSES, rng_poses)
-    return Proven(seed, errors, campaign, fit, prove(fit, errors, project.setup, poses))
+    in_volume = probed_volume(campaign.run, PROOF_POSES, rng_volume)
+    q = latin_hypercube(workspace, PROOF_POSES, rng_workspace)
+    believed = campaign.run.touches.setups[0]
+    in_workspace = seen_from(at_poses(project.chain, q, project.probe_length), believed)
+    return Proven(
+        seed=seed,
+        errors=errors,
+        campaign=campaign,
+        fit=fit,
+        proof=prove(fit, errors, project.setup, in_volume),
+        in_workspace=prove(fit, errors, project.setup, in_workspace),
+    )

@@ -6,17 +6,36 @@ from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
 from artefact.reach import ProbeReach
 from artefact.worth import CriterionOptions, TouchOptions
-from probe_paths.plan import Probe
+from probe_paths.plan import PlanOptions, Probe
 from twin.units import DEG, KG_M3
 
 _LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
 """Of the sphere centres above the seat, mm and as a share of the blank's height: as far apart as
 base and patches leave room for."""
 
+_ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
+"""Largest gap kept round the probe, mm, and the same as a share of the ball's radius."""
+
 
 def probe(project: Project) -> Probe:
     """The probe in the spindle."""
     return Probe(project.probe_radius, project.probe_length)
+
+
+def plan_options(project: Project) -> PlanOptions:
+    """How carefully touches are made: with half the room that they are chosen for."""
+    return PlanOptions(
+        smallest_gap=0.5 * _room(project), table_radius=project.limits.table_radius_mm
+    )
+
+
+def _room(project: Project) -> float:
+    """Gap between the probe above its ball and anything solid, mm.
+
+    The stylus has two thirds of the ball's radius, so that beside a face it has a third of it and
+    never more: what a ball of 3 mm is given would bar a smaller one from every touch.
+    """
+    return min(_ROOM, _ROOM_OF_BALL * project.probe_radius)
 
 
 def probe_reach(project: Project) -> ProbeReach:
@@ -27,6 +46,7 @@ def probe_reach(project: Project) -> ProbeReach:
         project.setup,
         tool.shape,
         tool.length,
+        room=_room(project),
         table_radius=project.limits.table_radius_mm,
     )
 

@@ -8,9 +8,9 @@ from artefact.brief import Project
 from matstd.streams import streams
 from report.maps import draw_maps, draw_path
 from report.pages import write_study_page
-from report.words import study_words
+from report.words import sampling_words, study_words
 from sensitivity.first_order import Workspace
-from sensitivity.montecarlo import Crew
+from sensitivity.montecarlo import Workers
 from sensitivity.study import run_study, write_study
 from twin.compute import Progress
 from twin.errors import BadFile
@@ -19,7 +19,7 @@ from twin.frames import Array
 
 
 def study_project(
-    project: Project, poses_file: str | None, folder: Path, progress: Progress, crew: Crew
+    project: Project, poses_file: str | None, folder: Path, progress: Progress, workers: Workers
 ) -> list[str]:
     """Data, pictures and page of a study, written into a folder.
 
@@ -28,7 +28,7 @@ def study_project(
         poses_file: Where the machines are looked at; None for poses of the project's workspace.
         folder: Empty folder.
         progress: Told what is going on.
-        crew: Who draws the machines; None for this process.
+        workers: Who draws the machines; None for this process.
 
     Returns:
         What could not be drawn, and the figures, one line each.
@@ -47,10 +47,10 @@ def study_project(
         progress=progress,
         tolerance=project.tolerance,
         digits=project.digits,
-        crew=crew,
+        workers=workers,
     )
     progress("maps", 0, 1)
-    write_study(study, folder)
+    write_study(study, folder, sampling_words(study.volumetric))
     shown = draw_maps(study, folder, rng.maps) + draw_path(study, folder)
     remarks = write_study_page(study, folder, shown, str(project.path))
     return [*remarks, *study_words(study)]

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sensitivity.montecarlo import Crew
+    from sensitivity.montecarlo import Workers
 
 
 def add_scheduler(parser: argparse.ArgumentParser) -> None:
@@ -22,7 +22,7 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def connected(address: str | None) -> Iterator[Crew]:
+def connected(address: str | None) -> Iterator[Workers]:
     """The workers at an address; nobody but this process without one.
 
     Raises:

@@ -1,4 +1,54 @@
-"""Where the errors of a machine show, and how surely: Monte Carlo over error distributions."""
+"""Where the errors of a machine show, and how surely: from error distributions to maps.
+
+In: a machine (`twin`), what is expected of its errors (`Population`), where it works (`Workspace`).
+Out: a `Study`, or its pieces: Jacobians and sensitivities of every error parameter, shares of the
+variance and the volumetric error without sampling (`first_order`), the volumetric error of random
+machines with the standard error of every figure (`montecarlo`), total effects and regions
+(`shares`), trajectories and volumes (`study`).
+
+    population = Population(chain)
+    study = run_study(population, Workspace(chain), 2000, 10_000, np.random.default_rng(1))
+    study.ranking()                                    # [("EBZ", 0.13), ...]
+
+Everything is in mm and rad; nothing here knows of standards or measurements. A distribution or a
+dependence of errors goes into `population`, a figure of random machines into `montecarlo.tally`, a
+way to name parts of a workspace into `shares`.
+"""
+
+from sensitivity.first_order import (
+    Workspace,
+    jacobian,
+    latin_hypercube,
+    normal_length,
+    rms,
+    sensitivity,
+    variance_shares,
+)
+from sensitivity.montecarlo import Volumetric, volumetric
+from sensitivity.population import Distributions, Population, drawn_errors
+from sensitivity.shares import norm_shares, regions
+from sensitivity.study import Study, along_path, paper_trajectory, run_study
 
 PARTS = ("population", "first_order", "montecarlo", "shares", "study")
 """From bottom to top: each imports only from those before it."""
+
+__all__ = [
+    "Distributions",
+    "Population",
+    "Study",
+    "Volumetric",
+    "Workspace",
+    "along_path",
+    "drawn_errors",
+    "jacobian",
+    "latin_hypercube",
+    "norm_shares",
+    "normal_length",
+    "paper_trajectory",
+    "regions",
+    "rms",
+    "run_study",
+    "sensitivity",
+    "variance_shares",
+    "volumetric",
+]

@@ -69,7 +69,7 @@ def contact(
     start: Array,
     direction: Array,
     radius: float,
-    travel: float = np.inf,
+    travel: float | Array = np.inf,
 ) -> Contact:
     """First contact of moving balls with the whole standard, on its exact shapes.
 
@@ -82,7 +82,7 @@ def contact(
         start: Ball centres, shape (N, 3), artefact frame, mm.
         direction: Of travel, shape (N, 3) or (3,).
         radius: Of the ball, mm.
-        travel: Longest way looked at, mm.
+        travel: Longest way looked at, mm; one for all or (N,).
 
     Returns:
         The first contact of every ball.
@@ -101,7 +101,7 @@ def contact(
     return _result(standard, race, travel)
 
 
-def _result(standard: Standard, race: _Race, travel: float) -> Contact:
+def _result(standard: Standard, race: _Race, travel: float | Array) -> Contact:
     begins = race.travel <= -NM
     race.meeting[begins] = Meeting.INSIDE
     inside = race.meeting == Meeting.INSIDE

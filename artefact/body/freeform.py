@@ -30,16 +30,6 @@ class ErrorShare(NamedTuple):
     share: float
 
 
-class Derivatives(NamedTuple):
-    """First and second derivatives of the surface point, each (N, 3), artefact frame."""
-
-    du: Array
-    dv: Array
-    duu: Array
-    duv: Array
-    dvv: Array
-
-
 @dataclass(frozen=True, eq=False)
 class FreeformPatch:
     """A freeform face of the standard, and the column that carries it.
@@ -115,19 +105,6 @@ class FreeformPatch:
     def normal(self, uv: Array) -> Array:
         """Outward unit normals, (N, 3), artefact frame."""
         return turn(self.T_artefact_patch, graph_normal(self.jet(uv)))
-
-    def derivatives(self, uv: Array) -> Derivatives:
-        """Derivatives of `point` to the second order, each (N, 3), artefact frame."""
-        j = self.jet(uv)
-        one, nil = np.ones_like(j.h), np.zeros_like(j.h)
-        local = (
-            [one, nil, j.hu],
-            [nil, one, j.hv],
-            [nil, nil, j.huu],
-            [nil, nil, j.huv],
-            [nil, nil, j.hvv],
-        )
-        return Derivatives(*(turn(self.T_artefact_patch, np.column_stack(d)) for d in local))
 
     def curvature(self, uv: Array) -> Array:
         """Principal curvatures, (N, 2), 1/mm, largest first; positive = concave from outside."""

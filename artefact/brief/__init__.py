@@ -5,6 +5,6 @@ field of one of the tables, and a check beside it if it can contradict another.
 """
 
 from artefact.brief.project_file import Project, read_project
-from artefact.brief.standard_tables import BASE_THICKNESS, CORNER_RADIUS
+from artefact.brief.standard_tables import BASE_THICKNESS, CORNER_RADIUS, StandardTable
 
-__all__ = ["BASE_THICKNESS", "CORNER_RADIUS", "Project", "read_project"]
+__all__ = ["BASE_THICKNESS", "CORNER_RADIUS", "Project", "StandardTable", "read_project"]

@@ -4,6 +4,7 @@ In: a criterion and the touches of a design. Out: the figures of every `Rival`, 
 can and cannot know (`IdentifiabilityReport`), with what would resolve it.
 """
 
+from artefact.compare.alternatives import Alternative
 from artefact.compare.comparison import Rival, compare, evaluated, prior_rms, random_lots
 from artefact.compare.identifiability import (
     Alone,
@@ -13,6 +14,7 @@ from artefact.compare.identifiability import (
 
 __all__ = [
     "Alone",
+    "Alternative",
     "IdentifiabilityReport",
     "Rival",
     "compare",

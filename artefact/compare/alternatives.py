@@ -60,14 +60,14 @@ class Alternative:
         rank_gained: Combinations of machine errors that are seen beyond those seen now.
         variance_ratio: Mean predicted variance of the tool point, over that of as many touches as
             now; below one is better.
-        words: The same in words.
+        refusal: Why the machine cannot do it, in one line; empty where it can.
     """
 
     name: str
     is_possible: bool
     rank_gained: int
     variance_ratio: float
-    words: str
+    refusal: str = ""
 
 
 def other_setups(criterion: Criterion) -> dict[str, ProbeReach]:
@@ -146,17 +146,10 @@ def alternatives(
         try:
             found = _bought(criterion, requests, half, other, rng)
         except DesignError as error:
-            out.append(Alternative(name, False, 0, 1.0, f"{name}: {error}"))
+            out.append(Alternative(name, False, 0, 1.0, str(error)))
             continue
         gained, ratio = found[0] - base[0], found[1] / base[1]
-        words = (
-            f"{name}: {gained} more combinations of machine errors seen"
-            if gained
-            else f"{name}: no combination more is seen"
-        )
-        change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
-        words += f"; mean predicted variance of the tool point {change} at equal touches"
-        out.append(Alternative(name, True, gained, ratio, words))
+        out.append(Alternative(name, True, gained, ratio))
     return tuple(out)
 
 

@@ -18,6 +18,7 @@ from artefact.worth import (
 )
 from information.criteria import DesignCriterion, Posterior, prior_sd_of_tip
 from information.selection import Selection, exchange, fill
+from twin.errors import NotReachable
 from twin.frames import Array
 
 _TRIED = 3000  # touches that the ideal scatter may choose from
@@ -40,6 +41,8 @@ class Rival:
         visible: Effects of the library, of those that any touches could show, that these show.
         could_be_visible: Number of effects that any touches could show.
         touches: What it is judged by.
+        available: Number of different touches among which they were chosen; with fewer than are
+            compared, some are made more than once.
         body: What is touched; None for scatter that no body has.
     """
 
@@ -53,6 +56,7 @@ class Rival:
     visible: int
     could_be_visible: int
     touches: Requests
+    available: int
     body: Standard | None = None
 
 
@@ -62,6 +66,7 @@ def evaluated(
     chosen: Requests,
     random: list[Requests],
     library: Visibility,
+    available: int,
     body: Standard | None = None,
 ) -> Rival:
     """Figures of one artefact after its touches.
@@ -72,6 +77,7 @@ def evaluated(
         chosen: Its touches.
         random: Lots of touches taken at random on it, as many in each.
         library: Effects of the library that touches could show.
+        available: Number of different touches among which they were chosen.
         body: What is touched; None for scatter that no body has.
     """
     after = _posterior(criterion, chosen)
@@ -91,8 +97,13 @@ def evaluated(
         visible=library.shown(criterion, chosen),
         could_be_visible=len(library.effects),
         touches=chosen,
+        available=available,
         body=body,
     )
+
+
+def _different(tried: Requests) -> int:
+    return len(np.unique(np.column_stack([tried.point, tried.rotary]), axis=0))
 
 
 def _posterior(criterion: Criterion, touches: Requests) -> Posterior:
@@ -122,7 +133,7 @@ def compare(
     options: TouchOptions,
     library: Visibility,
     rng: np.random.Generator,
-) -> tuple[Rival, ...]:
+) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
     """Other artefacts at as many touches: bodies that people have, and scatter that nobody has.
 
     Bodies choose their own table poses and touches as the standard does, and the probe needs the
@@ -137,21 +148,32 @@ def compare(
         options: Numbers of touches and poses.
         library: Effects of the library that touches could show.
         rng: Source of the random numbers.
+
+    Returns:
+        The artefacts, and the names of those that this machine can make no touch on.
     """
-    out = []
+    out, unreachable = [], []
     for name, body in rivals(criterion.volume, blank, rng).items():
-        own = chosen_poses(criterion.plain, body, all_poses, options)
-        tried = some_touches(criterion, body, own, options, rng)
+        try:
+            own = chosen_poses(criterion.plain, body, all_poses, options)
+            tried = some_touches(criterion, body, own, options, rng)
+        except NotReachable:
+            unreachable.append(name)
+            continue
         lots = random_lots(tried, options.touches, rng)
         chosen = chosen_touches(criterion, criterion.objective, tried, options)
-        out.append(evaluated(name, criterion, chosen, lots, library, body))
+        out.append(evaluated(name, criterion, chosen, lots, library, _different(tried), body))
     tried = _scatter(criterion, poses, rng)
     lots = random_lots(tried, options.touches, rng)
     for name, objective in (("I", criterion.objectives["I"]), ("D", criterion.objectives["D"])):
         chosen = chosen_touches(criterion, objective, tried, options)
-        out.append(evaluated(f"ideal scatter, chosen by {name}", criterion, chosen, lots, library))
-    out.append(evaluated("ideal scatter, at random", criterion, lots[0], lots, library))
-    return tuple(out)
+        out.append(
+            evaluated(
+                f"ideal scatter, chosen by {name}", criterion, chosen, lots, library, len(tried)
+            )
+        )
+    out.append(evaluated("ideal scatter, at random", criterion, lots[0], lots, library, len(tried)))
+    return tuple(out), tuple(unreachable)
 
 
 def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[Requests]:

@@ -6,6 +6,7 @@ each other, and whole standards. A further rival is one more entry in `rivals`.
 
 from artefact.layout.candidates import (
     CONTROL,
+    RINGS,
     STEEPEST,
     TALLEST,
     neighbours_fit,
@@ -17,6 +18,7 @@ from artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard
 
 __all__ = [
     "CONTROL",
+    "RINGS",
     "STEEPEST",
     "TALLEST",
     "Blank",

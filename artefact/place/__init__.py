@@ -4,6 +4,6 @@ In: `ProbeReach`, `Blank`, workspace, population. Out: a `Placement`: the standa
 every limit, its touches, the criterion they were chosen by, its rivals, and a certificate.
 """
 
-from artefact.place.placement import Placement, PlacementOptions, place
+from artefact.place.placement import Placement, PlacementOptions, design_standard
 
-__all__ = ["Placement", "PlacementOptions", "place"]
+__all__ = ["Placement", "PlacementOptions", "design_standard"]

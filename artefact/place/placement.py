@@ -23,7 +23,7 @@ from artefact.layout import (
     standard_from_sites,
 )
 from artefact.place.shaping import with_optimised_shapes
-from artefact.reach import ProbeReach, Requests, joined
+from artefact.reach import ProbeReach, Requests, joined, spread_poses
 from artefact.worth import (
     Criterion,
     CriterionOptions,
@@ -49,7 +49,7 @@ from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
 from twin.units import UM
 
-__all__ = ["Placement", "PlacementOptions", "place"]
+__all__ = ["Placement", "PlacementOptions", "design_standard"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
 _REBUILDS = 8  # choices of sites tried before giving up
@@ -91,6 +91,7 @@ class Placement:
         rivals: This standard first, then other artefacts at as many touches.
         certificate: How near the touches are to the best choice among all that could be made on the
             standard at its table poses and that keep the same shares of poses, spheres, patches.
+        unreachable: Artefacts that are not compared: this machine can make no touch on them.
     """
 
     standard: Standard
@@ -99,6 +100,7 @@ class Placement:
     prior_rms: tuple[float, float]
     rivals: tuple[Rival, ...]
     certificate: Certificate
+    unreachable: tuple[str, ...] = ()
 
     @property
     def own(self) -> Rival:
@@ -106,7 +108,7 @@ class Placement:
         return self.rivals[0]
 
 
-def place(
+def design_standard(
     reach: ProbeReach,
     blank: Blank,
     workspace: Workspace,
@@ -114,6 +116,7 @@ def place(
     population: Population | None = None,
     options: PlacementOptions | None = None,
     progress: Progress = silent,
+    poses_to_try: Array | None = None,
 ) -> Placement:
     """Design a standard for a machine.
 
@@ -127,6 +130,7 @@ def place(
             the ordinary ones.
         options: How much is tried and chosen.
         progress: Told what is being done.
+        poses_to_try: Table poses to choose from, (K, R), rad; None for a grid over the workspace.
 
     Raises:
         NotBuildable: The blank is larger than the table, or no choice of sites meets every limit;
@@ -149,7 +153,7 @@ def place(
         population,
     )
     progress("placement", 1, 6)
-    all_poses = table_poses(criterion, choice.poses)
+    all_poses = table_poses(criterion, choice.poses) if poses_to_try is None else poses_to_try
     standard = _standard(criterion.plain, blank, all_poses, options, rng)
     progress("placement", 3, 6)
     poses = chosen_poses(criterion.plain, standard, all_poses, choice)
@@ -165,8 +169,10 @@ def place(
     )
     library = visibility(criterion, free)
     lots = random_lots(tried, len(requests), rng)
-    own = evaluated(f"standard {options.name}", criterion, requests, lots, library, standard)
-    rivals = compare(criterion, all_poses, poses, blank, choice, library, rng)
+    own = evaluated(
+        f"standard {options.name}", criterion, requests, lots, library, len(tried), standard
+    )
+    rivals, unreachable = compare(criterion, all_poses, poses, blank, choice, library, rng)
     progress("placement", 6, 6)
     return Placement(
         standard=standard,
@@ -175,6 +181,7 @@ def place(
         prior_rms=prior_rms(criterion),
         rivals=(own, *rivals),
         certificate=nearness,
+        unreachable=unreachable,
     )
 
 
@@ -198,8 +205,7 @@ def _standard(
     """Choose sites until the whole body meets every limit."""
     sites = random_sites(blank, options.sites, rng)
     fits = neighbours_fit(sites, blank)
-    # spread over the list without the rhythm of its grid
-    few = poses[np.unique((np.arange(20) * 0.618034 % 1.0 * len(poses)).astype(np.int64))]
+    few = spread_poses(poses, 20)
     wanted = joined([_face_touches(f"{i}", site, blank.base, few) for i, site in enumerate(sites)])
     wanted = wanted[criterion.reach.is_reachable(wanted)]
     if not len(wanted):

@@ -5,6 +5,7 @@ those that can be made, the reason against each of the others, axis readings, an
 twin's effects understand them. A new hindrance is one more look in `ProbeReach`.
 """
 
+from artefact.reach.face_of_table import table_face
 from artefact.reach.probe_clearance import (
     TABLE_RADIUS,
     TABLE_THICKNESS,
@@ -13,15 +14,32 @@ from artefact.reach.probe_clearance import (
     clearance_on_table,
 )
 from artefact.reach.touchable import Mask, ProbeReach, Requests, joined
+from artefact.reach.within_reach import (
+    ANGLE,
+    Limit,
+    PlacesInReach,
+    places_on,
+    reach_of,
+    spread_poses,
+    turned,
+)
 
 __all__ = [
+    "ANGLE",
     "TABLE_RADIUS",
     "TABLE_THICKNESS",
+    "Limit",
     "Mask",
+    "PlacesInReach",
     "ProbeReach",
     "ProbeShape",
     "Requests",
     "clearance",
     "clearance_on_table",
     "joined",
+    "places_on",
+    "reach_of",
+    "spread_poses",
+    "table_face",
+    "turned",
 ]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.body import Plate, Standard, rows, unit
+from artefact.reach.face_of_table import table_face
 from twin.errors import ShapeMismatch
 from twin.frames import Array, apply, inverse, turn
 
@@ -181,22 +182,24 @@ def clearance_on_table(
         T_table_tool: Of which the rotation tells the tool axis, shape (N, 4, 4).
         centre: Ball centres, table frame, shape (N, 3), mm.
         probe: Stylus, stem and body.
-        table: In the table frame.
+        table: With the table's face at height zero (`table_face`).
         enough: Room beyond which the exact figure does not matter, mm.
 
     Returns:
         Room and the nearest body, which may be `the table`.
     """
     T_artefact_table = inverse(T_table_artefact)
+    T_face_table = inverse(table_face(T_table_artefact))
     axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
     near = clearance(standard, apply(T_artefact_table, centre), axis, probe, enough)
     above = np.full(len(centre), -np.inf)
     for places, radii in (probe.rough_cover(), probe.fine_cover()):
         tight = np.flatnonzero(above < enough)
         balls = centre[tight, None] + turn(T_table_tool[tight, None], places)
-        gap = table.distance(balls.reshape(-1, 3)).reshape(len(tight), len(radii)) - radii
+        balls = apply(T_face_table, balls.reshape(-1, 3))
+        gap = table.distance(balls).reshape(len(tight), len(radii)) - radii
         above[tight] = np.maximum(above[tight], gap.min(axis=1, initial=np.inf))
-    above = np.minimum(above, table.distance(centre) - probe.ball_radius)
+    above = np.minimum(above, table.distance(apply(T_face_table, centre)) - probe.ball_radius)
     on_table = above < near.distance
     return Clearance(
         np.where(on_table, above, near.distance),

@@ -3,6 +3,7 @@
 Whoever chooses touches and whoever plans them asks here; they differ only in the margins they want.
 """
 
+from collections import Counter
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -26,7 +27,7 @@ Mask = NDArray[np.bool_]
 _WORDS = "U200"  # of a reason
 _LIFT = 400.0  # mm the ball comes down from, far above any standard
 _WIDER = 1.0  # mm added to the ball on its way down
-_ROUNDING = (
+ROUNDING = (
     1e-9  # mm or rad: a reading at the very end of a travel is inside, whatever its last digit
 )
 
@@ -139,6 +140,26 @@ class ProbeReach:
             along=along,
         )
 
+    def everywhere(
+        self, point: Array, normal: Array, poses: Array, gap: float = 0.0
+    ) -> tuple[Array, Array]:
+        """Every one of N places (N, 3) at every one of K table poses (K, R).
+
+        Returns:
+            Readings of the linear axes as of `readings`, (N, K, 3), and the angle between normal
+            and tool axis, (N, K), rad.
+        """
+        k = len(poses)
+        nowhere = np.zeros((k, 3))
+        at = self._pose_kinematics(Requests(np.full(k, ""), nowhere, nowhere, poses))
+        i, place = at.index, self.setup.T_table_artefact
+        linear = [self.chain.axis_index(name) for name in self.chain.linear_axes]
+        target = apply(place, point + (self.radius + gap) * normal)
+        way = target[:, None] - at.tip[i]
+        q = at.q[i][:, linear] + np.einsum("kij,nkj->nki", at.inverse[i], way)
+        cosine = turn(place, normal) @ at.T_table_tool[i, :3, 2].T
+        return q, np.arccos(np.clip(cosine, -1.0, 1.0))
+
     def touches(self, wanted: Requests) -> Touches:
         """The touches as a record that effects understand."""
         n, q = len(wanted), self.readings(wanted)
@@ -161,7 +182,7 @@ class ProbeReach:
     def is_reachable(self, wanted: Requests) -> Mask:
         """Touches within the angle to the tool axis and within every travel, (N,)."""
         good: Mask = self._lean(wanted) >= np.cos(self.steepest)
-        for gap in self._gaps:
+        for gap in self.gaps:
             good &= (self._outside(self.readings(wanted, gap)) == 0.0).all(axis=1)
         return good
 
@@ -175,6 +196,19 @@ class ProbeReach:
         good: Mask = self._room(standard, wanted, 0.0).distance >= self.room
         return good
 
+    def against(self, standard: Standard, wanted: Requests) -> str:
+        """What is against touches none of which has room, or that are none, in words."""
+        if not len(wanted):
+            angle = self.steepest / DEG
+            return f"none is within {angle:g} degrees of the tool axis and within every travel"
+        near = self._room(standard, wanted, 0.0)
+        name, count = Counter(near.body.tolist()).most_common(1)[0]
+        return (
+            f"the probe comes nearer than {self.room:g} mm to {name} at "
+            f"{100.0 * count / len(wanted):.0f} % of those within its angle and travels; nearest "
+            f"miss {self.room - float(near.distance.max()):.2f} mm"
+        )
+
     def reasons(self, standard: Standard, wanted: Requests) -> Labels:
         """The first thing that is against each touch, in words; empty where nothing is, (N,)."""
         reason = np.full(len(wanted), "", dtype=_WORDS)
@@ -186,7 +220,7 @@ class ProbeReach:
         return reason
 
     @property
-    def _gaps(self) -> tuple[float, float, float]:
+    def gaps(self) -> tuple[float, float, float]:
         """Between ball and surface at the start of a touch, at the contact, at the search's end."""
         return (self.standoff, 0.0, -self.search)
 
@@ -202,7 +236,7 @@ class ProbeReach:
     def _outside(self, q: Array) -> Array:
         """How far readings (N, A) are beyond the ends of their travels, (N, A), mm and rad."""
         low, high = np.array([self.chain.link(name).range for name in self.chain.axes]).T
-        beyond: Array = np.maximum(np.maximum(low - q, q - high) - _ROUNDING, 0.0)
+        beyond: Array = np.maximum(np.maximum(low - q, q - high) - ROUNDING, 0.0)
         return beyond
 
     def _out_of_reach(self, one: Requests) -> str:
@@ -211,7 +245,7 @@ class ProbeReach:
         if cosine < np.cos(self.steepest):
             angle = np.arccos(np.clip(cosine, -1.0, 1.0)) / DEG
             return f"the surface leans {angle:.1f} degrees from the tool axis"
-        for gap in self._gaps:
+        for gap in self.gaps:
             q = self.readings(one, gap)
             for i in np.flatnonzero(self._outside(q)[0]):
                 link = self.chain.link(self.chain.axes[i])

@@ -1,4 +1,11 @@
-"""Which table poses, and which touches in them, tell most on a standard that is there."""
+"""Which table poses, and which touches in them, tell most on a standard that is there.
+
+Table poses come from a grid of rotary readings: for each the best few touches on every face and
+sphere are taken, and the poses are chosen one after the other by what theirs add. At the chosen
+poses all touches on a grid of each face that machine and probe can make are candidates; the relaxed
+problem, in which a touch may be made by halves, bounds what any choice of them can reach, and its
+heaviest touches, exchanged until nothing is gained, are the choice.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -11,6 +18,7 @@ from information.selection import Certificate, Quota, best_groups, heaviest, rel
 from twin.compute import blocks
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
+from twin.machine import Chain
 from twin.units import DEG
 
 _PITCHES = (5, 9, 15)  # points each way on a face
@@ -50,8 +58,17 @@ def table_poses(criterion: Criterion, wanted: int) -> Array:
     The values of each later axis are shifted from one value of the earlier ones to the next, so
     that the whole grid holds many different readings of each.
     """
-    chain, limits = criterion.reach.chain, []
-    for name, (low, high) in zip(chain.rotary_axes, criterion.rotary, strict=True):
+    return poses_within(criterion.reach.chain, criterion.rotary, wanted)
+
+
+def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:
+    """The same for smallest and largest readings of the rotary axes, (R, 2), rad.
+
+    Raises:
+        NotReachable: Limits without room to approach a reading from both sides.
+    """
+    limits = []
+    for name, (low, high) in zip(chain.rotary_axes, rotary, strict=True):
         travel = chain.link(name).range
         limits.append((max(low, travel[0] + _OVERSHOOT), min(high, travel[1] - _OVERSHOOT)))
         if limits[-1][0] > limits[-1][1]:
@@ -118,9 +135,13 @@ def chosen_poses(
     """Table poses whose touches tell most, (K, R)."""
     tried = touches_at(standard, poses, pitch=3)
     tried = tried[criterion.reach.is_reachable(tried)]
+    reached = tried
     tried = tried[criterion.reach.has_room(standard, tried)]  # the way there is looked at later
     if not len(tried):
-        raise NotReachable("the machine reaches no touch on the standard at any table pose")
+        raise NotReachable(
+            "the machine reaches no touch on the standard at any table pose: "
+            + criterion.reach.against(standard, reached)
+        )
     seen, group = np.unique(np.round(tried.rotary, 9), axis=0, return_inverse=True)
     take = max(4, options.touches // options.poses)
     chosen = best_groups(
@@ -149,7 +170,13 @@ def some_touches(
     options: TouchOptions,
     rng: np.random.Generator,
 ) -> Requests:
-    """Touches that can be made, drawn from the finest grid until a choice has enough."""
+    """Touches that can be made, drawn from the finest grid until a choice has enough.
+
+    Where fewer can be made than are wanted, each may be chosen more than once.
+
+    Raises:
+        NotReachable: None can be made.
+    """
     tried = touches_at(standard, poses, _PITCHES[-1])
     tried = tried[criterion.reach.is_reachable(tried)]
     tried = tried[rng.permutation(len(tried))]
@@ -158,12 +185,10 @@ def some_touches(
         found.append(tried[rows][criterion.reach.is_clear(standard, tried[rows])])
         if sum(map(len, found)) >= _CHOICE * options.touches:
             break
-    if sum(map(len, found)) < options.touches:
-        raise NotReachable(
-            f"{sum(map(len, found))} touches can be made on '{standard.name}', "
-            f"{options.touches} are wanted"
-        )
-    return joined(found)
+    made = sum(map(len, found))
+    if not made:
+        raise NotReachable(f"no touch can be made on '{standard.name}'")
+    return joined(found * -(-options.touches // made))
 
 
 def pose_quota(tried: Requests, count: int) -> Quota:

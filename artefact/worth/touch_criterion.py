@@ -1,7 +1,16 @@
-"""What touches on a standard are worth: how well the tool point can be predicted after them."""
+"""What touches on a standard are worth: how well the tool point can be predicted after them.
+
+A touch is a row: what every expected error does to the deviation along its normal, in units of the
+touch's noise and of the error's own expected size. After touches with rows W the parameters have
+the covariance ``(1 + W^T W)^-1`` in those units, and the tool point at a pose has that of its own
+rows. A criterion condenses it into one number over many poses of the probed volume and of the
+user's workspace. The workpiece's set-up is a free parameter like any other: nobody knows where
+exactly the standard stands, and what is predicted is the tool relative to the workpiece.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +29,7 @@ from sensitivity.first_order import Box, Workspace, latin_hypercube
 from sensitivity.population import Population, drawn_scales
 from twin.compute import blocks
 from twin.errors import DesignError, NotReachable
-from twin.frames import Array
+from twin.frames import Array, apply
 from twin.machine import Family
 from twin.model import Model
 from twin.record import at_poses
@@ -30,14 +39,8 @@ SETUP_SD = (1.0, 5e-3)
 """How far the standard may stand from where it is believed to stand, mm and rad. It is never known,
 so the set-up of the workpiece is free and the tool point is predicted relative to the standard."""
 
-CRITERIA = {
-    "I": "mean variance of the predicted tool point over probed volume and workspace",
-    "G": "largest variance of the predicted tool point at any pose of probed volume and workspace",
-    "D": "volume of what stays unknown of the parameters, in units of what is expected",
-    "A": "mean variance of the parameters, in units of what is expected",
-    "E": "variance of the least well determined error pattern, as the tool point feels it",
-}
-"""What touches can be chosen for."""
+CRITERIA = ("I", "G", "D", "A", "E")
+"""What touches can be chosen for, by the letters of optimal design."""
 
 _POSES = 400  # over which predictions are judged, in the probed volume and as many of the user's
 _SCATTER = 3000  # random touches that span all that touches can show
@@ -248,7 +251,10 @@ def _tips(
     """Deviation of the tip per unit of every parameter: probed volume, user's workspace."""
     chain = reach.chain
     limits = {name: workspace.limit(name) for name in chain.rotary_axes}
-    corners = np.array(volume) + reach.setup.T_table_artefact[:3, 3]
+    on_table = apply(
+        reach.setup.T_table_artefact, np.array(list(product(*zip(*volume, strict=True))))
+    )
+    corners = np.array([on_table.min(axis=0), on_table.max(axis=0)])
     box: Box = (tuple(corners[0]), tuple(corners[1]))
     probed = Workspace(chain, limits, reach.length, box)
     tips = []

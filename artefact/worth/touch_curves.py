@@ -41,12 +41,6 @@ class TouchCurve:
     rms: Array
     rms_user: Array
 
-    @property
-    def at_design(self) -> tuple[float, float]:
-        """Error left at the designed number: probed volume, user's workspace, mm."""
-        k = self.counts.index(self.designed)
-        return float(self.rms[k]), float(self.rms_user[k])
-
 
 def touch_curve(
     criterion: Criterion, name: str, touches: Requests, counts: Sequence[int] = COUNTS

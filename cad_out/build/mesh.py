@@ -40,14 +40,6 @@ class Mesh:
     owner: np.ndarray
 
 
-@dataclass(frozen=True, slots=True)
-class ChordError:
-    """Distance of a mesh from the surface it stands for, mm."""
-
-    largest: float
-    rms: float
-
-
 def welded(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> Mesh:
     """Join the corners of neighbouring faces and drop what collapses.
 
@@ -117,8 +109,8 @@ def mesh_volume(corners: Array, triangles: np.ndarray) -> float:
 
 def chord_errors(
     standard: Standard, corners: Array, triangles: np.ndarray, owner: np.ndarray
-) -> dict[str, ChordError]:
-    """Distance of the triangles of every patch and sphere from the exact surface.
+) -> dict[str, float]:
+    """Largest distance of the triangles of every patch and sphere from the exact surface.
 
     For a patch the distance is ``(z - h) cos(slope)``, right to first order in itself.
 
@@ -129,19 +121,17 @@ def chord_errors(
         owner: Name of each triangle's feature, (F,).
 
     Returns:
-        Largest and root mean square distance by feature name; infinite where a feature has no
-        triangle at all.
+        Distance by feature name, mm; infinite where a feature has no triangle at all.
     """
     errors = {}
     surfaces: tuple[FreeformPatch | DatumSphere, ...] = (*standard.patches, *standard.spheres)
     for surface in surfaces:
         mine = corners[triangles[owner == surface.name]]  # (F, 3, 3)
         if not len(mine):
-            errors[surface.name] = ChordError(np.inf, np.inf)
+            errors[surface.name] = np.inf
             continue
         points = np.einsum("lk,fki->fli", _LATTICE, mine).reshape(-1, 3)
-        gap = _distance(surface, points)
-        errors[surface.name] = ChordError(float(np.abs(gap).max()), float(np.sqrt(np.mean(gap**2))))
+        errors[surface.name] = float(np.abs(_distance(surface, points)).max())
     return errors
 
 

@@ -73,7 +73,7 @@ def _mesh(standard: Standard, solid: Solid, chord: float) -> Mesh:
         owner = np.array([names.get(number, "") for number in range(numbers.max() + 1)])[numbers]
         mesh = welded(corners, triangles, owner)
         errors = chord_errors(standard, mesh.corners, mesh.triangles, mesh.owner)
-        worst = max(error.largest for error in errors.values())
+        worst = max(errors.values())
         if worst <= chord:
             return mesh
         asked *= _FINER

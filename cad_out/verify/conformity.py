@@ -57,7 +57,6 @@ class Conformity:
         triangles: In the STL file.
         chord: Asked for, mm.
         chord_error: Largest distance of the mesh from the exact surface by feature.
-        chord_rms: Root mean square of the same.
         step_bytes: Size of the STEP file.
         stl_bytes: Size of the STL file.
     """
@@ -80,7 +79,6 @@ class Conformity:
     triangles: int
     chord: float
     chord_error: dict[str, float]
-    chord_rms: dict[str, float]
     step_bytes: int
     stl_bytes: int
 
@@ -153,7 +151,6 @@ def measure(
     found = json.loads((folder / FACTS).read_text(encoding="utf-8"))
     faces = read_faces(folder / STEP)
     corners, triangles = read_stl(stl)
-    errors = chord_errors(standard, corners, triangles, owner)
     named = set(faces) & set(found["names"])
     return Conformity(
         solids=found["solids"],
@@ -173,8 +170,7 @@ def measure(
         manifold_volume=manifold_volume(corners, triangles),
         triangles=len(triangles),
         chord=chord,
-        chord_error={name: error.largest for name, error in errors.items()},
-        chord_rms={name: error.rms for name, error in errors.items()},
+        chord_error=chord_errors(standard, corners, triangles, owner),
         step_bytes=(folder / STEP).stat().st_size,
         stl_bytes=stl.stat().st_size,
     )

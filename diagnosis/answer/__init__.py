@@ -7,7 +7,6 @@ shown, `next_measurement` touches that tell look-alikes apart, `proof` compares 
 
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.comparison import Comparison, GroupResidual, compare
-from diagnosis.answer.description_faults import Fault
 from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.fault_trial import DescriptionFault, description_faults, faults_of_refused
 from diagnosis.answer.geometry_functionals import Quantity
@@ -20,8 +19,9 @@ from diagnosis.answer.learnt_geometry import (
     Rung,
 )
 from diagnosis.answer.next_measurement import Plan
-from diagnosis.answer.proof import Proof, probed_volume, prove
+from diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
 from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.answer.suspects import Fault
 from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
@@ -51,4 +51,5 @@ __all__ = [
     "faults_of_refused",
     "probed_volume",
     "prove",
+    "seen_from",
 ]

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -9,11 +10,15 @@ from diagnosis.answer.fault_trial import DescriptionFault, description_faults
 from diagnosis.answer.learnt_geometry import LearntGeometry, learnt_geometry
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
-from diagnosis.residual import Region, Remark, Structure, find_structure, regions, remarks
+from diagnosis.remarks import Remark, remarks
+from diagnosis.residual import Region, Structure, find_structure, regions
 from twin.compute import one_blas_thread
+from twin.display import Tabular
 from twin.frames import Array
+from twin.library import ordinary_model
 from twin.model import Model
 from twin.record import Run, without_copies
+from twin.units import UM
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +40,8 @@ class GroupResidual:
     normalised: float
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Tabular):
     """A run against a model.
 
     Attributes:
@@ -62,10 +67,27 @@ class Comparison:
     faults: tuple[DescriptionFault, ...]
     remarks: tuple[Remark, ...]
 
+    number_format = ".4f"  # a tenth of a nanometre
+
     @property
     def run(self) -> Run:
         """The measurements."""
         return self.fit.run
+
+    def columns(self) -> dict[str, list[Any]]:
+        """Every touch: measured, predicted, residual, as in `residuals.csv`."""
+        t, gross = self.run.touches, self.fit.gross.rows | self.fit.gross_test_rows
+        return {
+            "line": self.run.line.tolist(),
+            "feature": t.feature.tolist(),
+            "setup": [t.setups[i].name for i in t.setup],
+            "pose": t.pose.tolist(),
+            "measured_um": (self.run.deviation / UM).tolist(),
+            "predicted_um": (self.predicted / UM).tolist(),
+            "residual_um": (self.residual / UM).tolist(),
+            "normalised": self.normalised.tolist(),
+            "gross_error": gross.astype(int).tolist(),
+        }
 
     @property
     def residual(self) -> Array:
@@ -141,13 +163,16 @@ class Comparison:
 
 @one_blas_thread()
 def compare(
-    run: Run, model: Model, estimates: Prior | None = None, progress: Progress = quiet
+    run: Run,
+    model: Model | None = None,
+    estimates: Prior | None = None,
+    progress: Progress = quiet,
 ) -> Comparison:
     """Measured against predicted deviations.
 
     Args:
         run: The measurements.
-        model: Machine and effects.
+        model: Machine and effects; None for the ordinary geometric model of the machine.
         estimates: Of the model's parameters, from an earlier run; then nothing but where the
             standard stands is learnt from this one. None fits the whole model to this run.
         progress: Told of the tests.
@@ -156,6 +181,7 @@ def compare(
         NotEnoughData: So few touches that nothing can be said.
     """
     run = without_copies(run)
+    model = model or ordinary_model(run.touches.chain)
     if estimates is None:
         fit = fit_run(run, model)
         u = run.u

@@ -14,7 +14,7 @@ from itertools import islice
 
 import numpy as np
 
-from diagnosis.answer.description_faults import (
+from diagnosis.answer.suspects import (
     Fault,
     Suspect,
     corrected,

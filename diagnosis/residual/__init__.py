@@ -8,48 +8,20 @@ A new test is a module beside `waves` and `crowds`, called by `structure`.
 from diagnosis.residual.failing_regions import Condition, Region, Side, regions
 from diagnosis.residual.partial_residuals import SEES, Partial, partial
 from diagnosis.residual.patterns import directions, groups, variables
-from diagnosis.residual.run_remarks import (
-    FewDegreesOfFreedom,
-    FewPoses,
-    FewTouches,
-    HeldOutInDoubt,
-    NoiseMisstated,
-    OutliersKept,
-    OutliersLeftOut,
-    PriorWidened,
-    ReaderRemark,
-    Remark,
-    SearchEnded,
-    WorseThanReplicates,
-    remarks,
-)
 from diagnosis.residual.structure import Shape, Structure, find_structure
 
 __all__ = [
     "SEES",
     "Condition",
-    "FewDegreesOfFreedom",
-    "FewPoses",
-    "FewTouches",
-    "HeldOutInDoubt",
-    "NoiseMisstated",
-    "OutliersKept",
-    "OutliersLeftOut",
     "Partial",
-    "PriorWidened",
-    "ReaderRemark",
     "Region",
-    "Remark",
-    "SearchEnded",
     "Shape",
     "Side",
     "Structure",
-    "WorseThanReplicates",
     "directions",
     "find_structure",
     "groups",
     "partial",
     "regions",
-    "remarks",
     "variables",
 ]

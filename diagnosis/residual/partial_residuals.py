@@ -18,7 +18,6 @@ from twin.frames import Array
 from twin.model import Effect, Where, columns, inner_values
 from twin.record import IntArray, Touches
 from twin.units import DEG, MINUTE, UM, URAD
-from twin.words import noun
 
 LETTERS = "XYZABC"
 
@@ -166,7 +165,7 @@ def _drivers(effect: Effect, touches: Touches) -> Mapping[str, Array]:
     n = normal_in_tool(touches)
     out["azimuth of the normal about the tool axis in °"] = np.arctan2(n[:, 1], n[:, 0]) / DEG
     out["angle between normal and tool axis in °"] = np.arccos(np.clip(n[:, 2], -1.0, 1.0)) / DEG
-    out |= {f"{noun(k)} in °C": v for k, v in known.items() if k.startswith("T_")}
+    out |= {f"temperature of {sensor} in °C": v for sensor, v in touches.temperature.items()}
     if "spindle_rpm" in known:
         out["spindle speed in 1/min"] = known["spindle_rpm"]
     out |= time

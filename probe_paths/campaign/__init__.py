@@ -6,17 +6,20 @@ never learns what the virtual machine knew. `orders` and `probing_time` say what
 """
 
 from probe_paths.campaign.contact_points import foot_points
-from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.contact_solver import FIRST_MORNING, VirtualMachine
+from probe_paths.campaign.disturbances import effects_over_record
 from probe_paths.campaign.duration import probing_time
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.order_study import Order, Ordering, orders
 from probe_paths.campaign.simulation import Campaign, simulate
 
 __all__ = [
+    "FIRST_MORNING",
     "Campaign",
     "Order",
     "Ordering",
     "VirtualMachine",
+    "effects_over_record",
     "evaluate",
     "foot_points",
     "orders",

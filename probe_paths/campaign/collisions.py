@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Standard
+from artefact.body import Meeting, Standard, contact
 from artefact.reach import TABLE_RADIUS
 from probe_paths.control import Move, ProbeStep, ReadProgram
 from probe_paths.plan import Probe, ToolClearance, solid_hull, swing_height, top_height
@@ -114,6 +114,11 @@ def _marched(clearance: ToolClearance, moves: _Moves) -> Array:
         active = active[(travel[active] < length[active]) & (gap >= SMALLEST_GAP)]
         if not len(active):
             break
+    # beside a steep face the distance is far from below: what seems tight is met on exact shapes
+    tight = np.flatnonzero(smallest < SMALLEST_GAP)
+    wide = clearance.probe.radius + SMALLEST_GAP
+    met = contact(clearance.standard, start[tight], direction[tight], wide, length[tight])
+    smallest[tight[met.meeting == Meeting.NOTHING]] = SMALLEST_GAP
     return smallest
 
 

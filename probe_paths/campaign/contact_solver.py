@@ -1,12 +1,13 @@
 """Where true balls meet true surfaces: all touches of a program at once, by Newton's method."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from datetime import datetime
 
 import numpy as np
 
 from artefact.body import Meeting, Standard, contact
 from artefact.reach import Mask
+from probe_paths.campaign.disturbances import Disturbance
 from probe_paths.control import Clock, ReadProgram
 from probe_paths.language import Dialect
 from twin.frames import Array, apply, inverse, turn
@@ -20,7 +21,8 @@ CONTACT_TOLERANCE = 1e-3 * NM
 _STEPS = 12
 """Of Newton's method; with errors of ordinary size four were enough."""
 
-Disturbance = Callable[[Touches], Contribution]
+FIRST_MORNING = datetime(2000, 1, 1, 8, 0, 0)
+"""When a simulated campaign begins; any date does, but it must not depend on today."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +34,10 @@ class VirtualMachine:
         disturbance: What all errors add at given touches; None for a perfect machine.
         setup_error: Pose (4, 4) of the standard where it really stands, seen from where it is
             believed to stand (artefact frame).
+        radius_error: Of the true ball beyond the calibrated one, mm.
+        length_error: Of the true probe beyond the calibrated one, mm.
         noise: Standard deviation of the trigger along the normal, mm.
+        begin: What its clock says when the campaign begins.
         clock: Speeds.
         dialect: Of the control.
     """
@@ -40,7 +45,10 @@ class VirtualMachine:
     chain: Chain
     disturbance: Disturbance | None = None
     setup_error: Array = field(default_factory=lambda: np.eye(4))
+    radius_error: float = 0.0
+    length_error: float = 0.0
     noise: float = 0.0
+    begin: datetime = FIRST_MORNING
     clock: Clock = field(default_factory=Clock)
     dialect: Dialect = field(default_factory=Dialect)
 
@@ -59,6 +67,7 @@ class ContactSolver:
         self.distance = np.array([t.distance for t in touches])
         believed = program.heading.setup.T_table_artefact
         self.T_artefact_table = inverse(believed @ machine.setup_error)
+        self.disturbance = machine.disturbance
         self._nominal_contact()
 
     def _nominal_contact(self) -> None:
@@ -120,16 +129,23 @@ class ContactSolver:
     def _true_balls(self, rows: IntArray, time: Array) -> tuple[Array, Array]:
         """True ball centres (M, 3) in the artefact frame and radii (M,) at the trigger."""
         chain = self.machine.chain
-        touches = self._touches(rows, time)
+        touches = self.touches(time, rows)
         added = Contribution.zeros(len(rows), len(chain.links))
-        if self.machine.disturbance is not None:
-            added = self.machine.disturbance(touches)
-        actual = exact_tip(chain, touches.q, self.length, added) - added.shift
-        radius = self.radius + added.bias + self.noise[rows]
+        if self.disturbance is not None:
+            added = self.disturbance(touches)
+        length = self.length + self.machine.length_error
+        actual = exact_tip(chain, touches.q, length, added) - added.shift
+        radius = self.radius + self.machine.radius_error + added.bias + self.noise[rows]
         return apply(self.T_artefact_table, actual), radius
 
-    def _touches(self, rows: IntArray, time: Array) -> Touches:
-        """The record that effects look at."""
+    def touches(self, time: Array, rows: IntArray | None = None) -> Touches:
+        """The record that effects look at, of all touches or some.
+
+        Args:
+            time: Of the trigger of all touches, (N,), s since the start of the campaign.
+            rows: Which of them.
+        """
+        rows = np.arange(len(self.start)) if rows is None else rows
         chain = self.machine.chain
         probings = self.program.touches
         side = np.array([probings[i].side for i in rows])

@@ -149,7 +149,7 @@ def _shortest(plan: TouchPlan) -> TouchPlan:
 def _short_way(poses: Array, home: Array) -> list[int]:
     """Order of poses (V, R) with little turning, by nearest neighbours and reversals of parts."""
     places = np.concatenate([home[None], poses])
-    cost = np.abs(places[:, None] - places).max(axis=-1)  # the slowest axis decides
+    cost = np.abs(places[:, None] - places).max(axis=-1, initial=0.0)  # the slowest decides
     tour = [0, *(1 + nearest_neighbours(poses, home)).tolist()]
     improved = True
     while improved:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -27,10 +28,12 @@ class Campaign:
     Attributes:
         run: The measurements.
         runs: What each program did.
+        begin: What the clock said at the run's time zero.
     """
 
     run: Run
     runs: tuple[VirtualRun, ...]
+    begin: datetime
 
     @property
     def logs(self) -> Mapping[str, str]:
@@ -74,4 +77,4 @@ def simulate(
     ]
     u = max(machine.noise, SMALLEST_U)
     run = evaluate(parts, standard, machine.chain, u, machine.dialect)
-    return Campaign(run, tuple(runs))
+    return Campaign(run, tuple(runs), min(part.begin for part in parts))

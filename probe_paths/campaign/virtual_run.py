@@ -7,13 +7,14 @@ the control then knows are the readings, and they go through the masks into the 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import timedelta
 from enum import StrEnum
 
 import numpy as np
 
 from artefact.body import Standard
 from probe_paths.campaign.contact_solver import ContactSolver, VirtualMachine
+from probe_paths.campaign.disturbances import in_campaign
 from probe_paths.control import (
     STATUS,
     Halt,
@@ -25,13 +26,10 @@ from probe_paths.control import (
     Value,
     step_times,
 )
-from probe_paths.plan import LINEAR, Probe, ProgramFrame
+from probe_paths.plan import LINEAR, Probe, ProgramFrame, stated_serial
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
-from twin.record import Labels
-
-FIRST_MORNING = datetime(2000, 1, 1, 8, 0, 0)
-"""When a simulated campaign begins; any date does, but it must not depend on today."""
+from twin.record import Labels, Touches
 
 CHANGEOVER = 60.0
 """Between two programs, s."""
@@ -101,14 +99,30 @@ def run_programs(
     Raises:
         DesignError: A program made for another standard.
     """
+    solvers = [_solver(program, standard, machine, rng) for program in programs]
+    planned = _planned_touches(solvers)
     runs: list[VirtualRun] = []
     begin = 0.0
-    for program in programs:
-        runs.append(run_program(program, standard, machine, rng, begin))
+    for i, solver in enumerate(solvers):
+        if machine.disturbance is not None:
+            before, after = planned[:i], planned[i + 1 :]
+            solver.disturbance = in_campaign(machine.disturbance, before, after)
+        runs.append(_run(solver, begin))
         if runs[-1].outcome is not Outcome.DONE:
             break
         begin = runs[-1].end + CHANGEOVER
     return runs
+
+
+def _planned_touches(solvers: Sequence[ContactSolver]) -> list[Touches]:
+    """Touches of every program as a perfect machine would make them."""
+    planned: list[Touches] = []
+    begin = 0.0
+    for solver in solvers:
+        times = begin + _step_times(solver)
+        planned.append(solver.touches(times[_rows(solver.program)]))
+        begin = float(times[-1]) + CHANGEOVER
+    return planned
 
 
 def run_program(
@@ -130,17 +144,36 @@ def run_program(
     Raises:
         DesignError: A program made for another standard.
     """
+    return _run(_solver(program, standard, machine, rng), begin)
+
+
+def _solver(
+    program: ReadProgram, standard: Standard, machine: VirtualMachine, rng: np.random.Generator
+) -> ContactSolver:
     _check_standard(program, standard)
-    steps, clock = program.steps, machine.clock
     noise = rng.normal(0.0, 1.0, len(program.touches)) * machine.noise
-    contacts = ContactSolver(program, standard, machine, noise)
-    rows = [i for i, step in enumerate(steps) if isinstance(step, ProbeStep)]
-    times = begin + step_times(machine.chain, steps, clock, contacts.travel)
-    contacts.solve(times[rows])
+    return ContactSolver(program, standard, machine, noise)
+
+
+def _step_times(contacts: ContactSolver) -> Array:
+    machine, steps = contacts.machine, contacts.program.steps
+    return step_times(machine.chain, steps, machine.clock, contacts.travel)
+
+
+def _rows(program: ReadProgram) -> list[int]:
+    """Steps that are touches."""
+    return [i for i, step in enumerate(program.steps) if isinstance(step, ProbeStep)]
+
+
+def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
+    """Touch, and print what the program prints."""
+    program = contacts.program
+    rows = _rows(program)
+    contacts.solve((begin + _step_times(contacts))[rows])
     contacts.classify()
-    times = begin + step_times(machine.chain, steps, clock, contacts.travel)
-    control = _Control(program, contacts, machine)
-    outcome, reached, end = control.run(steps, times)
+    times = begin + _step_times(contacts)
+    control = _Control(program, contacts, contacts.machine)
+    outcome, reached, end = control.run(program.steps, times)
     return VirtualRun(
         program=program,
         q=np.where(contacts.is_contact[:, None], contacts.q, np.nan),
@@ -167,6 +200,12 @@ def _check_standard(program: ReadProgram, standard: Standard) -> None:
             f"{program.path}: made for standard '{program.heading.standard}', "
             f"this one is '{standard.name}'"
         )
+    serial = stated_serial(standard.serial)
+    if program.heading.serial and program.heading.serial != serial:
+        raise DesignError(
+            f"{program.path}: made for serial number {program.heading.serial}, this standard has "
+            f"{serial or 'none'}"
+        )
 
 
 class _Control:
@@ -178,7 +217,7 @@ class _Control:
         self.program, self.contacts = program, contacts
         heading = program.heading
         self.frame = ProgramFrame(machine.chain, Probe(heading.radius, heading.length))
-        self.dialect = machine.dialect
+        self.dialect, self.begin = machine.dialect, machine.begin
         self.lines: dict[str, list[str]] = {}
         self.results = self._results()
 
@@ -219,7 +258,7 @@ class _Control:
 
     def _print(self, step: Print, now: float) -> None:
         values = {q: self._number(value) for q, value in step.values.items()}
-        moment = FIRST_MORNING + timedelta(seconds=int(now))
+        moment = self.begin + timedelta(seconds=int(now))
         lines = self.lines.setdefault(step.target, [])
         lines += [line.filled(values, moment) for line in step.lines]
 

@@ -5,6 +5,7 @@ shows. A touch is assumed to find its surface; what the program does when it doe
 and stands with the touch.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,14 @@ import numpy as np
 from probe_paths.control.runner import MaskSource, Runner
 from probe_paths.control.state import State
 from probe_paths.control.steps import ProbeStep, ReadProgram
-from probe_paths.control.structure import check_cycles, heading, labels, program_name
+from probe_paths.control.structure import (
+    Promise,
+    check_cycles,
+    heading,
+    labels,
+    program_name,
+    promise,
+)
 from probe_paths.language import read_blocks
 from probe_paths.plan import Heading, Probe, ProgramFrame
 from twin.errors import BadFile
@@ -79,10 +87,12 @@ def interpret(
     check_cycles(blocks, path)
     head, features = heading(blocks, path)
     frame = ProgramFrame(chain, _probe(head, probe, path))
-    runner = Runner(blocks, places, frame, path, masks)
-    nothing = np.full(len(chain.axes), np.nan)
-    steps = runner.run(0, State(path, frame, nothing, np.zeros(len(chain.axes))))
+    stated = promise(blocks, head, path)
+    runner = Runner(blocks, places, frame, path, name, masks)
+    state = State(path, frame, np.full(len(chain.axes), np.nan), np.zeros(len(chain.axes)))
+    steps = runner.run(0, state)
     runner.check_logged()
+    _check_promise(stated, state, runner.touches, path)
     for touch in steps:
         if isinstance(touch, ProbeStep) and touch.feature not in features:
             raise BadFile(
@@ -92,6 +102,24 @@ def interpret(
                 "a number of the head's list (;FEATURE <number> IS <name>)",
             )
     return ReadProgram(path, name, head, features, tuple(steps))
+
+
+def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:
+    """The program does what its head says; raises BadFile."""
+    for what, said, done in (
+        ("tool", stated.tool, state.tool),
+        ("preset", stated.preset, state.preset),
+    ):
+        if said != done:
+            raise BadFile(path, "head", f"{what} {said}", f"{done}, as the program calls it")
+    if [touch.number for touch in touches] != list(stated.touches):
+        made = len(touches)
+        raise BadFile(
+            path,
+            f"line {touches[-1].line}" if touches else "file",
+            f"{made} touches before M30",
+            f"touches {stated.touches[0]} to {stated.touches[-1]} in order, as the head says",
+        )
 
 
 def _probe(head: Heading, probe: Probe | None, path: Path) -> Probe:

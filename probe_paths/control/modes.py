@@ -7,8 +7,18 @@ from probe_paths.language import SYSTEM_INDEX, TOOL_LENGTH, Block, Kind
 from probe_paths.plan import LINEAR
 from twin.units import DEG
 
+SAME_LENGTH = 1e-4
+"""Four decimals of a length, mm."""
+
 MAX_PROBING_FEED = 1000.0
 """Above this a cycle 4 is refused, mm/min: the trigger delay and the overtravel grow with it."""
+
+
+SHORTEST_BACK = 1.0
+"""Retract after a contact, mm: with less the ball still lies on the surface when it moves off."""
+
+LONGEST_SEARCH = 10.0
+"""Beyond the expected contact, mm: what a probe may be driven into where nothing is expected."""
 
 
 def system_datum(block: Block, state: State) -> float:
@@ -46,9 +56,16 @@ def check_cycle(state: State, block: Block, vector: Block, length: float) -> Non
         raise state.refusal(block, "REFERENCE SYSTEM:1", "REFERENCE SYSTEM:0")
     if not 0.0 < block.number("feed") <= MAX_PROBING_FEED:
         raise state.refusal(block, f"F{block.word('feed')}", f"F1 to F{MAX_PROBING_FEED:.0f}")
-    if not 0.0 <= block.number("back") <= block.number("distance"):
+    back, distance = block.number("back"), block.number("distance")
+    if not SHORTEST_BACK <= back <= distance:
         raise state.refusal(
-            block, repr(block.text), "a path above zero and MB between zero and the path"
+            block, repr(block.text), f"MB between {SHORTEST_BACK:g} mm and the path"
+        )
+    if distance - back > LONGEST_SEARCH:
+        raise state.refusal(
+            block,
+            f"a path of {distance:g} mm with MB {back:g}",
+            f"at most {LONGEST_SEARCH:g} mm beyond the surface that is expected",
         )
 
 
@@ -90,6 +107,7 @@ def _tool_call(block: Block, state: State) -> None:
         raise state.refusal(block, repr(block.text), "M129 and a retract with M91 before it")
     state.tool = int(block.word("tool"))
     state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length
+    state.length_off, state.length_tests = None, set()
     # the tool changer leaves the linear axes wherever its builder wanted
     state.q[state.frame.linear] = np.nan
     state.is_retracted = False
@@ -108,6 +126,15 @@ def _subtract(block: Block, state: State) -> None:
     if not isinstance(value, float):
         raise state.refusal(block, repr(block.text), "a number, not the result of a touch")
     state.write(block, int(block.word("q")), value - block.number("value"))
+    if int(block.word("from")) == TOOL_LENGTH:
+        planned = state.frame.probe.tool_length
+        if abs(block.number("value") - planned) > SAME_LENGTH:
+            raise state.refusal(
+                block,
+                f"a length of {block.number('value'):g} mm",
+                f"{planned:g} mm, as the head says",
+            )
+        state.length_off = int(block.word("q"))
 
 
 _SETTERS = {

@@ -12,6 +12,9 @@ from twin.frames import Array
 from twin.units import DEG, MINUTE
 
 _AXIS = re.compile(r"([A-Z])([+-][\d.]+)")
+MAX_FEED = 5000.0
+"""Of a fed move, mm/min or degrees/min: it is fed because something is near."""
+
 _FUNCTIONS = {"M91", "M126"}
 
 
@@ -77,6 +80,8 @@ def _feed(state: State, block: Block) -> float | None:
         state.feed = float(word)
     if not state.feed:
         raise state.refusal(block, repr(block.text), "a feed above zero, or FMAX")
+    if state.feed > MAX_FEED:
+        raise state.refusal(block, f"F{state.feed:.0f}", f"F{MAX_FEED:.0f} at most, or FMAX")
     return state.feed
 
 
@@ -127,6 +132,7 @@ def _check_height(
             return
         if letters != ["Z"] or not np.all(np.isfinite(target[state.frame.linear])):
             raise state.refusal(block, repr(block.text), "X and Y at the retract, then Z alone")
+        state.check_length_was_tested(block)
         state.is_retracted, state.clearance = False, after
         return
     assert state.clearance is not None

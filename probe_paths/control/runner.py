@@ -9,7 +9,7 @@ from probe_paths.control.modes import check_cycle, set_mode, system_datum
 from probe_paths.control.motion import retract_max, straight_line
 from probe_paths.control.state import State
 from probe_paths.control.steps import STATUS, Halt, Move, Print, ProbeStep, Result, Step
-from probe_paths.language import Block, Kind, MaskLine, Q, parse_mask
+from probe_paths.language import LENGTH_LIMIT, Block, Kind, MaskLine, Q, parse_mask
 from probe_paths.plan import ProgramFrame
 from twin.errors import BadFile
 from twin.units import MINUTE
@@ -43,9 +43,11 @@ class Runner:
         places: dict[int, int],
         frame: ProgramFrame,
         path: Path,
+        name: str,
         masks: MaskSource,
     ) -> None:
         self.blocks, self.places, self.frame, self.path = blocks, places, frame, path
+        self.name, self.folder = name, ""
         self.source = masks
         self.masks: dict[str, tuple[MaskLine, ...]] = {}
         self.touches: list[ProbeStep] = []
@@ -99,6 +101,8 @@ class Runner:
         value = state.value(block, int(block.word("q" if is_less else "q_greater")))
         target, limit = self.places[int(block.word("label"))] + 1, block.number("limit")
         if not isinstance(value, Result):
+            if state.length_off == int(block.word("q" if is_less else "q_greater")):
+                self._length_test(block, state, is_less)
             return target if (value < limit if is_less else value > limit) else i + 1
         if value.part != STATUS or limit != 0.0 or not is_less:
             raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
@@ -106,6 +110,20 @@ class Runner:
         missed = state.copied()
         self.touches[value.touch].on_miss.extend(self.run(target, missed, is_branch=True))
         return i + 1
+
+    def _length_test(self, block: Block, state: State, is_less: bool) -> None:
+        """A jump that stops the program where the called tool is not as long as the probe."""
+        limit = -block.number("limit") if is_less else block.number("limit")
+        if limit > LENGTH_LIMIT:
+            raise state.refusal(
+                block, f"a length that may differ by {limit:g} mm", f"{LENGTH_LIMIT} mm at most"
+            )
+        for other in self.blocks[self.places[int(block.word("label"))] + 1 :]:
+            if other.kind is Kind.ERROR:
+                state.length_tests.add("LT" if is_less else "GT")
+                return
+            if other.kind not in _SILENT:
+                raise state.refusal(other, repr(other.text), "STOP and FN 14 after another length")
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
         """Every block that changes the state or does something."""
@@ -188,11 +206,23 @@ class Runner:
         state.check_status_was_tested(block)
         if not state.is_synchronous:
             raise state.refusal(block, "a line printed ahead", "FN 20: WAIT FOR SYNC before it")
+        self._check_place(block, state)
         lines = self._mask(block, state)
         wanted = {a for line in lines for a in line.arguments if isinstance(a, int)}
         values = {q: state.value(block, q) for q in sorted(wanted)}
         self.logged |= {v.touch for v in values.values() if isinstance(v, Result)}
         return Print(block.line, lines, block.word("target").split("\\")[-1], values)
+
+    def _check_place(self, block: Block, state: State) -> None:
+        """One log of the program's name, in the folder of its masks."""
+        target, mask = block.word("target"), block.word("mask")
+        folder = target.rpartition("\\")[0]
+        self.folder = self.folder or folder
+        expected = f"{self.folder}\\{self.name}.TXT"
+        if target != expected:
+            raise state.refusal(block, f"a log {target}", expected)
+        if mask.rpartition("\\")[0] != self.folder:
+            raise state.refusal(block, f"mask {mask}", f"a mask in {self.folder}, where the log is")
 
     def _mask(self, block: Block, state: State) -> tuple[MaskLine, ...]:
         name = block.word("mask").split("\\")[-1]

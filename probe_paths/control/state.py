@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from probe_paths.control.steps import Value
-from probe_paths.language import FREE, Block
+from probe_paths.language import FREE, LENGTH_LIMIT, TOOL_LENGTH, Block
 from probe_paths.plan import ProgramFrame
 from twin.errors import BadFile
 from twin.frames import Array
@@ -42,6 +42,8 @@ class State:
         untested: Touch whose status was not looked at yet.
         way_back: Readings that the next move must return to after a touch.
         is_synchronous: FN 20 was read since the last motion.
+        length_off: Parameter that holds how much longer the called tool is than the planned probe.
+        length_tests: Which ends of its tolerance a jump has tested, "LT" and "GT".
     """
 
     path: Path
@@ -62,12 +64,15 @@ class State:
     untested: int | None = None
     way_back: Array | None = None
     is_synchronous: bool = False
+    length_off: int | None = None
+    length_tests: set[str] = field(default_factory=set)
 
     def copied(self) -> "State":
         """A state that can run on its own."""
         other = copy.copy(self)
         other.q, other.side = self.q.copy(), self.side.copy()
         other.parameters, other.shift_off = dict(self.parameters), set(self.shift_off)
+        other.length_tests = set(self.length_tests)
         return other
 
     def refusal(self, block: Block, found: str, expected: str) -> BadFile:
@@ -90,6 +95,16 @@ class State:
         if missing:
             raise self.refusal(block, what, f"{missing[0]} before it")
 
+    def check_length_was_tested(self, block: Block) -> None:
+        """No tool goes down whose length has not been held against the planned probe's."""
+        if self.length_tests != {"LT", "GT"}:
+            raise self.refusal(
+                block,
+                f"{block.text!r} with a tool of untested length",
+                f"FN 12 and FN 11 on Q{TOOL_LENGTH} less the planned length, "
+                f"{LENGTH_LIMIT} mm at most, before it",
+            )
+
     def check_status_was_tested(self, block: Block) -> None:
         """Nothing may happen between a touch and the look at its status."""
         if self.untested is not None:
@@ -104,6 +119,8 @@ class State:
         if q not in FREE:
             raise self.refusal(block, f"Q{q}", f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}")
         self.parameters[q] = value
+        if q == self.length_off:
+            self.length_off = None
 
     def value(self, block: Block, q: int) -> Value:
         """A Q parameter that has been set in this run; nothing left over from others counts."""

@@ -3,11 +3,15 @@
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from probe_paths.language import Block, Kind
 from probe_paths.plan import Heading, parse_heading
 from twin.errors import BadFile
 
+_TOUCHES = re.compile(r"TOUCHES (\d+) TO (\d+),.*")
+_PRESET = re.compile(r"PRESET (\d+):.*")
+_TOOL = re.compile(r"TOOL (\d+) IS THE PROBE: L([+-][\d.]+) R([+-][\d.]+),.*")
 _FEATURE = re.compile(r"FEATURE (\d+) IS (\S+)")
 _CYCLE = (Kind.PROBE_NAME, Kind.PROBE_RESULT, Kind.PROBE_VECTOR, Kind.PROBE_PATH)
 _NAMES = {
@@ -16,6 +20,24 @@ _NAMES = {
     Kind.PROBE_VECTOR: "4.2",
     Kind.PROBE_PATH: "4.3",
 }
+
+
+_DIGITS = 1e-4
+"""Of a coordinate in a program, mm."""
+
+
+class Promise(NamedTuple):
+    """What the head of a program promises of its blocks.
+
+    Attributes:
+        touches: Numbers of the touches.
+        tool: Number of the probe in the tool table.
+        preset: Row of the preset table.
+    """
+
+    touches: range
+    tool: int
+    preset: int
 
 
 def program_name(blocks: Sequence[Block], path: Path) -> str:
@@ -100,11 +122,11 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
     Raises:
         BadFile: The head is missing or spelt otherwise, a number stands for two features.
     """
-    remarks = [(b.line, b.word("text").strip()) for b in blocks if b.kind is Kind.COMMENT]
+    remarks = _remarks(blocks)
     starts = [i for i, (_, text) in enumerate(remarks) if text.startswith("STANDARD ")]
     if not starts:
         raise BadFile(path, "head", "no comment ';STANDARD ... SETUP ...'", "the program's head")
-    head = parse_heading(remarks[starts[0] : starts[0] + 4], path)
+    head = parse_heading(remarks[starts[0] : starts[0] + 5], path)
     features: dict[int, str] = {}
     for line, text in remarks:
         match = _FEATURE.fullmatch(text)
@@ -114,3 +136,40 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
             raise BadFile(path, f"line {line}", repr(text), "every feature number once")
         features[int(match[1])] = match[2]
     return head, features
+
+
+def _remarks(blocks: Sequence[Block]) -> list[tuple[int, str]]:
+    """Comments with their lines."""
+    return [(b.line, b.word("text").strip()) for b in blocks if b.kind is Kind.COMMENT]
+
+
+def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
+    """Touches, tool and preset as the head states them.
+
+    Raises:
+        BadFile: One of the three remarks is missing, or states another probe than the heading.
+    """
+    remarks = _remarks(blocks)
+    touches, _ = _remark(_TOUCHES, ";TOUCHES <first> TO <last>, ...", remarks, path)
+    preset, _ = _remark(_PRESET, ";PRESET <row>: ...", remarks, path)
+    tool, line = _remark(
+        _TOOL, ";TOOL <number> IS THE PROBE: L<signed> R<signed>, ...", remarks, path
+    )
+    for name, stated, planned in (
+        ("L", tool[1], head.length + head.radius),
+        ("R", tool[2], head.radius),
+    ):
+        if abs(float(stated) - planned) > _DIGITS:
+            raise BadFile(path, f"line {line}", f"{name}{stated}", f"{planned:+.4f} as PROBE says")
+    return Promise(range(int(touches[0]), int(touches[1]) + 1), int(tool[0]), int(preset[0]))
+
+
+def _remark(
+    pattern: re.Pattern[str], form: str, remarks: Sequence[tuple[int, str]], path: Path
+) -> tuple[tuple[str, ...], int]:
+    """Parts of the first remark of a form, and its line."""
+    for line, text in remarks:
+        match = pattern.fullmatch(text)
+        if match is not None:
+            return match.groups(), line
+    raise BadFile(path, "head", f"no comment '{form}'", "the program's head")

@@ -9,9 +9,13 @@ from pathlib import Path
 from probe_paths.language.klartext import CYCLE_NAMES, DISTANCE_WORDS
 from twin.errors import BadFile
 
-_NUM = r"[+-]\d{1,5}(?:\.\d{1,7})?"
+_NUM = r"[+-]\d{1,5}(?:\.\d{0,7})?"
 _XYZ = rf"X({_NUM}) Y({_NUM}) Z({_NUM})"
 _PATH = r"[A-Z0-9_:\\.-]+"
+
+
+LONGEST = 1000
+"""Characters of a block; the longest of our programs has 71."""
 
 
 class Kind(Enum):
@@ -30,7 +34,7 @@ class Kind(Enum):
     PLANE_OFF = r"PLANE RESET STAY"
     SHIFT_NAME = r"CYCL DEF 7\.0 DATUM SHIFT"
     SHIFT = rf"CYCL DEF 7\.(?P<index>[123]) (?P<axis>[XYZ])(?P<value>{_NUM})"
-    PRESET = r"CYCL DEF 247 DATUM SETTING ~ Q339=(?P<row>[+]\d+)(?: ;.*)?"
+    PRESET = r"CYCL DEF 247 DATUM SETTING ~ Q339 ?= ?(?P<row>[+]\d+)(?: ;.*)?"
     TOOL_CALL = r"TOOL CALL (?P<tool>\d+) Z(?P<speed> S.*)?"
     LINE = (
         rf"L(?P<axes>(?: [A-Z]{_NUM})+)(?P<radius> R0)?"
@@ -43,16 +47,17 @@ class Kind(Enum):
         rf"TCH PROBE 4\.3 (?:{'|'.join(DISTANCE_WORDS)}) ?(?P<distance>{_NUM}) F(?P<feed>\d+) "
         rf"MB(?P<back>{_NUM}) REFERENCE SYSTEM: ?(?P<system>[01])"
     )
-    ASSIGN = rf"FN ?0: Q(?P<q>\d+) = (?P<value>{_NUM})"
-    SUBTRACT = rf"FN ?2: Q(?P<q>\d+) = \+?Q(?P<from>\d+) - (?P<value>{_NUM})"
+    # a control that saves a program leaves out blanks, zeros and the last line end
+    ASSIGN = rf"FN ?0: Q(?P<q>\d+) ?= ?(?P<value>{_NUM})"
+    SUBTRACT = rf"FN ?2: Q(?P<q>\d+) ?= ?\+?Q(?P<from>\d+) ?- ?(?P<value>{_NUM})"
     JUMP = (
-        r"FN ?1(?:2: IF \+?Q(?P<q>\d+) LT|1: IF \+?Q(?P<q_greater>\d+) GT) "
-        r"(?P<limit>[+-]\d+) GOTO LBL (?P<label>\d+)"
+        r"FN ?1(?:2: ?IF ?\+?Q(?P<q>\d+) ?LT|1: ?IF ?\+?Q(?P<q_greater>\d+) ?GT) ?"
+        r"(?P<limit>[+-]\d+) GOTO LBL ?(?P<label>\d+)"
     )
     ERROR = r"FN ?14: ERROR ?= ?(?P<number>\d+)"
     PRINT = rf"FN ?16: F-PRINT (?P<mask>{_PATH}) ?/ ?(?P<target>{_PATH})"
     READ = (
-        r"FN ?18: SYSREAD Q(?P<q>\d+) = ID(?P<group>\d+) NR(?P<number>\d+)(?: IDX(?P<index>\d+))?"
+        r"FN ?18: SYSREAD Q(?P<q>\d+) ?= ?ID(?P<group>\d+) NR(?P<number>\d+)(?: IDX(?P<index>\d+))?"
     )
     WAIT = r"FN ?20: WAIT FOR SYNC"
     CALL = r"CALL LBL (?P<label>[1-9]\d*)"
@@ -144,6 +149,9 @@ def read_blocks(data: bytes, path: str | Path) -> list[Block]:
             raw = f"{raw} {lines[i]}"
         i += 1
         folded = " ".join(raw.split())
+        if len(folded) > LONGEST:
+            found = f"{len(folded)} characters in one block"
+            raise BadFile(path, f"line {first}", found, f"at most {LONGEST}")
         match = re.match(r"(\d+) (.*)", folded)
         numbered = match is not None if numbered is None else numbered
         if numbered != (match is not None):
@@ -151,7 +159,7 @@ def read_blocks(data: bytes, path: str | Path) -> list[Block]:
                 path, f"line {first}", repr(folded), "block numbers everywhere or nowhere"
             )
         if match is not None:
-            if int(match[1]) != len(blocks):
+            if (match[1].lstrip("0") or "0") != str(len(blocks)):
                 raise BadFile(path, f"line {first}", f"block number {match[1]}", str(len(blocks)))
             folded = match[2]
         blocks.append(_parse(folded, first, path))
@@ -169,12 +177,11 @@ def _physical_lines(data: bytes, path: str | Path) -> list[str]:
         raise BadFile(path, f"line {line}", found, "ASCII") from None
     if text.count("\r\n") not in (0, text.count("\n")) or text.replace("\r\n", "").count("\r"):
         raise BadFile(path, "file", "mixed line ends", "CRLF at the end of every line")
-    if not text.endswith("\n"):
-        last = text.count("\n") + 1
-        raise BadFile(
-            path, f"line {last}", repr(text.splitlines()[-1]), "a whole line: the file is cut off"
-        )
-    return [line.rstrip() for line in text.splitlines()]
+    lines = [line.rstrip() for line in text.splitlines()]
+    if not text.endswith("\n") and "END PGM" not in lines[-1]:
+        expected = "END PGM, or a whole line: the file is cut off"
+        raise BadFile(path, f"line {len(lines)}", repr(lines[-1]), expected)
+    return lines
 
 
 def _parse(text: str, line: int, path: str | Path) -> Block:

@@ -6,9 +6,15 @@ collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of p
 `order`.
 """
 
-from probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
+from probe_paths.plan.clearance import (
+    ToolClearance,
+    readings_at,
+    solid_hull,
+    swing_height,
+    top_height,
+)
 from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import Heading, parse_heading
+from probe_paths.plan.heading import Heading, parse_heading, stated_serial
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, waypoints
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
@@ -27,8 +33,10 @@ __all__ = [
     "nearest_neighbours",
     "parse_heading",
     "plan_touches",
+    "readings_at",
     "requests_at",
     "solid_hull",
+    "stated_serial",
     "swing_height",
     "top_height",
     "waypoints",

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from artefact.body import Plate, Standard
-from artefact.reach import TABLE_THICKNESS, clearance_on_table
+from artefact.reach import TABLE_THICKNESS, clearance_on_table, table_face
 from probe_paths.plan.probe import Probe
 from twin.frames import Array, apply, turn
 from twin.machine import Chain, linear_directions, table_to_tool, tip
@@ -35,7 +35,7 @@ def solid_hull(standard: Standard, setup: Setup, table_radius: float) -> SolidHu
     solid = np.concatenate(points)
     centres = np.array([s.centre for s in standard.spheres]).reshape(-1, 3)
     on_table = apply(setup.T_table_artefact, np.concatenate([solid, centres]))
-    rim = _ring(table_radius, 0.0)
+    rim = apply(table_face(setup.T_table_artefact), _ring(table_radius, 0.0))
     radii = np.zeros(len(on_table) + len(rim))
     radii[len(solid) : len(on_table)] = [s.radius for s in standard.spheres]
     return SolidHull(np.concatenate([on_table, rim]), radii)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from report.style import INK, axis_title, figure, nothing, plain, series
+from report.words import place_words
 from sensitivity.shares import Region, RegionTotals
 from twin.frames import Array
 from twin.machine import Chain
@@ -48,7 +49,7 @@ def draw_regions(
     for axes in grid.ravel()[len(shown) :]:
         axes.set_axis_off()
     for axes in grid.ravel()[max(0, len(shown) - columns) : len(shown)]:  # the lowest of a column
-        axes.set_xlabel("share of the variance / %", fontsize=9)
+        axes.set_xlabel("share of the variance in %", fontsize=9)
         axes.tick_params(axis="x", labelbottom=True)
     present = {chain.symbols[i].link for k in shown for i in regions[k].largest(_BARS)}
     handles: list[Any] = [
@@ -92,7 +93,7 @@ def _tornado(
         )
         top = max(top, (total + 2.0 * u).max())
     axes.set_xlim(min(0.0, axes.get_xlim()[0], low.min()), max(axes.get_xlim()[1], 1.04 * top))
-    title = f"{region.words}\n{region.rms / UM:.0f} µm rms"
+    title = f"{place_words(region.place)}\n{region.rms / UM:.0f} µm rms"
     axes.set_title(title, fontsize=9.5, loc="left", color=INK)
     plain(axes, "x")
     axes.tick_params(axis="y", length=0)

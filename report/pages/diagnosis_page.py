@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import file_unit
+from report.numbers import digits
 from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
@@ -43,7 +44,6 @@ from twin.files import reading_columns
 from twin.library import kinds
 from twin.record import Touches
 from twin.units import UM
-from twin.words import digits
 
 PAGE = "report.html"
 PICTURES = "pictures"

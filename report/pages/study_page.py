@@ -9,8 +9,8 @@ import numpy as np
 from report.maps import level
 from report.pages.page import write_page
 from report.scenes import Scene, draw_volumes
-from report.words import unsampled
-from sensitivity.shares import region_words, regions
+from report.words import dominant_words, place_words, sampling_words, unsampled
+from sensitivity.shares import regions
 from sensitivity.study import Study, Volume, has_volume, volume
 from twin.errors import DesignError
 from twin.frames import Array
@@ -77,6 +77,7 @@ def study_content(study: Study, pictures: Sequence[Shown]) -> dict[str, Any]:
     return {
         "chain": study.chain,
         "study": study,
+        "sampling": sampling_words(v),
         "study_maps": sorted(pictures, key=lambda shown: place.get(shown[0], len(_ORDER))),
         "study_poses": len(study.q),
         "study_mean_um": float(v.mean.mean()) / UM,
@@ -84,7 +85,11 @@ def study_content(study: Study, pictures: Sequence[Shown]) -> dict[str, Any]:
         "study_worst_um": float(v.p95.max()) / UM,
         "exact_um": study.exact.rms / UM,
         "regions": [
-            {"words": r.words, "rms_um": r.rms / UM, "errors": region_words(r, names)}
+            {
+                "words": place_words(r.place),
+                "rms_um": r.rms / UM,
+                "errors": dominant_words(r, names),
+            }
             for r in regions(study.population, study.workspace)
         ],
     }
@@ -150,7 +155,7 @@ def error_scenes(study: Study, T_table_artefact: Array | None = None) -> list[Sc
     for words, rotary in each:
         box = volume(study.workspace, rotary)
         values = box.volumetric(study.population) / UM
-        out.append(_scene(box, words, "95 % quantile / µm", values, T_table_artefact))
+        out.append(_scene(box, words, "95 % quantile in µm", values, T_table_artefact))
     return out
 
 
@@ -182,7 +187,7 @@ def _scene(
 ) -> Scene:
     """One map with its readings, axes and standard."""
     at = ", ".join(f"{name} {reading / DEG:.0f}°" for name, reading in sorted(box.rotary.items()))
-    first, second, third = (f"{name} / mm" for name in box.axes)
+    first, second, third = (f"{name} in mm" for name in box.axes)
     stands = None if T_table_artefact is None else box.T_readings_table @ T_table_artefact
     return Scene(
         title=f"{words}: {at}" if at else words,

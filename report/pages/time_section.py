@@ -6,8 +6,8 @@ import numpy as np
 
 from probe_paths.campaign import Order, orders, probing_time
 from probe_paths.plan import Probe
+from report.numbers import percent
 from report.pages.design_result import Design
-from report.pages.page import percent
 from report.words import ordering_words
 from twin.units import HOUR, MINUTE, UM, URAD
 
@@ -20,7 +20,9 @@ def minutes(design: Design) -> dict[str, float]:
     for rival in placement.rivals[1:]:
         seconds = np.nan
         if rival.body is not None:
-            seconds = probing_time(rival.body, project.chain, probe, project.setup, rival.touches)
+            seconds = probing_time(
+                rival.body, project.chain, probe, project.setup, rival.touches, design.plan.options
+            )
         found[rival.name] = float(seconds) / MINUTE
     return found
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnosis.fit import Fit
 from diagnosis.residual import SEES, Structure, directions, groups, variables
+from report.numbers import span, time_unit
 from report.plots.residual_pictures import binned, kept
 from report.style import (
     BLUE,
@@ -24,7 +25,6 @@ from report.style import (
 from twin.frames import Array
 from twin.record import IntArray
 from twin.units import UM
-from twin.words import span, time_unit
 
 NEIGHBOURS = 14
 """Touches over which a map of two variables is averaged."""

@@ -116,7 +116,9 @@ def write_order_picture(path: str | Path, plan: TouchPlan) -> None:
         ax.margins(y=0.15)
         plain(ax)
     panels[-1].set_xlabel("touch, in the order of execution")
-    panels[0].legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False
-    )
+    # a machine without rotary axes has one panel, and nothing in it
+    if plan.chain.rotary_axes:
+        panels[0].legend(
+            loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False
+        )
     save(drawn, path)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from report.numbers import noun, time_unit, unit_of
 from twin.frames import Array
 from twin.machine import Chain, Link
 from twin.units import DEG
-from twin.words import noun, time_unit, unit_of
 
 
 def axis_title(link: Link) -> str:

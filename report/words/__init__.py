@@ -4,10 +4,12 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
+from report.words.artefact_words import alternative_words, comparison_remarks, criterion_words
+from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
-    named_value,
+    promise_sentence,
     region_words,
     rivals_words,
     sizes,
@@ -17,49 +19,47 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.fault_words import fault_sentences
+from report.words.fault_words import (
+    fault_sentences,
+)
 from report.words.geometry_words import (
     correction_line,
     geometry_lines,
     ladder_sentence,
     noted_lines,
 )
-from report.words.identifiability_file import write_identifiability
-from report.words.identifiability_words import (
-    combination_words,
-    family_words,
-    gist,
-    pair_words,
-    reason_words,
-    resolution_words,
-)
-from report.words.identification_file import write_identification
-from report.words.parameter_words import in_words, short
 from report.words.probe_words import ordering_words
 from report.words.remark_words import remark_sentence
-from report.words.sensitivity_words import study_words, unsampled
+from report.words.sensitivity_words import (
+    dominant_words,
+    place_words,
+    sampling_words,
+    study_words,
+    unsampled,
+)
 
 __all__ = [
-    "combination_words",
+    "alternative_words",
+    "best_rival",
+    "comparison_remarks",
     "comparison_sentence",
     "correction_line",
-    "family_words",
+    "criterion_words",
+    "design_lines",
+    "dominant_words",
     "fault_sentences",
     "geometry_lines",
-    "gist",
-    "in_words",
     "ladder_sentence",
     "microns",
-    "named_value",
     "noted_lines",
     "ordering_words",
-    "pair_words",
-    "reason_words",
+    "place_words",
+    "promise_sentence",
+    "proof_line",
     "region_words",
     "remark_sentence",
-    "resolution_words",
     "rivals_words",
-    "short",
+    "sampling_words",
     "sizes",
     "stated_noise",
     "structure_words",
@@ -67,7 +67,6 @@ __all__ = [
     "unit_words",
     "unsampled",
     "values",
+    "verdict_of_design",
     "verdict_sentence",
-    "write_identifiability",
-    "write_identification",
 ]

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from diagnosis.answer import DescriptionFault, Fault
+from report.numbers import digits, with_uncertainty
 from report.words.diagnosis_words import microns
 from twin.units import DEG
-from twin.words import digits, listed, with_uncertainty
+from twin.words import listed
 
 
 def fault_sentences(faults: Sequence[DescriptionFault]) -> list[str]:

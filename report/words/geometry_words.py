@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 
 from diagnosis.answer import Correction, GeometryRow, LearntGeometry, Quantity
+from report.numbers import digits, with_uncertainty
 from report.words.diagnosis_words import microns
 from twin.units import UM, URAD
-from twin.words import digits, listed, with_uncertainty
+from twin.words import listed
 
 _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 

@@ -1,7 +1,12 @@
-"""What needs no sampling: Jacobians, variance shares, lengths over a workspace, first order."""
+"""What needs no sampling: Jacobians, variance shares, lengths over a workspace, to first order.
+
+Readings of a machine go in; out come the deviation of the tool point per unit of every error
+parameter, its covariance over a population and the distribution of its length. `workspace` says
+where is looked.
+"""
 
 from sensitivity.first_order.by_parameter import jacobian_by_parameter
-from sensitivity.first_order.indices import covariance, parts, rms, variance_shares
+from sensitivity.first_order.indices import covariance, rms, variance_parts, variance_shares
 from sensitivity.first_order.jacobians import jacobian, sensitivity
 from sensitivity.first_order.normal_lengths import NormalLength, normal_length
 from sensitivity.first_order.workspace import Box, Workspace, latin_hypercube, section
@@ -15,9 +20,9 @@ __all__ = [
     "jacobian_by_parameter",
     "latin_hypercube",
     "normal_length",
-    "parts",
     "rms",
     "section",
     "sensitivity",
+    "variance_parts",
     "variance_shares",
 ]

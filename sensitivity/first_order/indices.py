@@ -117,7 +117,7 @@ def _mean_product(population: Population, q: Array, one: Symbol, two: Symbol) ->
     return out
 
 
-def parts(population: Population, q: Array, length: Array | float) -> Array:
+def variance_parts(population: Population, q: Array, length: Array | float) -> Array:
     """Part of every error in the mean square of the deviation, (N, P), mm^2, first order.
 
     ``E|d|^2 = sum_p |dp/dE_p|^2 E[e_p^2]`` for independent errors of mean zero. Of the mixed term
@@ -146,14 +146,14 @@ def variance_shares(population: Population, q: Array, length: Array | float) -> 
     Reference:
         Gamboa et al., Electron. J. Statist. 8 (2014) 575: Sobol indices of vector outputs.
     """
-    each = parts(population, q, length)
+    each = variance_parts(population, q, length)
     total = each.sum(axis=1, keepdims=True)
     return each / np.where(total > 0.0, total, 1.0)
 
 
 def rms(population: Population, q: Array, length: Array | float) -> Array:
     """Root mean square of the volumetric error |d| at every pose, (N,), mm, without sampling."""
-    return np.sqrt(np.maximum(parts(population, q, length).sum(axis=1), 0.0))
+    return np.sqrt(np.maximum(variance_parts(population, q, length).sum(axis=1), 0.0))
 
 
 def covariance(population: Population, q: Array, length: Array | float) -> Array:

@@ -106,8 +106,10 @@ def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
     mesh = np.meshgrid(*each, indexing="ij")
     q = _inside(workspace, np.stack([m.ravel() for m in mesh], axis=-1))
     if not len(q):
+        assert workspace.volume is not None  # the limits alone leave every pose in
         raise NotReachable(
-            f"no pose of the workspace has its tool point in {_box(workspace.volume)}"
+            "no pose of the workspace has its tool point in "
+            f"{_spans(workspace.volume)} mm of the table"
         )
     return q
 
@@ -158,16 +160,14 @@ def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) 
             return found[:count]
     raise NotReachable(
         f"only {len(found)} of {_ROUNDS * count} poses have their tool point in "
-        f"{_box(workspace.volume)} with every axis within its limits"
+        f"{_spans(workspace.volume)} mm of the table with every axis within its limits"
     )
 
 
-def _box(volume: Box | None) -> str:
-    """A box in the table frame in words."""
-    if volume is None:
-        return "the workspace"
-    spans = (f"{a} {lo:.0f} to {hi:.0f}" for a, lo, hi in zip("xyz", *volume, strict=True))
-    return f"{', '.join(spans)} mm of the table"
+def _spans(volume: Box) -> str:
+    """`x -60 to 60, y ...`."""
+    each = zip("xyz", *volume, strict=True)
+    return ", ".join(f"{axis} {low:.0f} to {high:.0f}" for axis, low, high in each)
 
 
 def section(

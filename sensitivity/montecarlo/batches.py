@@ -1,4 +1,4 @@
-"""Batches of random machines: the unit of work that any crew can take, and how it is counted."""
+"""Batches of random machines: the unit of work that any worker can take, and how it is counted."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -48,7 +48,7 @@ class SharedArrays(NamedTuple):
     threads: int | None
 
 
-def ground(
+def shared_arrays(
     population: Population,
     q: Array,
     length: Array | float,
@@ -74,7 +74,7 @@ def batches(count: int, rng: np.random.Generator) -> Iterator[Batch]:
         yield Batch(tuple(rng.spawn(-(-machines // DRAWS_A_CHILD))), machines)
 
 
-def counted(shared: SharedArrays, batch: Batch) -> Lengths:
+def count_batch(shared: SharedArrays, batch: Batch) -> Lengths:
     """Draw the machines of a batch and count the lengths of their deviations at all poses."""
     lots, left = [], batch.machines
     for child in batch.children:

@@ -1,4 +1,4 @@
-"""A Dask cluster as crew: reaching its scheduler, and waiting for results that may never come."""
+"""A Dask cluster as workers: reaching its scheduler, waiting for results that may never come."""
 
 import logging
 import time
@@ -78,9 +78,9 @@ def _wait_for_workers(client: Any, address: str, answer: float) -> None:
         time.sleep(0.1)
 
 
-def is_cluster(crew: object) -> bool:
+def is_cluster(workers: object) -> bool:
     """Whether something is a Dask client, without loading Dask."""
-    return any(c.__module__.partition(".")[0] == "distributed" for c in type(crew).__mro__)
+    return any(c.__module__.partition(".")[0] == "distributed" for c in type(workers).__mro__)
 
 
 def awaited(client: Any, future: Any) -> Any:

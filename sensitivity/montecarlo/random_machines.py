@@ -9,14 +9,14 @@ from sensitivity.montecarlo.batches import (
     MACHINES_A_BATCH,
     batches,
     bin_width,
-    counted,
-    ground,
+    count_batch,
     seed_words,
+    shared_arrays,
 )
 from sensitivity.montecarlo.lengths import Lengths
 from sensitivity.montecarlo.stability import Stabiliser
 from sensitivity.montecarlo.tally import QUANTILES, Tally, Volumetric, moments, quantiles
-from sensitivity.montecarlo.workers import Crew, in_order
+from sensitivity.montecarlo.workers import Workers, in_order
 from sensitivity.population import Population
 from twin.compute import Progress, silent
 from twin.errors import DesignError
@@ -24,8 +24,6 @@ from twin.frames import Array
 
 WORST = 0.05
 """Share of the poses that counts as the worst ones of a machine."""
-
-__all__ = ["WORST", "Volumetric", "volumetric"]
 
 
 def volumetric(
@@ -40,7 +38,7 @@ def volumetric(
     precision: float = 0.0,
     digits: int = 0,
     recurrence: bool = True,
-    crew: Crew = None,
+    workers: Workers = None,
 ) -> Volumetric:
     """Statistics of the volumetric error over random machines, at every pose.
 
@@ -68,13 +66,13 @@ def volumetric(
         precision: Half width of mean and 95 % quantile at a coverage of 95 %, mm; 0 for none.
         digits: Significant digits that have to be stable; 0 for none.
         recurrence: Whether to look for the worst poses of every machine; not a number otherwise.
-        crew: Who does the work: None for this process, an executor of `concurrent.futures`, or the
-            client of a Dask cluster (`sensitivity.montecarlo.dask_cluster`). The result for a seed
-            is the same to the last bit wherever numpy and processor are the same.
+        workers: Who does the work: None for this process, an executor of `concurrent.futures`, or
+            the client of a Dask cluster (`sensitivity.montecarlo.dask_cluster`). The result for a
+            seed is the same to the last bit wherever numpy and processor are the same.
 
     Raises:
         DesignError: Fewer than two draws, no pose, fewer draws than two batches for stable digits,
-            or a crew that is gone.
+            or workers that are gone.
     """
     if draws < 2 or not len(q):
         raise DesignError(
@@ -89,11 +87,11 @@ def volumetric(
     width = bin_width(rms(population, q, length))
     reference = reference or len(q)
     worst = (reference, max(1, round(WORST * reference))) if recurrence else (0, 0)
-    threads = None if crew is None else 1
+    threads = None if workers is None else 1
     seed = seed_words(rng)
-    prepare = partial(ground, population, q, length, width, tolerance, worst, threads)
+    prepare = partial(shared_arrays, population, q, length, width, tolerance, worst, threads)
     tally, stabiliser = Tally(width, tolerance), Stabiliser(digits) if digits else None
-    for found in in_order(crew, prepare, counted, batches(draws, rng)):
+    for found in in_order(workers, prepare, count_batch, batches(draws, rng)):
         tally.add(found)
         progress("random machines", tally.count, draws)
         if stabiliser:

@@ -56,17 +56,6 @@ class Stability:
         """Whether every statistic is stable at every pose."""
         return self.batches > 1 and self.ratio <= 1.0
 
-    @property
-    def words(self) -> str:
-        """One line for reports."""
-        found = f"{self.digits} significant digits of the standard deviation after {self.batches} "
-        found += "batches (JCGM 101, 7.9.4)"
-        if self.is_stable:
-            return f"stable to {found}"
-        if not np.isfinite(self.ratio):
-            return f"NOT shown to be stable to {found}: one batch tells nothing"
-        return f"NOT stable to {found}: {self.ratio:.2g} times the tolerance"
-
 
 class Stabiliser:
     """Averages of statistics over batches, and whether they have settled."""

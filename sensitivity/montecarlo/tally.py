@@ -9,7 +9,6 @@ from sensitivity.montecarlo.lengths import BINS, Lengths
 from sensitivity.montecarlo.stability import Stability
 from twin.compute import blocks
 from twin.frames import Array
-from twin.units import UM
 
 QUANTILES = (0.5, 0.95, 0.99)
 _ROWS = 1000  # poses whose histograms are summed at once
@@ -74,15 +73,6 @@ class Volumetric:
     def achieved(self) -> float:
         """Twice the largest standard error of mean and 95 % quantile at any pose, mm."""
         return 2.0 * float(max(self.mean_u.max(), self.p95_u.max()))
-
-    @property
-    def statement(self) -> str:
-        """What has to stand beside every figure: draws, seed, precision."""
-        words = (
-            f"{self.draws} random machines, seed {self.seed}, mean and P95 to "
-            f"± {self.achieved / UM:.2g} µm (95 %) at every pose"
-        )
-        return words if self.stability is None else f"{words}; {self.stability.words}"
 
 
 class Tally:

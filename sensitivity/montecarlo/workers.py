@@ -28,12 +28,12 @@ class Client(Protocol):
         """Threads of every worker."""
 
 
-Crew = Executor | Client | None
+Workers = Executor | Client | None
 """`None` for this process alone."""
 
 
 def in_order(
-    crew: Crew,
+    workers: Workers,
     prepare: Callable[[], Shared],
     work: Callable[[Shared, Job], Result],
     jobs: Iterable[Job],
@@ -45,48 +45,48 @@ def in_order(
     worker that is lost, what it shared included.
 
     Args:
-        crew: Who does it.
+        workers: Who does it.
         prepare: Makes what all jobs share; called once in this process, or once on a cluster.
         work: A function of a module, so that other processes find it.
         jobs: What there is to do.
 
     Raises:
-        DesignError: The crew is gone.
+        DesignError: The workers are gone.
     """
-    if crew is None:
+    if workers is None:
         shared = prepare()
         yield from (work(shared, job) for job in jobs)
-    elif isinstance(crew, Executor):
-        yield from _by_executor(crew, prepare(), work, jobs)
-    elif is_cluster(crew):
-        yield from _by_cluster(crew, prepare, work, jobs)
+    elif isinstance(workers, Executor):
+        yield from _by_executor(workers, prepare(), work, jobs)
+    elif is_cluster(workers):
+        yield from _by_cluster(workers, prepare, work, jobs)
     else:
-        raise DesignError(f"{type(crew).__name__} is neither an executor nor a Dask client")
+        raise DesignError(f"{type(workers).__name__} is neither an executor nor a Dask client")
 
 
 def _by_executor(
-    crew: Executor, shared: Shared, work: Callable[[Shared, Job], Result], jobs: Iterable[Job]
+    workers: Executor, shared: Shared, work: Callable[[Shared, Job], Result], jobs: Iterable[Job]
 ) -> Iterator[Result]:
-    most = 2 * (getattr(crew, "_max_workers", None) or cpu_count() or 1)
+    most = 2 * (getattr(workers, "_max_workers", None) or cpu_count() or 1)
     try:
-        yield from _window(lambda job: crew.submit(work, shared, job), jobs, most, _plain_result)
+        yield from _window(lambda job: workers.submit(work, shared, job), jobs, most, _plain_result)
     except BrokenExecutor as error:
         raise DesignError(f"a worker process ended before its work was done ({error})") from error
 
 
 def _by_cluster(
-    crew: Any,
+    workers: Any,
     prepare: Callable[[], Shared],
     work: Callable[[Shared, Job], Result],
     jobs: Iterable[Job],
 ) -> Iterator[Result]:
-    shared = crew.submit(prepare, pure=False)
-    most = 2 * max(1, sum(crew.nthreads().values()))
+    shared = workers.submit(prepare, pure=False)
+    most = 2 * max(1, sum(workers.nthreads().values()))
     yield from _window(
-        lambda job: crew.submit(work, shared, job, pure=False),
+        lambda job: workers.submit(work, shared, job, pure=False),
         jobs,
         most,
-        lambda future: awaited(crew, future),
+        lambda future: awaited(workers, future),
     )
 
 

@@ -1,4 +1,8 @@
-"""Random machines: distributions of errors, their dependence, and draws from them."""
+"""Random machines: distributions of errors, their dependence, and draws from them.
+
+Ranges, shapes and correlations go in (`Population`); drawn machines come out as parameter vectors
+of one model, so that their deviations are one product of matrices.
+"""
 
 from sensitivity.population.dependence import Dependence, Group, grouped, product_moment
 from sensitivity.population.distributions import CLASSES, CONSTANT, Distributions, Mix

@@ -96,7 +96,8 @@ def norm_shares(
         raise DesignError("total effects want independent errors; these are correlated")
     seed = seed_words(rng)
     J = jacobian_by_parameter(population.chain, q, length)
-    one, two = (coefficients(population, draw(population, machines, r)).T for r in rng.spawn(2))
+    first, second = rng.spawn(2)  # of the machines, and of those that lend them single errors
+    one, two = (coefficients(population, draw(population, machines, r)).T for r in (first, second))
     shapes = shape_columns(population, q)
 
     def values(rows: slice) -> tuple[Array, Array]:

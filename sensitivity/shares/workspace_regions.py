@@ -1,18 +1,19 @@
-"""Parts of a workspace with names in words, and which errors make the deviation in each.
+"""Parts of a workspace, and which errors make the deviation in each.
 
 The shares are those of `sensitivity.first_order.indices`: exact for the deviation to first order.
-What is
-sampled are only the poses of a region, evenly and without chance; the range of the shares over them
-is real and no uncertainty. What an error does to the length |d|, interactions included, is another
-matter and takes random machines.
+What is sampled are only the poses of a region, evenly and without chance; the range of the shares
+over them is real and no uncertainty. What an error does to the length |d|, interactions included,
+is another matter and takes random machines.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
-from sensitivity.first_order import Workspace, parts
+from sensitivity.first_order import Workspace, variance_parts
 from sensitivity.population import Population
 from sensitivity.shares.total_effect_indices import MACHINES, norm_shares
 from twin.frames import Array
@@ -32,19 +33,43 @@ _TRIES = 20
 Squeeze = Callable[[Array], Array]
 
 
+class Part(Enum):
+    """Parts of a workspace."""
+
+    WHOLE = "whole workspace"
+    MIDDLE = "linear axes in their middle third"
+    CORNERS = "linear axes in their outer sixths"
+    END = "an end of a rotary axis"
+    AROUND = "readings around an angle of a rotary axis that turns all round"
+
+
+class Place(NamedTuple):
+    """Where a region is.
+
+    Attributes:
+        part: Which part of the workspace.
+        axes: Whose readings are restricted.
+        limits: Of the one rotary axis of an end or an angle, rad.
+    """
+
+    part: Part
+    axes: tuple[str, ...] = ()
+    limits: tuple[float, float] = (0.0, 0.0)
+
+
 @dataclass(frozen=True, eq=False)
 class Region:
     """Part of a workspace.
 
     Attributes:
-        words: What it is, for a user.
+        place: Where it is.
         q: Poses in it, (N, A).
         shares: Share of every error parameter in the variance of the deviation, (N, P).
         mean_shares: The same in the variance summed over the region, (P,).
         rms: Root mean square of the volumetric error over machines and poses, mm.
     """
 
-    words: str
+    place: Place
     q: Array
     shares: Array
     mean_shares: Array
@@ -67,16 +92,24 @@ def regions(population: Population, workspace: Workspace) -> tuple[Region, ...]:
         workspace: Limits.
     """
     out = []
-    for words, readings in _named(workspace):
+    for place, readings in _places(workspace):
         q = _poses(workspace, readings)
         if not len(q):
             continue
-        each = parts(population, q, workspace.length)
+        each = variance_parts(population, q, workspace.length)
         total = each.sum(axis=1, keepdims=True)
         shares = each / np.where(total > 0.0, total, 1.0)
         whole = float(each.sum())
         of_all = each.sum(axis=0) / (whole if whole > 0.0 else 1.0)
-        out.append(Region(words, q, shares, of_all, float(np.sqrt(total.mean()))))
+        out.append(
+            Region(
+                place=place,
+                q=q,
+                shares=shares,
+                mean_shares=of_all,
+                rms=float(np.sqrt(total.mean())),
+            )
+        )
     return tuple(out)
 
 
@@ -131,61 +164,40 @@ def region_totals(
         np.stack([part.mean(axis=1) for part in np.split(values, ends, axis=1)])
         for values in (each.total, each.u)
     )
-    return RegionTotals(total, u, each.machines, _TOTAL_POSES, each.seed)
+    return RegionTotals(
+        total=total, u=u, machines=each.machines, poses=_TOTAL_POSES, seed=each.seed
+    )
 
 
-def region_words(region: Region, names: Sequence[str], enough: float = 0.5) -> str:
-    """Which errors make most of the deviation in a region, in one sentence.
-
-    Args:
-        region: The region.
-        names: Of the parameters.
-        enough: Share that the named errors make together, at least.
-    """
-    shares = region.mean_shares
-    order = region.largest(len(shares))
-    if not order:
-        return f"{region.words}: no error moves the tool point."
-    count = int(np.searchsorted(np.cumsum(shares[order]), enough)) + 1
-    kept = order[:count]
-    if count == 1:
-        return f"{names[kept[0]]} makes {100.0 * shares[kept[0]]:.0f} % of the variance"
-    named = ", ".join(f"{names[i]} {100.0 * shares[i]:.0f} %" for i in kept)
-    return f"{named} make {100.0 * shares[kept].sum():.0f} % of the variance together"
-
-
-def _named(workspace: Workspace) -> list[tuple[str, dict[str, Squeeze]]]:
-    """Names of regions with the readings that differ from the whole: unit interval to reading."""
+def _places(workspace: Workspace) -> list[tuple[Place, dict[str, Squeeze]]]:
+    """Regions with the readings that differ from the whole: unit interval to reading."""
     chain, free = workspace.chain, workspace.open_axes
-    linear = sorted(a for a in free if a in chain.linear_axes)
-    letters = ", ".join(linear[:-1]) + (" and " if len(linear) > 1 else "") + "".join(linear[-1:])
-    out: list[tuple[str, dict[str, Squeeze]]] = [("whole workspace", {})]
+    linear = tuple(sorted(a for a in free if a in chain.linear_axes))
+    out: list[tuple[Place, dict[str, Squeeze]]] = [(Place(Part.WHOLE), {})]
     if linear:
         middle = {a: _between(workspace, a, *_MIDDLE) for a in linear}
         ends = {a: _outer(workspace, a) for a in linear}
-        out.append((f"middle: {letters} in their middle third", middle))
-        out.append((f"corners: {letters} in their outer sixths", ends))
+        out += [(Place(Part.MIDDLE, linear), middle), (Place(Part.CORNERS, linear), ends)]
     for axis in sorted(a for a in free if a in chain.rotary_axes):
         out += _of_rotary(workspace, axis)
     return out
 
 
-def _of_rotary(workspace: Workspace, axis: str) -> list[tuple[str, dict[str, Squeeze]]]:
-    """Ends and level of a rotary axis, or its quarters where it turns all round."""
+def _of_rotary(workspace: Workspace, axis: str) -> list[tuple[Place, dict[str, Squeeze]]]:
+    """Ends of a rotary axis, or two quarters and the opposite side where it turns all round."""
     low, high = workspace.limit(axis)
     if high - low < _TURN:
         step = _OUTER * (high - low)
-        spans = [(low, low + step), (high - step, high)]
         return [
-            (f"{axis} from {a / DEG:.0f}° to {b / DEG:.0f}°", {axis: _interval(a, b)})
-            for a, b in spans
+            (Place(Part.END, (axis,), span), {axis: _interval(*span)})
+            for span in ((low, low + step), (high - step, high))
         ]
     out = []
-    for around in (0.0, 0.5 * np.pi, np.pi):
-        if low <= around <= high:
-            a, b = max(around - _AROUND, low), min(around + _AROUND, high)
-            words = f"{axis} within {_AROUND / DEG:.0f}° of {around / DEG:.0f}°"
-            out.append((words, {axis: _interval(a, b)}))
+    for angle in (0.0, 0.5 * np.pi, np.pi):
+        if low <= angle <= high:
+            place = Place(Part.AROUND, (axis,), (angle - _AROUND, angle + _AROUND))
+            a, b = max(place.limits[0], low), min(place.limits[1], high)
+            out.append((place, {axis: _interval(a, b)}))
     return out
 
 

@@ -1,4 +1,7 @@
-"""One machine over one workspace: everything computed once, and written as files."""
+"""One machine over one workspace: everything computed once, and written as files.
+
+`run_study` computes, `write_study` writes; trajectories and volumes are looked at by themselves.
+"""
 
 from sensitivity.study.machine_study import Study, run_study
 from sensitivity.study.study_file import write_study

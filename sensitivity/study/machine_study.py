@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,11 +18,13 @@ from sensitivity.first_order import (
     sensitivity,
     variance_shares,
 )
-from sensitivity.montecarlo import Crew, ExactCheck, Volumetric, exact_check, volumetric
+from sensitivity.montecarlo import ExactCheck, Volumetric, Workers, exact_check, volumetric
 from sensitivity.population import Population
 from sensitivity.shares import TotalEffects, norm_shares
+from sensitivity.study.study_table import pose_columns, statistics_columns
 from sensitivity.study.trajectory import AlongPath, Trajectory, axis_effect, paper_trajectory
 from twin.compute import Progress, silent
+from twin.display import Tabular
 from twin.frames import Array
 from twin.machine import Chain
 
@@ -30,6 +33,15 @@ SECTION = 25
 
 _TOTAL_POSES = 300  # at which total effects are taken: their mean over a workspace needs no more
 _CHECKED = (20, 60)  # machines and poses on which first order is compared with the exact product
+
+
+class _Streams(NamedTuple):
+    """Random numbers of a study; their order is part of its results, new ones go to the end."""
+
+    poses: np.random.Generator
+    machines: np.random.Generator
+    exact_check: np.random.Generator
+    total_effects: np.random.Generator
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +80,8 @@ class PathStudy:
     effects: tuple[AlongPath, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Study:
+@dataclass(frozen=True, eq=False, repr=False)
+class Study(Tabular):
     """Where errors show on a machine.
 
     Attributes:
@@ -122,11 +134,16 @@ class Study:
         As shares of the closed one; what is beyond the sampling error is not normal in its shape.
         """
         closed, sampled = self.closed.p95, self.volumetric.p95
-        seen = closed > 0.0
-        if not seen.any():
+        moves = closed > 0.0
+        if not moves.any():
             return 0.0, 0.0
-        off = sampled[seen] / closed[seen] - 1.0
+        off = sampled[moves] / closed[moves] - 1.0
         return float(off.mean()), float(off[np.argmax(np.abs(off))])
+
+    def columns(self) -> dict[str, Array]:
+        """Every pose with the statistics of the volumetric error there, as in `poses.csv`."""
+        table = statistics_columns(self.volumetric, self.closed)
+        return pose_columns(self.chain, self.q) | table
 
     def ranking(self) -> list[tuple[str, float]]:
         """Error parameters by their mean share of the variance over the workspace."""
@@ -144,7 +161,7 @@ def run_study(
     progress: Progress = silent,
     tolerance: float = np.inf,
     digits: int = 0,
-    crew: Crew = None,
+    workers: Workers = None,
 ) -> Study:
     """Sensitivities, shares of variance and Monte Carlo over a workspace and along a trajectory.
 
@@ -157,15 +174,15 @@ def run_study(
         progress: Told what is being done.
         tolerance: For the exceedance, mm.
         digits: Significant digits that have to be stable (JCGM 101); 0 for none.
-        crew: Who draws the machines (`sensitivity.montecarlo.workers`).
+        workers: Who draws the machines (`sensitivity.montecarlo.workers`).
 
     Raises:
         NotReachable: The workspace has no pose.
         DesignError: Too few draws or poses.
     """
-    rng_poses, rng_draws, rng_check, rng_total = rng.spawn(4)
+    streams = _Streams(*rng.spawn(len(_Streams._fields)))
     length = workspace.length
-    q = latin_hypercube(workspace, poses, rng_poses) if isinstance(poses, int) else poses
+    q = latin_hypercube(workspace, poses, streams.poses) if isinstance(poses, int) else poses
     spread = rms(population, q, length)
     worst = q[np.argmax(spread)]
     planes = [
@@ -178,12 +195,12 @@ def run_study(
         everywhere,
         length,
         draws,
-        rng_draws,
+        streams.machines,
         progress,
         reference=len(q),
         tolerance=tolerance,
         digits=digits,
-        crew=crew,
+        workers=workers,
     )
     sections = []
     start = len(q)
@@ -201,10 +218,10 @@ def run_study(
         rms=spread,
         volumetric=found[slice(0, len(q))],
         sections=tuple(sections),
-        exact=exact_check(population, q[:checked], length, machines, rng_check),
+        exact=exact_check(population, q[:checked], length, machines, streams.exact_check),
         total=None
         if population.dependence
-        else norm_shares(population, q[:_TOTAL_POSES], length, rng_total),
+        else norm_shares(population, q[:_TOTAL_POSES], length, streams.total_effects),
         path=_along(population, way, found[slice(start, None)]) if way else None,
     )
 

@@ -16,7 +16,7 @@ from artefact.body.limits import (
     overhang,
 )
 from artefact.layout.sites import Blank
-from artefact.place.placement import PlacementOptions, place
+from artefact.place.placement import PlacementOptions, design_standard
 from artefact.reach.probe_clearance import ProbeShape
 from artefact.reach.touchable import ProbeReach, Requests
 from artefact.worth.touch_choice import TouchOptions
@@ -244,7 +244,9 @@ def test_contradictory_limits_are_refused_with_the_one_that_binds(chain, limits,
     reach = replace(ProbeReach(chain, Setup("a"), PROBE, 160.0), **what)
     workspace = Workspace(chain, LIMITS_OF_USER, 160.0)
     with pytest.raises(kind, match=line) as caught:
-        place(reach, Blank(limits=limits), workspace, np.random.default_rng(1), options=OPTIONS)
+        design_standard(
+            reach, Blank(limits=limits), workspace, np.random.default_rng(1), options=OPTIONS
+        )
     assert "\n" not in str(caught.value)
 
 
@@ -254,4 +256,4 @@ def test_a_workspace_out_of_reach_is_refused(chain):
     narrow = Workspace(chain, {**LIMITS_OF_USER, "B": (-109.0 * DEG, -108.0 * DEG)}, 160.0)
     reach = ProbeReach(chain, Setup("a"), PROBE, 160.0)
     with pytest.raises(NotReachable, match="the limits of B leave no room to approach a reading"):
-        place(reach, Blank(), narrow, np.random.default_rng(1), options=OPTIONS)
+        design_standard(reach, Blank(), narrow, np.random.default_rng(1), options=OPTIONS)

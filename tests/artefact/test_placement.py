@@ -10,7 +10,7 @@ from artefact.body.limits import Limits, check
 from artefact.body.patch import Meeting
 from artefact.body.standard import Base
 from artefact.layout.sites import Blank
-from artefact.place.placement import PlacementOptions, place
+from artefact.place.placement import PlacementOptions, design_standard
 from artefact.reach.probe_clearance import ProbeShape, clearance
 from artefact.reach.touchable import ProbeReach
 from artefact.worth.touch_choice import TouchOptions, table_poses
@@ -67,7 +67,7 @@ def reach(chain):
 
 @pytest.fixture(scope="module")
 def placement(reach, workspace):
-    return place(reach, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
+    return design_standard(reach, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
 
 
 def test_the_standard_meets_every_limit(placement):
@@ -184,7 +184,7 @@ def test_every_patch_says_what_it_is_for(placement, chain):
 
 
 def test_the_same_seed_gives_the_same_standard(placement, reach, workspace):
-    again = place(reach, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
+    again = design_standard(reach, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
     np.testing.assert_array_equal(again.requests.point, placement.requests.point)
     for one, other in zip(again.standard.patches, placement.standard.patches, strict=True):
         np.testing.assert_array_equal(one.heights, other.heights)
@@ -194,19 +194,19 @@ def test_too_many_patches_for_a_blank_are_refused(reach, workspace):
     options = PlacementOptions(patches=16, sites=60, choice=CHOICE)
     small = Blank(base=Base(half_size=(70.0, 70.0), corner_radius=10.0))
     with pytest.raises(NotBuildable, match="patches"):
-        place(reach, small, workspace, np.random.default_rng(1), options=options)
+        design_standard(reach, small, workspace, np.random.default_rng(1), options=options)
 
 
 def test_a_blank_larger_than_the_table_is_refused(reach, workspace):
     large = Blank(base=Base(half_size=(180.0, 140.0)))
     with pytest.raises(NotBuildable, match="360 x 280 mm is larger than the table, diameter 320"):
-        place(reach, large, workspace, np.random.default_rng(1), options=OPTIONS)
+        design_standard(reach, large, workspace, np.random.default_rng(1), options=OPTIONS)
 
 
 def test_limits_that_nothing_meets_are_named(reach, workspace):
     light = Blank(limits=Limits(max_mass=5.0))
     with pytest.raises(NotBuildable, match=r"no choice of 8 patches .*mass is .* limit 5\.000 kg"):
-        place(reach, light, workspace, np.random.default_rng(1), options=OPTIONS)
+        design_standard(reach, light, workspace, np.random.default_rng(1), options=OPTIONS)
 
 
 def test_a_standard_beyond_the_travel_is_refused(chain, workspace):
@@ -214,12 +214,12 @@ def test_a_standard_beyond_the_travel_is_refused(chain, workspace):
     away[:3, 3] = [2000.0, 0.0, 0.0]
     far = ProbeReach(chain, Setup("a", away), PROBE, LENGTH)
     with pytest.raises(NotReachable, match="every axis within its limits"):
-        place(far, Blank(), workspace, np.random.default_rng(1), options=OPTIONS)
+        design_standard(far, Blank(), workspace, np.random.default_rng(1), options=OPTIONS)
 
 
 def test_an_unknown_criterion_is_refused(reach, workspace):
     with pytest.raises(DesignError, match="criterion 'T', expected one of I, G, D, A, E"):
-        place(
+        design_standard(
             reach,
             Blank(),
             workspace,
@@ -261,7 +261,9 @@ def test_groups_of_errors_reach_the_placement(reach, workspace, chain, monkeypat
     for groups in ([Group(names, correlation=1.0)], [Group(names, correlation=0.0)]):
         population = Population(chain, dependence=grouped(groups))
         with pytest.raises(ScalesAreDrawn):
-            place(reach, Blank(), workspace, np.random.default_rng(3), population, options)
+            design_standard(
+                reach, Blank(), workspace, np.random.default_rng(3), population, options
+            )
     spread = []
     for parameters, scale in drawn:
         columns = [[n in p for p in parameters].index(True) for n in names]

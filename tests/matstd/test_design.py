@@ -152,7 +152,6 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("gap_mm = 1.0", "gap_mm = -1.0", "limits.gap_mm"),
         ("gap_mm = 1.0", "gap_mm = 60.0", "8 patches fit on the blank; between them the ball"),
         ("B = [-90.0, 20.0]", "B = [28.0, 30.0]", "limits of B leave no room"),
-        ("origin_mm = [0.0, 0.0", "origin_mm = [2000.0, 0.0", "only 0 of 16000 poses"),
     ],
 )
 def test_bad_project(
@@ -165,7 +164,7 @@ def test_bad_project(
     assert main(["design", str(path), "-o", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
     assert expected in told
-    assert told.count("\n") == 1
+    assert len([line for line in told.splitlines() if not line.startswith("[")]) == 1  # progress
     assert not (tmp_path / "out").exists()
 
 
@@ -182,7 +181,7 @@ def test_what_the_example_only_mentions_is_accepted(tmp_path: Path, relation: st
     assert project.expected.dependence is not None
     chain = project.chain
     assert project.population.shapes_of(chain.symbol("EXX")) == ("linear", "sinusoidal")
-    assert project.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
+    assert project.expected.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
 
 
 def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
@@ -243,9 +242,9 @@ def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:
     path.write_text(path.read_text() + ranges)
     project = read_project(path)
     chain = project.chain
-    assert project.ranges.of(chain, chain.symbol("EXX")) == (3.0 * UM, 4.0 * UM)
-    assert project.ranges.of(chain, chain.symbol("EC0Y")) == (1.0 * URAD, 2.0 * URAD)
-    assert project.ranges.of(chain, chain.symbol("EYX")) == (50.0 * UM, 100.0 * UM)
+    assert project.expected.ranges.of(chain, chain.symbol("EXX")) == (3.0 * UM, 4.0 * UM)
+    assert project.expected.ranges.of(chain, chain.symbol("EC0Y")) == (1.0 * URAD, 2.0 * URAD)
+    assert project.expected.ranges.of(chain, chain.symbol("EYX")) == (50.0 * UM, 100.0 * UM)
 
 
 @pytest.mark.slow

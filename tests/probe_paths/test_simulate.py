@@ -1,5 +1,6 @@
 """`matstd simulate`: the thin command round it all."""
 
+import json
 import shutil
 from dataclasses import replace
 from datetime import timedelta
@@ -10,7 +11,11 @@ import pytest
 
 from artefact.body.standard_file import write_standard
 from matstd.cli import main
-from probe_paths.campaign.virtual_run import FIRST_MORNING
+from probe_paths.campaign.contact_solver import FIRST_MORNING
+from probe_paths.emit.program import make_programs
+from probe_paths.plan.planner import plan_touches
+from probe_paths.plan.probe import Probe
+from probe_paths.plan.touch_plan import PlanOptions
 from twin.files.run_file import read_run
 from twin.units import NM, UM
 
@@ -86,6 +91,11 @@ def test_an_existing_run_file_is_not_overwritten(folder, capsys):
         (("--probe-length", "150"), "a probe of length 160 mm, expected 150 mm"),
         (("--probe-radius", "200"), "expected 0 < radius < length"),
         (("--errors", "none.toml"), "none.toml"),
+        (("--add", "backlash(X)=3"), "a number with its unit, such as 5um"),
+        (("--add", "thermal-lag(EZZ,ram)=3um/K,tau=9min"), "no temperature sensor 'ram'"),
+        (("--sensors", "none.csv"), "none.csv"),
+        (("--setup-error", "X=3"), "--setup-error X=3: '3'"),
+        (("--probe-error", "size=3um"), "no parameter 'size'"),
     ],
 )
 def test_bad_input_gets_one_line_and_no_file(folder, capsys, more, expected):
@@ -179,3 +189,49 @@ def test_temperatures_by_the_clock_come_with_the_run(folder):
     touches = read_run(folder / "read" / "run.csv").touches
     started = np.round(touches.temperature["ram"] - 20.0 - touches.time / 60.0, 3)
     assert np.ptp(started) < 0.002  # a kelvin a minute from the start of the first program
+
+
+def test_a_planted_effect_is_found_and_named(folder, golden, small):
+    """Planted by its own formula in the exact machine, found by the diagnosis from the run file."""
+    wanted = golden.requests(small, each=14)
+    options = PlanOptions(tolerated=len(wanted))
+    plan = plan_touches(small, golden.machine(), Probe(), golden.setup(), wanted, options)
+    made = make_programs(plan)
+    made.write(folder / "programs")
+    names = [program.name for program in made.programs]
+    planted = "thermal-lag(EZZ)=60um,tau=15min"
+    more = ("--add", planted, "--noise-um", "0.5", "--seed", "3")
+    assert command(folder, *more, programs=names) == 0
+    run, out = str(folder / "out" / "run.csv"), str(folder / "found")
+    assert main(["diagnose", run, "--no-report", "-o", out]) == 0
+    found = json.loads((folder / "found" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert found["verdict"] == "missing effect"
+    step = found["steps"][1]
+    assert "thermal-lag(EZZ)" in {step["effect"], *step["cannot_be_told_from"]}
+    for name, size in (("tau_min", 15.0), ("amplitude_um", 60.0)):
+        assert abs(step["parameters"][name] - size) < 3.0 * step["uncertainty"][name]
+
+
+def test_what_the_sensors_read_stands_in_the_run_file_and_drives_the_effect(folder):
+    rows = [f"2031-05-06T07:{minute:02d}:00,{20 + minute}" for minute in range(40)]
+    sensors = folder / "sensors.csv"
+    sensors.write_text("\n".join(["clock,T_ram_degC", *rows]) + "\n", encoding="utf-8")
+    planted = "artefact-expansion(ram)=1000um/(m K)"
+    more = ("--sensors", str(sensors), "--noise-um", "0")
+    assert command(folder, *more, "--add", planted) == 0
+    run = read_run(folder / "out" / "run.csv")
+    warmth = run.touches.temperature["ram"]
+    # a degree a minute, seconds of the log's clock rounded down
+    assert (
+        np.abs(warmth - (warmth[0] + (run.touches.time - run.touches.time[0]) / 60.0)).max() < 0.02
+    )
+    assert np.abs(run.deviation).max() > 10.0 * UM
+    assert command(folder, *more, "--force") == 0
+    assert np.abs(read_run(folder / "out" / "run.csv").deviation).max() < NM
+
+
+def test_a_standard_that_stands_beside_its_place(folder):
+    """The set-up is fitted, and nothing of it is left in the deviations."""
+    assert command(folder, "--setup-error", "X=0.2mm,C=0.05deg", "--noise-um", "0") == 0
+    displaced = read_run(folder / "out" / "run.csv")
+    assert np.abs(displaced.deviation).max() < 2.0 * NM

@@ -20,7 +20,7 @@ from twin.effects.location import LocationError
 from twin.errors import DesignError, NotReachable
 from twin.frames import apply, inverse, pose, rotation, turn
 from twin.machine.contribution import Contribution
-from twin.machine.kinematics import exact_tip, tip
+from twin.machine.kinematics import exact_tip, table_to_tool, tip
 from twin.model.effect import contribution
 from twin.model.model import Model
 from twin.record.touches import Setup, Touches, at_poses
@@ -200,6 +200,17 @@ def test_shift_of_the_standard_and_bias_of_the_probe_count_outwards(read, small,
     expected = normal @ np.array([2.0, -1.0, 3.0]) * UM + 0.7 * UM
     measured = deviations(run, small, chain)
     assert np.abs(measured - expected).max() < HARDLY_CURVED
+
+
+def test_a_probe_that_differs_from_its_calibration(read, small, chain, plan):
+    """A larger ball meets early, so does a longer probe where the surface looks up at it."""
+    machine = VirtualMachine(chain, radius_error=5.0 * UM, length_error=4.0 * UM)
+    run = run_program(read[0], small, machine, np.random.default_rng(0))
+    rows = [t.number - 1 for t in read[0].touches]
+    normal = turn(plan.setup.T_table_artefact, plan.normal[rows])
+    axis = table_to_tool(chain, run.q)[:, :3, 2]
+    expected = 5.0 * UM + 4.0 * UM * np.einsum("ni,ni->n", normal, axis)
+    assert np.abs(deviations(run, small, chain) - expected).max() < HARDLY_CURVED
 
 
 def test_noise_is_that_of_the_trigger_and_of_the_seed(read, small, chain):

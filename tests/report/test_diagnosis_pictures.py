@@ -11,6 +11,7 @@ from diagnosis.answer.comparison import compare
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
 from diagnosis.residual.partial_residuals import partial, roughness
+from report.numbers import with_uncertainty
 from report.pages.compare_page import write_compare_page
 from report.pages.diagnosis_page import write_diagnosis_page
 from report.pages.page import p_value
@@ -38,10 +39,9 @@ from report.words.diagnosis_words import (
 )
 from twin.effects.backlash import KIND as BACKLASH
 from twin.effects.periodic import KIND as PERIODIC
-from twin.effects.thermal_lag import KIND as LAG
 from twin.library.ordinary import ordinary_model
+from twin.thermal.thermal_lag import KIND as LAG
 from twin.units import MINUTE, NM, UM
-from twin.words import with_uncertainty
 
 ROUNDING = 1e-9
 SAME = 1e-6  # of quantities of order one, after a second solution of the same equations

@@ -15,6 +15,7 @@ from report.pages.study_page import (
     write_study_page,
 )
 from report.style import figure, save
+from report.words.sensitivity_words import sampling_words
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study
@@ -49,8 +50,8 @@ def test_error_scenes_show_level_and_worst_table_with_the_standard_in_its_place(
     level, worst = error_scenes(study, T)
     assert level.title == "table level: B 0°, C 0°"
     assert worst.title.startswith("worst pose: B -")
-    assert level.labels == ("X / mm", "Y / mm", "Z / mm")
-    assert level.unit == "95 % quantile / µm"
+    assert level.labels == ("X in mm", "Y in mm", "Z in mm")
+    assert level.unit == "95 % quantile in µm"
     # normal errors have longer tails than bounded ones, by a few percent
     assert worst.values.max() == pytest.approx(study.volumetric.p95.max() / UM, rel=0.15)
     for scene, rotary in ((level, (0.0, 0.0)), (worst, None)):
@@ -88,7 +89,7 @@ def test_the_page_holds_every_map_once_and_the_regions_in_words(study, tmp_path)
     drawn = len(maps) + (0 if remarks else 2)  # without OpenGL a remark stands for two pictures
     assert page.count("<figure>") == drawn
     assert page.count("data:image/png;base64,") == drawn
-    assert study.volumetric.statement in page
+    assert sampling_words(study.volumetric) in page
     assert "corners: X, Y and Z in their outer sixths" in page
     assert "of the variance together" in page
     assert "project.toml" in page

@@ -18,7 +18,7 @@ def test_a_machine_without_errors_gives_a_whole_study(chain, workspace, tmp_path
     study = run_study(nothing, workspace, 20, 50, np.random.default_rng(1))
     assert study.volumetric.mean.max() == study.shares.max() == study.rms.max() == 0.0
     assert study.tail == (0.0, 0.0)
-    write_study(study, tmp_path)
+    write_study(study, tmp_path, "sampled")
     written = draw_maps(study, tmp_path)
     assert written
     assert all((tmp_path / name).stat().st_size > 0 for name, _ in written)

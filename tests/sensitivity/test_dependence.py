@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sensitivity.first_order.indices import covariance, parts, rms
+from sensitivity.first_order.indices import covariance, rms, variance_parts
 from sensitivity.first_order.workspace import latin_hypercube
 from sensitivity.montecarlo.batches import first_order
 from sensitivity.population.dependence import Dependence, Group, amplitude, grouped, product_moment
@@ -91,7 +91,7 @@ def test_closed_covariances_are_those_of_drawn_machines(chain, workspace, alike)
     assert np.abs(sampled - closed).max() < 0.03 * scale.max()
     independent = covariance(only(chain, ranges), q, LENGTH)
     assert np.abs(independent - closed).max() > 0.1 * scale.max()
-    np.testing.assert_allclose(parts(population, q, LENGTH).sum(axis=1), scale, rtol=1e-12)
+    np.testing.assert_allclose(variance_parts(population, q, LENGTH).sum(axis=1), scale, rtol=1e-12)
     np.testing.assert_allclose(rms(population, q, LENGTH) ** 2, scale, rtol=1e-12)
 
 
@@ -106,7 +106,7 @@ def test_errors_of_one_cause_cancel_where_their_signs_are_opposite(chain):
     )
     q = np.zeros((1, len(chain.axes)))
     assert rms(population, q, LENGTH)[0] < 1e-6
-    each = parts(population, q, LENGTH)[0]
+    each = variance_parts(population, q, LENGTH)[0]
     assert np.abs(each).max() < 1e-9
 
 

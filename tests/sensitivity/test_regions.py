@@ -5,9 +5,10 @@ import pytest
 from machines import LENGTH
 
 from report.maps.regions_picture import draw_regions
+from report.words.sensitivity_words import dominant_words, place_words
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
-from sensitivity.shares.workspace_regions import region_totals, region_words, regions
+from sensitivity.shares.workspace_regions import region_totals, regions
 from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
 from twin.machine.ranges import DEFAULT_RANGES, Ranges
@@ -20,12 +21,12 @@ def found(chain, workspace):
 
 
 def named(found, words):
-    (one,) = [r for r in found if r.words.startswith(words)]
+    (one,) = [r for r in found if place_words(r.place).startswith(words)]
     return one
 
 
 def test_poses_lie_where_the_words_say(found, chain):
-    assert [r.words for r in found] == [
+    assert [place_words(r.place) for r in found] == [
         "whole workspace",
         "middle: X, Y and Z in their middle third",
         "corners: X, Y and Z in their outer sixths",
@@ -79,8 +80,8 @@ def test_shares_of_two_constants_by_hand():
     for region in all_of_them:
         assert region.rms == pytest.approx(5 * UM)
         assert region.mean_shares[names.index("EX0X")] == pytest.approx(9 / 25)
-        assert region_words(region, names) == "EZ0Z makes 64 % of the variance"
-    words = region_words(all_of_them[0], names, enough=0.9)
+        assert dominant_words(region, names) == "EZ0Z makes 64 % of the variance"
+    words = dominant_words(all_of_them[0], names, enough=0.9)
     assert words == "EZ0Z 64 %, EX0X 36 % make 100 % of the variance together"
 
 
@@ -119,7 +120,7 @@ def test_diamonds_stand_at_the_total_effects(found, chain, workspace):
 def test_a_machine_without_errors_is_named(chain, workspace):
     ranges = Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES})
     nothing = regions(Population(chain, ranges), workspace)
-    assert "no error moves the tool point" in region_words(nothing[0], [])
+    assert "no error moves the tool point" in dominant_words(nothing[0], [])
     assert "No error" in draw_regions(chain, nothing).texts[0].get_text()
 
 
@@ -142,7 +143,7 @@ def test_the_tornado_holds_the_shares_in_percent(found, chain):
         labels = [t.get_text() for t in axes.get_yticklabels()]
         assert labels == [chain.symbols[i].name for i in order]
         title = axes.get_title(loc="left")
-        assert title == f"{region.words}\n{region.rms / UM:.0f} µm rms"
-    assert panels[-1].get_xlabel() == "share of the variance / %"
+        assert title == f"{place_words(region.place)}\n{region.rms / UM:.0f} µm rms"
+    assert panels[-1].get_xlabel() == "share of the variance in %"
     ends = [100.0 * np.quantile(r.shares[:, r.largest(1)], 0.95) for r in found]
     assert max(ends) < panels[0].get_xlim()[1] < 1.2 * max(ends)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from report.words.sensitivity_words import sampling_words, stability_words
 from sensitivity.montecarlo.random_machines import volumetric
 from sensitivity.montecarlo.stability import Stabiliser, Stability, numerical_tolerance
 from sensitivity.population.distributions import Distributions
@@ -88,9 +89,11 @@ def test_it_ends_when_stable_and_says_when_not(chain):
     assert fine.stability is not None
     assert not fine.stability.is_stable
     assert fine.draws == 5 * 10_240  # whole batches only
-    assert "NOT stable to 3" in fine.statement
-    assert "stable to 1 significant digits" in coarse.statement
-    assert coarse.statement.startswith(f"{coarse.draws} random machines, seed 1, mean and P95 to")
+    assert "NOT stable to 3" in sampling_words(fine)
+    assert "stable to 1 significant digits" in sampling_words(coarse)
+    assert sampling_words(coarse).startswith(
+        f"{coarse.draws} random machines, seed 1, mean and P95 to"
+    )
     # what is called stable does not move by more than its tolerance with other random numbers
     other = volumetric(population, q, LENGTH, 400_000, rng(2), digits=1, recurrence=False)
     delta = numerical_tolerance(coarse.sd, 1)
@@ -105,4 +108,4 @@ def test_digits_that_cannot_be_shown_are_refused(chain):
     with pytest.raises(DesignError, match="expected 1 to 6"):
         volumetric(Population(chain), q, LENGTH, 30_000, np.random.default_rng(1), digits=9)
     assert not Stability(2, 1, np.inf).is_stable
-    assert "one batch" in Stability(2, 1, np.inf).words
+    assert "one batch" in stability_words(Stability(2, 1, np.inf))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from report.maps.study_maps import draw_maps
+from report.words.sensitivity_words import sampling_words
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study, section_pairs
@@ -22,7 +23,7 @@ def study(chain, workspace):
 @pytest.fixture(scope="module")
 def written(study, tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
-    write_study(study, folder)
+    write_study(study, folder, sampling_words(study.volumetric))
     return folder, draw_maps(study, folder, np.random.default_rng(6))
 
 
@@ -76,7 +77,7 @@ def test_pictures_show_something(study, written):
     assert len(maps) == 7
     words = dict(maps)
     for name in ("volumetric_sections.png", "volumetric_axes.png"):
-        assert study.volumetric.statement in words[name]  # draws, seed, precision
+        assert sampling_words(study.volumetric) in words[name]  # draws, seed, precision
     assert "1024 pairs of random machines, seed" in words["variance_regions.png"]
     assert "Without sampling" in words["volumetric_rotary.png"]
     for name, caption in maps:

@@ -8,6 +8,7 @@ from simulator_machine import read_machine as second_model
 from simulator_machine import tip as second_tip
 
 from report.maps.trajectory_pictures import axis_effect_picture, statistics_picture
+from report.words.sensitivity_words import sampling_words
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.montecarlo.random_machines import volumetric
 from sensitivity.population.distributions import Distributions
@@ -130,7 +131,7 @@ def test_random_machines_along_a_path(own, path):
     population = Population(own, distributions=Distributions(("linear",)))
     found = volumetric(population, path.q, LENGTH, 2000, np.random.default_rng(3), tolerance=0.3)
     drawn, caption = statistics_picture(path, found, found.p95)
-    assert found.statement in caption
+    assert sampling_words(found) in caption
     assert "2000 random machines, seed 3" in caption
     assert any("beyond 300 µm" in t.get_text() for t in drawn.axes[1].get_legend().get_texts())
 

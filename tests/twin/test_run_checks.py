@@ -98,6 +98,54 @@ def test_deviations_of_another_instrument_are_its_own(tmp_path: Path) -> None:
     np.testing.assert_allclose(run.deviation, told * UM, atol=1e-3 * UM)
 
 
+def stated() -> dict[str, list]:
+    return {"dev_um": [f"{d / UM:.6f}" for d in true_deviation()]}
+
+
+def test_readings_that_belong_to_other_touches_are_refused(tmp_path: Path) -> None:
+    """X is off by 80 mm in every other row: no place of the standard fits all of them."""
+    table = rows()
+    table[::2, 1] += 80.0
+    with pytest.raises(BadFile, match=r"column dev_um: found .* µm where the readings say .* mm"):
+        read_run(write(tmp_path, table, stated()))
+
+
+def test_readings_of_another_place_move_the_set_up_and_say_so(tmp_path: Path) -> None:
+    table = rows()
+    table[:, 1] += 80.0
+    run = read_run(write(tmp_path, table, stated()))
+    (remark,) = run.remarks
+    assert re.search(r"set-up a stands 80(\.0+)? mm", remark)
+    np.testing.assert_allclose(run.deviation, true_deviation(), atol=1e-3 * UM)
+
+
+def test_one_wrong_reading_beside_a_stated_deviation_is_left_out(tmp_path: Path) -> None:
+    table = rows()
+    row = int(np.argmax(np.abs(table[:, 7])))  # where the normal looks along X
+    table[row, 1] += 80.0
+    run = read_run(write(tmp_path, table, stated()))
+    assert len(run) == COUNT - 1
+    (remark,) = run.remarks
+    assert re.match(
+        rf"line {row + 6}, column dev_um: .* cannot be, .*; the row is left out", remark
+    )
+
+
+def test_small_disagreement_with_the_readings_is_told(tmp_path: Path) -> None:
+    """Every deviation is stated 10 µm larger than readings give it: ten times its uncertainty."""
+    more = {"dev_um": [f"{d / UM + 10.0:.6f}" for d in true_deviation()]}
+    (remark,) = read_run(write(tmp_path, rows(), more)).remarks
+    assert remark.startswith("dev_um and the deviations that follow from the readings differ by ")
+
+
+def test_nominal_readings_agree_with_any_stated_deviation(tmp_path: Path) -> None:
+    table = rows()
+    table[:, 1:4] = table[:, 7:10] * 53.0 + [0.0, 0.0, 100.0]
+    run = read_run(write(tmp_path, table, stated()))
+    assert run.remarks == ()
+    np.testing.assert_allclose(run.deviation, true_deviation(), atol=1e-3 * UM)
+
+
 @pytest.mark.parametrize(
     ("radius", "sign", "expected"),
     [

@@ -107,7 +107,11 @@ def test_an_effect_without_a_slip_passes(own_register, tmp_path: Path) -> None:
         ("10 * UM", "0.0", "bump.parameters, size: found sd = 0, expected the size it may have"),
         ('"mm", 10', '"um", 10', "found the unit 'um', expected a base unit: mm or rad"),
         ('Inner("place"', 'Inner("spot"', "found inner parameters spot, expected those of tuning"),
-        ("-100.0, 100.0, 5", "100.0, -100.0, 5", "bump, grid of place: found .*, expected finite"),
+        (
+            "-100.0, 100.0, 5",
+            "100.0, -100.0, 5",
+            r"line 23, bump.inner, grid of place: found \[.*, expected finite",
+        ),
         ("place=float(place)", "spot=float(place)", "found TypeError: .*, expected an effect for"),
         (
             "(Bump(),), cl",
@@ -126,6 +130,90 @@ def test_a_slip_is_one_line(own_register, tmp_path: Path, old: str, new: str, ex
         try_kind(kind, touches(), path)
     assert str(caught.value).startswith(f"{path}: ")
     assert "\n" not in str(caught.value)
+
+
+LINE_OF_TERMS = 1 + FILE.splitlines().index("    def terms(self, touches):")
+LINE_OF_INNER = 1 + FILE.splitlines().index("    def inner(self, touches):")
+LINE_OF_TUNED = 1 + FILE.splitlines().index("    def tuned(self, place):")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (
+            "def tuned",
+            "def turned",
+            f"line {LINE_OF_INNER}, bump.inner: found inner and tuning wit",
+        ),
+        (
+            "def tuning",
+            "def turning",
+            "found inner and tuned without tuning, expected inner, tuned",
+        ),
+        (
+            AMOUNT,
+            "np.random.default_rng().normal(size=6)",
+            f"line {LINE_OF_TERMS}, bump: found oth",
+        ),
+        (AMOUNT, 'np.zeros(6) * touches.reading("X")', "found zero at every touch of this run"),
+        (AMOUNT, "touches.time.__setitem__(0, 1.0) or 0", f"line {LINE_OF_AMOUNT}: found ValueErr"),
+        (AMOUNT, "touches.reading('X').sort() or 0", f"line {LINE_OF_AMOUNT}: found ValueError"),
+        (AMOUNT, "touches.temperature.clear() or 0", f"line {LINE_OF_AMOUNT}: found AttributeErr"),
+        (AMOUNT, "touches.signature.shift.fill(0) or 0", f"line {LINE_OF_AMOUNT}: found ValueErr"),
+        (AMOUNT, "exit(3)", f"line {LINE_OF_AMOUNT}: found SystemExit: 3, expected an amount"),
+        (AMOUNT, "1.0", r"bump: found an amount of shape \(\), expected \(6,\), one a touch"),
+        (AMOUNT, "1j * np.ones(6)", "bump: found an amount of complex128, expected real numbers"),
+        (AMOUNT, "np.array(['a'] * 6)", "bump: found an amount of <U1, expected real numbers"),
+        ("Term(0,", "Term(0.0,", "bump: found a term of parameter 0.0, expected 0 to 0"),
+        ("replace(self, place=float(place))", "self", f"line {LINE_OF_TUNED}, bump.tuned: found"),
+        ("replace(self, place=float(place))", "None", "bump.tuned: found NoneType '', expected"),
+        ("(Bump(),), cl", "(Bump(), Bump()), cl", "bump: found its name proposed twice"),
+        ("(Bump(),), cl", "exit(1), cl", r"line \d+: found SystemExit: 1, expected effects in a"),
+    ],
+)
+def test_what_would_go_wrong_in_silence_is_refused(
+    own_register, tmp_path: Path, old: str, new: str, expected
+) -> None:
+    """Noise, zeros, writing into the touches, leaving the program: with the line of the file."""
+    path = tmp_path / "own.py"
+    text = FILE.replace(old, new)
+    assert text != FILE
+    path.write_text(text, encoding="utf-8")
+    (kind,) = library.load_user_effects(path)
+    run = replace(touches(), temperature={"oil": np.arange(6.0)})
+    before = run.q.copy()
+    with pytest.raises(BadFile, match=expected) as caught:
+        try_kind(kind, run, path)
+    assert "\n" not in str(caught.value)
+    assert np.array_equal(run.q, before)
+    assert run.time.flags.writeable
+
+
+def test_an_effect_that_acts_at_few_values_is_not_said_to_move_nothing(
+    own_register, tmp_path: Path
+) -> None:
+    """It acts at -50 alone, which is none of the first, middle and last values of the grid."""
+    path = tmp_path / "own.py"
+    path.write_text(FILE.replace(AMOUNT, 'touches.reading("X") * (self.place == -50.0)'))
+    (kind,) = library.load_user_effects(path)
+    try_kind(kind, touches(), path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('formula="f"', "formula=3", "Kind 'bump': found formula = 3, expected text"),
+        ("propose=lambda touches: (Bump(),)", "propose=3", "found propose of no function"),
+        ("BUMP = Kind(", "raise SystemExit(4)\nBUMP = Kind(", r"line 34: found SystemExit: 4"),
+    ],
+)
+def test_files_that_cannot_be_loaded_are_one_line(
+    own_register, tmp_path: Path, old: str, new: str, expected
+) -> None:
+    path = tmp_path / "own.py"
+    path.write_text(FILE.replace(old, new), encoding="utf-8")
+    with pytest.raises(BadFile, match=expected):
+        library.load_user_effects(path)
 
 
 def test_a_file_that_changed_is_read_again(own_register, tmp_path: Path) -> None:

@@ -1,12 +1,13 @@
 """What a touch probe adds of its own: lobes, its effective radius, a stylus that bends."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from twin.frames import Array
-from twin.model import Inner, Kind, Parameter, Term, Where
+from twin.model import Effect, Inner, Kind, Parameter, Term, Title, Where
 from twin.record import Touches
 from twin.units import UM
 
@@ -32,6 +33,7 @@ class ProbeLobing:
 
     kind = "probe-lobing"
     name = "probe-lobing"
+    title = Title("lobes of the probe", "probe")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -70,6 +72,7 @@ class ProbeRadius:
 
     kind = "probe-radius"
     name = "probe-radius"
+    title = Title("effective radius of the ball", "probe")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -91,6 +94,7 @@ class StylusBending:
 
     kind = "stylus-bending"
     name = "stylus-bending"
+    title = Title("bending of the stylus", "probe")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -103,24 +107,38 @@ class StylusBending:
         return (Term(0, Where("bias"), n[:, 0] ** 2 + n[:, 1] ** 2),)
 
 
+def _if_touching(effect: Callable[[], Effect], touches: Touches) -> Iterable[Effect]:
+    """The effect where a ball touched a standard; a laser or a tracker has no stylus."""
+    return (effect(),) if touches.instrument.is_ball_on_standard else ()
+
+
 LOBING = Kind.of(
     ProbeLobing,
+    title="lobes of the probe",
+    synonyms="pre-travel variation, triggering, kinematic probe, tri-lobing",
     formula="bias = sin(theta) (a cos(k phi) + b sin(k phi)), k = 2 to 6 lobes, tool frame",
     units="a, b: µm; k: 1",
     typical="3 to 8 µm with three lobes (kinematic), below 1 µm (strain gauge)",
     source="Estler et al., Precision Engineering 19 (1996): pre-travel of touch probes",
+    propose=partial(_if_touching, ProbeLobing),
 )
 RADIUS = Kind.of(
     ProbeRadius,
+    title="effective radius of the ball",
+    synonyms="probe calibration, ball diameter, stylus tip size, pre-travel",
     formula="bias = a, effective minus stated radius",
     units="a: µm",
     typical="1 to 5 µm",
     source="ISO 10360-5 (effective size of the stylus tip)",
+    propose=partial(_if_touching, ProbeRadius),
 )
 BENDING = Kind.of(
     StylusBending,
+    title="bending of the stylus",
+    synonyms="stylus deflection, probe bending",
     formula="bias = a sin^2(theta), theta between normal and tool axis",
     units="a: µm",
     typical="0.5 to 3 µm",
     source="cantilever F l^3/(3 E I); Estler et al. 1996",
+    propose=partial(_if_touching, StylusBending),
 )

@@ -9,7 +9,7 @@ from twin.files.machine_file import MachineTables, Pair, Vector, read_machine
 from twin.files.pose_file import read_poses, reading_columns
 from twin.files.run_file import SetupTable, read_run
 from twin.files.run_writer import write_run
-from twin.files.sensor_file import read_sensors
+from twin.files.sensor_file import SensorRecord, read_sensors
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.files.whole import NOT_WRITABLE, refuse_to_overwrite, write_whole, written_whole
 
@@ -17,6 +17,7 @@ __all__ = [
     "NOT_WRITABLE",
     "MachineTables",
     "Pair",
+    "SensorRecord",
     "SetupTable",
     "Table",
     "Vector",

@@ -35,7 +35,8 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
     """
     import numpy as np
 
-    data = parse_toml(read_text(path), path)
+    twice = "[[{name}]] in every place: the shapes of one error add up"
+    data = parse_toml(read_text(path), path, twice=twice)
     check_format(data, "errors/1", path)
     out: list[tuple[Effect, Array]] = []
     for name, tables in data.items():

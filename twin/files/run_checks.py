@@ -23,6 +23,10 @@ AT_LIMIT = 1e-3
 FEW = 0.05
 """Up to this share of rows may be slips of single rows; of more something is wrong in all."""
 
+NOISY = 5.0
+"""Stated deviations may differ from those of the readings by so many standard uncertainties, and
+1 µm of rounding, without a word."""
+
 LISTED = 10
 """Lines of a file that are told one by one."""
 
@@ -32,6 +36,10 @@ ALIKE = 0.999
 OFFSET = 0.5
 """A deviation (mm) that is alike on every side of the standard: no set-up and no machine does it,
 a ball of another radius or normals that point inwards do."""
+
+GAP = 1.0
+"""A stated deviation this far (mm) from that of the readings is of another touch: set-ups are moved
+to where their touches are from 0.3 mm and 1 mrad on, so that at most half of it is left."""
 
 _OTHER_UNITS = {
     1e-3: "mm in a column of µm",
@@ -57,6 +65,7 @@ def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     run = _with_clock(run, table, remarks)
     _check_units(run, table)
     _check_offset(run, table)
+    _compare_with_readings(run, table, remarks)
     if not run.deviation.any():
         remarks.append("every deviation is zero: nothing was measured")
     return run
@@ -79,11 +88,42 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
         wanted = "some µm: units are mixed up, or the set-up, the probe or the machine is another"
         _tell_slip(run, table, far, where, found, wanted, remarks)
         astray[far] = True
+    if "dev_um" in table:
+        computed = computed_deviation(run.touches)
+        apart = np.flatnonzero((_gap(run, computed) > GAP) & ~astray)
+        if len(apart):
+            row = apart[0]
+            found = (
+                f"{run.deviation[row] / UM:.4g} µm where the readings say {computed[row]:.4g} mm"
+            )
+            wanted = "dev_um, readings, point, set-up and probe of one touch, or nominal readings"
+            _tell_slip(run, table, apart, "column dev_um", found, wanted, remarks)
+            astray[apart] = True
     run = run[~astray] if astray.any() else run
     for rows, column, found, wanted in beyond_travel(run.touches.chain, run.touches.q, AT_LIMIT):
         where = f"line {run.line[rows[0]]}, column {column}"
         remarks.append(f"{where}: found {found}, expected {wanted}; it is used so")
     return run
+
+
+def _gap(run: Run, computed: Array) -> Array:
+    """How far stated deviations are from those of the readings, (N,), mm.
+
+    Readings of an instrument beside the machine are nominal: of them the deviation is zero.
+    """
+    return np.minimum(np.abs(computed - run.deviation), np.abs(computed))
+
+
+def _compare_with_readings(run: Run, table: CsvTable, remarks: list[str]) -> None:
+    """Say that stated deviations and those of the readings differ by more than their noise."""
+    if "dev_um" not in table:
+        return
+    gap = float(np.median(_gap(run, computed_deviation(run.touches))))
+    if gap > NOISY * float(np.median(run.u)) + UM:
+        remarks.append(
+            f"dev_um and the deviations that follow from the readings differ by {gap / UM:.3g} µm "
+            "in half of the rows: dev_um is used"
+        )
 
 
 def _tell_slip(

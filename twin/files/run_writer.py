@@ -10,7 +10,7 @@ from twin.files.pose_file import reading_columns
 from twin.files.run_columns import FORCE, NORMAL, POINT
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
-from twin.record import Run, linear_approach
+from twin.record import Instrument, Run, linear_approach
 from twin.units import DEG, UM
 
 
@@ -35,6 +35,8 @@ def run_text(run: Run, machine: str) -> str:
     out.write(
         f"# probe = {{ radius_mm = {float(t.radius[0])!r}, length_mm = {float(t.length[0])!r} }}\n"
     )
+    if t.instrument is not Instrument.TOUCH_PROBE:
+        out.write(f'# instrument = "{t.instrument.value}"\n')
     if common_u:
         out.write(f"# u_um = {float(run.u[0]) / UM:.12g}\n")
     for setup in t.setups:
@@ -71,6 +73,7 @@ def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
     columns |= {n: _cells(t.normal[:, i], 12) for i, n in enumerate(NORMAL)}
     columns |= {f"dir{axis}": _cells(t.last_move(axis), 0) for axis in _stated_directions(run)}
     columns |= {f"T_{sensor}_degC": _cells(v, 3) for sensor, v in t.temperature.items()}
+    columns |= {f"V_{name}": [f"{v:.9g}" for v in values] for name, values in t.value.items()}
     columns |= _optional_columns(run, common_u)
     # the deviation is in the readings, but only to their digits; instruments state it themselves
     columns["dev_um"] = _cells(run.deviation / UM, 6)

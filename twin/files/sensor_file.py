@@ -1,4 +1,4 @@
-"""Readings of temperature sensors by the clock, and what they were at every touch."""
+"""Temperatures and spindle speeds by the clock, and what they were at every touch."""
 
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -11,7 +11,7 @@ from twin.files.run_columns import temperatures
 from twin.files.table import CsvTable
 from twin.files.toml import read_text
 from twin.frames import Array
-from twin.record import Run
+from twin.record import Run, Touches
 
 EPOCH = datetime(2000, 1, 1)
 
@@ -27,16 +27,18 @@ class SensorRecord:
         path: Where they came from.
         clock: Of every reading, s since `EPOCH`, (M,), rising.
         temperature: By sensor, each (M,), degC.
+        spindle_rpm: Speed from each reading to the next, (M,), 1/min; None where not recorded.
         remarks: On sensors that were left out, or are constant.
     """
 
     path: Path
     clock: Array
     temperature: dict[str, Array]
+    spindle_rpm: Array | None
     remarks: tuple[str, ...]
 
     def joined(self, run: Run, begin: datetime) -> Run:
-        """A run with the temperatures at its touches, linear in time between readings.
+        """A run with the temperatures and the spindle speed at its touches.
 
         Args:
             run: The measurements.
@@ -45,7 +47,32 @@ class SensorRecord:
         Raises:
             BadFile: The record does not cover the run.
         """
-        at = _seconds(begin) + run.touches.time
+        touches = self.seen_by(run.touches, begin)
+        return replace(run, touches=touches, remarks=(*run.remarks, *self.remarks))
+
+    @property
+    def begin(self) -> datetime:
+        """Clock of the first reading."""
+        return EPOCH + timedelta(seconds=float(self.clock[0]))
+
+    def since(self, begin: datetime) -> Array:
+        """Time of every reading, (M,), s since `begin`."""
+        times: Array = self.clock - _seconds(begin)
+        return times
+
+    def seen_by(self, touches: Touches, begin: datetime) -> Touches:
+        """Touches with what the sensors read at their times.
+
+        Temperatures are linear in time between readings, the speed stays until the next one.
+
+        Args:
+            touches: Their times count from `begin`.
+            begin: What the clock said at time zero.
+
+        Raises:
+            BadFile: The record does not cover the touches.
+        """
+        at = _seconds(begin) + touches.time
         first, last = self.clock[0], self.clock[-1]
         if at.min() < first - BEYOND or at.max() > last + BEYOND:
             raise BadFile(
@@ -54,12 +81,18 @@ class SensorRecord:
                 f"readings over the run, {_words(at.min())} to {_words(at.max())}",
             )  # fmt: skip
         values = {s: np.interp(at, self.clock, v) for s, v in self.temperature.items()}
-        touches = replace(run.touches, temperature={**run.touches.temperature, **values})
-        return replace(run, touches=touches, remarks=(*run.remarks, *self.remarks))
+        speed = touches.spindle_rpm
+        if self.spindle_rpm is not None:
+            reading = np.searchsorted(self.clock, at, side="right") - 1
+            speed = self.spindle_rpm[np.maximum(reading, 0)]
+        return replace(touches, temperature={**touches.temperature, **values}, spindle_rpm=speed)
 
 
 def read_sensors(path: str | Path) -> SensorRecord:
-    """Read a table with a column `clock` (2031-05-06T07:08:09) and `T_<sensor>_degC` columns.
+    """Read a table with a column `clock` (2031-05-06T07:08:09) and what was recorded.
+
+    That is any number of columns `T_<sensor>_degC`, and `spindle_rpm`, the speed from this reading
+    to the next one.
 
     Raises:
         BadFile: File, line and column, what stood there, what was expected.
@@ -78,11 +111,18 @@ def read_sensors(path: str | Path) -> SensorRecord:
         if i and clock[i] <= clock[i - 1]:
             raise table.bad(i, "clock", cell, "a later reading in every row")
     remarks: list[str] = []
-    found = temperatures(table, remarks)
-    if not found:
+    found = temperatures(table, clock, remarks)
+    speed = table.numbers("spindle_rpm") if "spindle_rpm" in table else None
+    if not found and speed is None:
         found_words = "; ".join(remarks) or f"columns {', '.join(table.columns)}"
-        raise BadFile(path, "table", found_words, "a column T_<sensor>_degC")
-    return SensorRecord(Path(path), clock, found, tuple(f"{path}: {r}" for r in remarks))
+        raise BadFile(path, "table", found_words, "a column T_<sensor>_degC or spindle_rpm")
+    return SensorRecord(
+        path=Path(path),
+        clock=clock,
+        temperature=found,
+        spindle_rpm=speed,
+        remarks=tuple(f"{path}: {r}" for r in remarks),
+    )
 
 
 def _seconds(moment: datetime) -> float:

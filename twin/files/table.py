@@ -66,15 +66,16 @@ class CsvTable:
         return name in self.columns
 
     def require(self, names: Iterable[str]) -> None:
-        """Raise BadFile for the first column that is missing."""
-        for name in names:
-            if name not in self.columns:
-                raise BadFile(
-                    self.path,
-                    f"line {self.header_line}",
-                    f"no column {name} among {', '.join(self.columns)}",
-                    f"a column {name}",
-                )
+        """Raise BadFile where columns are missing, all of them at once."""
+        missing = [name for name in names if name not in self.columns]
+        if missing:
+            expected = ", ".join(missing)
+            raise BadFile(
+                self.path,
+                f"line {self.header_line}",
+                f"no column {' and no '.join(missing)} among {', '.join(self.columns)}",
+                f"a column {expected}" if len(missing) == 1 else f"columns {expected}",
+            )
 
     def allow_only(self, known: Sequence[str], pattern: str = "") -> None:
         """Raise BadFile for the first column that is not known."""
@@ -99,6 +100,7 @@ class CsvTable:
         empty: float | None = None,
         finite: bool = True,
         largest: float = LARGEST,
+        smallest: float = -math.inf,
     ) -> Array:
         """Column as numbers, (N,).
 
@@ -107,6 +109,7 @@ class CsvTable:
             empty: What an empty cell means; None refuses it.
             finite: Whether NaN and infinity are refused.
             largest: Numbers beyond this, of either sign, are refused as slips.
+            smallest: Numbers below this are refused.
 
         Raises:
             BadFile: Line, what stood there.
@@ -127,6 +130,8 @@ class CsvTable:
                 raise self.bad(i, name, cell, "a finite number")
             if abs(out[i]) > largest and math.isfinite(out[i]):
                 raise self.bad(i, name, cell, f"at most {largest:.6g}")
+            if out[i] < smallest:
+                raise self.bad(i, name, cell, f"{smallest:g} or more")
         return out
 
     def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:

@@ -20,7 +20,7 @@ from twin.errors import BadFile
 from twin.foreign.sheet import MM, Sheet, bare, unit_of_column
 from twin.frames import Array
 from twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
-from twin.record import IntArray, Labels, Run, Setup, Touches
+from twin.record import Instrument, IntArray, Labels, Run, Setup, Touches
 
 Meaning = Literal["part", "standard"]
 """Who made a list: see the module."""
@@ -202,6 +202,7 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
         approach=np.zeros(q.shape),
         feature=points.feature[rows],
         pose=rows.astype(np.int64),
+        instrument=Instrument.CMM if meaning == "part" else Instrument.TOUCH_PROBE,
     )
     deviation = sign * points.deviation[rows, axis]
     return Run(touches, deviation, np.full(len(rows), u), line=points.line[rows])

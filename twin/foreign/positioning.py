@@ -18,7 +18,7 @@ from twin.errors import BadFile
 from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
 from twin.frames import Array
 from twin.machine import Axis, Chain, make_chain, tip
-from twin.record import IntArray, Run, Setup, Touches
+from twin.record import Instrument, IntArray, Run, Setup, Touches
 
 ARM = 100.0
 """Distance (mm) from a rotary axis at which its angle is counted as a distance along the motion:
@@ -230,6 +230,7 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         approach=approach,
         feature=np.array([f"cycle{c}" for c in test.cycle]),
         pose=targets.astype(np.int64),
+        instrument=Instrument.LASER,
     )
     # one line of the file may hold many readings: the rows of the run are what messages name
     return Run(touches, -test.deviation * speed, np.asarray(u * speed), repeat=test.cycle)

@@ -6,6 +6,7 @@ that make sense for some touches.
 
 from twin.library.catalogue import (
     Kind,
+    find_kinds,
     is_visible,
     kinds,
     load_installed_effects,
@@ -13,21 +14,28 @@ from twin.library.catalogue import (
     parse_effect,
     proposals,
     register,
+    title_of,
     users_files,
 )
 from twin.library.ordinary import ordinary_model
+from twin.library.sized_effect import SizedEffect, parse_sized_effect, parse_sizes
 from twin.library.trial import try_effect, try_kind, users_fault, users_lines
 
 __all__ = [
     "Kind",
+    "SizedEffect",
+    "find_kinds",
     "is_visible",
     "kinds",
     "load_installed_effects",
     "load_user_effects",
     "ordinary_model",
     "parse_effect",
+    "parse_sized_effect",
+    "parse_sizes",
     "proposals",
     "register",
+    "title_of",
     "try_effect",
     "try_kind",
     "users_fault",

@@ -14,10 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from twin.effects import (
+    MARK,
+    Again,
     artefact,
     artefact_form,
     backlash,
-    column_bending,
     coupling,
     geometric,
     gravity,
@@ -25,26 +26,34 @@ from twin.effects import (
     periodic,
     probe,
     stiffness,
-    thermal_expansion,
-    thermal_lag,
 )
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.library.trial import users_fault
 from twin.machine import Chain
-from twin.model import Effect, Kind, Tunable, columns
+from twin.model import Effect, Kind, Title, Titled, Tunable, columns
 from twin.record import Touches
+from twin.thermal import (
+    column_bending,
+    follows,
+    thermal_expansion,
+    thermal_field,
+    thermal_lag,
+    thermal_static,
+)
 from twin.units import NM
 from twin.words import listed, nearest
 
 __all__ = [
     "ENTRY_POINT_GROUP",
     "Kind",
+    "find_kinds",
     "kinds",
     "load_installed_effects",
     "load_user_effects",
     "parse_effect",
     "proposals",
     "register",
+    "title_of",
     "users_files",
 ]
 
@@ -101,13 +110,37 @@ def kinds() -> tuple[Kind, ...]:
     return tuple(_REGISTER.values())
 
 
+def find_kinds(query: str) -> tuple[Kind, ...]:
+    """Kinds that a user may mean: by word, title, synonym, formula; in the order of the library.
+
+    Example:
+        >>> [kind.word for kind in find_kinds("spindle growth")]
+        ['thermal-lag']
+    """
+    word = query.partition("(")[0].strip()
+    if word in _REGISTER:
+        return (_REGISTER[word],)
+    return tuple(kind for kind in kinds() if kind.matches(query))
+
+
+def title_of(effect: Effect) -> Title:
+    """What an effect is called by those who run machines; its kind's title, or its name at last."""
+    if isinstance(effect, Titled):
+        return effect.title
+    kind = _REGISTER.get(effect.kind)
+    return Title(kind.title if kind is not None and kind.title else effect.name)
+
+
 def parse_effect(text: str, chain: Chain) -> Effect:
-    """Effect of a name such as `backlash(X)`, `thermal-lag(EZZ,spindle_rpm)`, `probe-lobing`.
+    """Effect of a name such as `backlash(X)`, `thermal-lag(EZZ,bed)#2`, `probe-lobing`.
 
     Raises:
         UnknownEffect: No such kind, or arguments that it does not take.
         UnknownAxis, UnknownSymbol: An axis or error parameter that the machine does not have.
     """
+    whole, mark, number = text.strip().rpartition(MARK)
+    if mark:
+        return _parse_again(whole, number, text, chain)
     match = _NAME.match(text)
     kind = _REGISTER.get(match.group(1)) if match else None
     if match is None or kind is None:
@@ -115,6 +148,18 @@ def parse_effect(text: str, chain: Chain) -> Effect:
     inside = match.group(2)
     arguments = [a.strip() for a in inside.split(",")] if inside and inside.strip() else []
     return kind.make(chain, arguments)
+
+
+def _parse_again(whole: str, number: str, text: str, chain: Chain) -> Effect:
+    """Effect of a name that ends in #2; raises UnknownEffect."""
+    effect = parse_effect(whole, chain)
+    if not number.isdecimal() or int(number) < 2:
+        raise UnknownEffect(f"effect '{text}': expected a number from 2 after {MARK}")
+    if not isinstance(effect, Tunable):
+        raise UnknownEffect(
+            f"effect '{text}': {effect.kind} has no inner parameter, so a second one is the first"
+        )
+    return Again(effect, int(number))
 
 
 def _unknown(text: str, chain: Chain) -> UnknownEffect:
@@ -190,12 +235,34 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
     except SyntaxError as cause:
         found = f"{(cause.text or '').strip()!r} ({cause.msg})"
         raise BadFile(path, f"line {cause.lineno}", found, "Python") from cause
-    except Exception as cause:  # whatever a user's file does wrong is one line about that file
+    except (Exception, SystemExit) as cause:  # whatever is wrong is one line about that file
         raise users_fault(cause, path, "file", "a Python file that runs") from cause
     own = {id(k): k for k in vars(module).values() if isinstance(k, Kind)}
     if not own:
-        raise BadFile(path, "file", "no Kind", "at least one twin.library.Kind at its top level")
+        raise BadFile(path, "file", "no Kind", "at least one twin.Kind at its top level")
+    for kind in own.values():
+        _check_card(kind, path)
     return tuple(_register_from(kind, path) for kind in own.values())
+
+
+def _check_card(kind: Kind, path: Path) -> None:
+    """What a user wrote into a `Kind` is text, or can be called, where it has to be."""
+    for name in (
+        "word",
+        "arguments",
+        "formula",
+        "units",
+        "typical",
+        "source",
+        "about",
+        "title",
+        "synonyms",
+    ):
+        if not isinstance(getattr(kind, name), str):
+            raise BadFile(path, f"Kind '{kind.word}'", f"{name} = {getattr(kind, name)!r}", "text")
+    for name in ("make", "propose"):
+        if not callable(getattr(kind, name)):
+            raise BadFile(path, f"Kind '{kind.word}'", f"{name} of no function", "a function")
 
 
 def users_files() -> dict[str, Path]:
@@ -237,6 +304,9 @@ for _kind in (
     periodic.KIND,
     thermal_expansion.KIND,
     thermal_lag.KIND,
+    thermal_static.KIND,
+    thermal_field.KIND,
+    follows.KIND,
     column_bending.KIND,
     gravity.KIND,
     stiffness.KIND,

@@ -6,6 +6,7 @@ units. A new quantity that is recorded at every touch becomes a field of it; `Ru
 
 from twin.record.alignment import Moved, aligned
 from twin.record.copies import without_copies
+from twin.record.instrument import Instrument
 from twin.record.run import Run
 from twin.record.touches import (
     IntArray,
@@ -18,6 +19,7 @@ from twin.record.touches import (
 )
 
 __all__ = [
+    "Instrument",
     "IntArray",
     "Labels",
     "Moved",

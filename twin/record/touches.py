@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from twin.errors import ShapeMismatch
 from twin.frames import Array, apply, inverse, turn
 from twin.machine import Chain, Reach, Where, checked_readings, linear_directions, reach, tip
+from twin.record.instrument import Instrument
 
 IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]
@@ -67,6 +68,8 @@ class Touches:
         force: Load on the tool in table-frame directions, (N, 3), N.
         feature: Label of the touched feature, (N,).
         pose: Label of the table pose, (N,).
+        instrument: What measured them all.
+        value: Columns of the user's own by name and unit (`coolant_l_min`), each (N,).
     """
 
     chain: Chain
@@ -84,6 +87,8 @@ class Touches:
     force: Array | None = None
     feature: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
     pose: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    instrument: Instrument = Instrument.TOUCH_PROBE
+    value: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = len(checked_readings(self.chain, self.q))
@@ -98,6 +103,9 @@ class Touches:
         for sensor, value in self.temperature.items():
             if len(value) != n:
                 raise ShapeMismatch(f"temperature {sensor} has {len(value)} rows, expected {n}")
+        for name, value in self.value.items():
+            if len(value) != n:
+                raise ShapeMismatch(f"column {name} has {len(value)} rows, expected {n}")
 
     def __len__(self) -> int:
         return len(self.q)
@@ -110,7 +118,8 @@ class Touches:
             if getattr(self, name) is not None
         }
         temperature = {sensor: value[rows] for sensor, value in self.temperature.items()}
-        return replace(self, temperature=temperature, **picked)
+        own = {name: value[rows] for name, value in self.value.items()}
+        return replace(self, temperature=temperature, value=own, **picked)
 
     def reading(self, axis: str) -> Array:
         """Readings of one axis, (N,), mm or rad; raises UnknownAxis."""
@@ -151,7 +160,9 @@ class Touches:
         return Signature(self.reach, self.normal_table)
 
 
-_PER_TOUCH = [f.name for f in fields(Touches) if f.name not in ("chain", "setups", "temperature")]
+_MAPS = ("temperature", "value")
+_COMMON = ("chain", "setups", "instrument", *_MAPS)
+_PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
 
 
 def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:

@@ -27,10 +27,10 @@ def study(chain, workspace):
     population = Population(chain)
     q = latin_hypercube(workspace, 40, np.random.default_rng(7))
 
-    def run(crew, told=None):
+    def run(workers, told=None):
         progress = {"progress": lambda _, done, __: told(done)} if told else {}
         return volumetric(
-            population, q, LENGTH, DRAWS, np.random.default_rng(5), crew=crew, **progress
+            population, q, LENGTH, DRAWS, np.random.default_rng(5), workers=workers, **progress
         )
 
     return run, run(None)
@@ -147,7 +147,7 @@ def test_jobs_are_taken_as_they_are_needed():
     assert len(taken) < 20
 
 
-def test_something_else_is_no_crew():
+def test_something_else_does_no_work():
     with pytest.raises(DesignError, match="str is neither an executor nor a Dask client"):
         list(in_order("tcp://somewhere", int, max, [1]))
 

@@ -18,10 +18,10 @@ from information.identifiability import (
     Resolution,
     Term,
 )
-from report.words.parameter_words import in_words
+from report.identifiability.parameter_words import in_words
+from report.numbers import shown
 from twin.frames import Array
 from twin.machine import Chain
-from twin.units import shown
 
 NAMED = 4
 """Most parameters that are written out in the words of a combination."""

@@ -1,0 +1,253 @@
+"""What of the wanted standard the machine reaches, looked at before anything else is done.
+
+A refusal says which travel or angle binds, and the nearest wish that could be met.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from artefact.body import DatumSphere, Standard
+from artefact.brief import Project
+from artefact.reach import (
+    ANGLE,
+    Limit,
+    PlacesInReach,
+    ProbeReach,
+    places_on,
+    reach_of,
+    spread_poses,
+    turned,
+)
+from artefact.worth import poses_within
+from matstd.from_project import blank, placement_options, probe, probe_reach
+from probe_paths.plan import (
+    PlanOptions,
+    home_readings,
+    readings_at,
+    solid_hull,
+    swing_height,
+    top_height,
+)
+from report.plots import draw_reach
+from report.style import save
+from twin.errors import NotReachable
+from twin.frames import Array
+from twin.machine import linear_directions
+from twin.record import Setup
+from twin.units import DEG
+
+PICTURE = "reach.png"
+"""File of the picture in a folder of results."""
+
+_POSES = 60  # table poses that are tried
+_PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer no choice of patches was ever found
+_SHIFTS = (20.0, 50.0, 100.0, 200.0, 400.0)  # mm
+_SCALES = (1.0, 1.25, 1.5, 2.0, 3.0)  # of the shift by which single touches miss their travels
+_LENGTHS = (-100.0, -50.0, -25.0, 25.0, 50.0, 100.0, 200.0)  # mm by which a probe may differ
+_WIDER = 6  # steps in which a rotary range is widened to its travel
+_TURNS = ((-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 0.0))  # degrees
+_TOLD = 3  # wishes named in a refusal
+_ROUGH = 20  # table poses, and a third of the places, by which a wish is looked at first
+_TRIED = "place or turn of the set-up, length of the probe or range of a rotary axis"
+
+
+@dataclass(frozen=True, eq=False)
+class Wish:
+    """A change of the project: its words, how large it is, and what is then asked of the machine.
+
+    Attributes:
+        words: Key and value of the project file.
+        size: To tell small changes of one kind from large ones.
+        kind: What is changed; one wish of a kind is told.
+        reach: Machine, probe and set-up.
+        rotary: Limits of the rotary axes, (R, 2), rad.
+    """
+
+    words: str
+    size: float
+    kind: str
+    reach: ProbeReach
+    rotary: Array
+
+
+def check_reach(project: Project, folder: Path) -> Array:
+    """Draw what is reached into a folder, and refuse what cannot be designed.
+
+    Args:
+        project: What is wanted.
+        folder: For the picture.
+
+    Returns:
+        Table poses to choose from, (K, R), rad: those at which Z can rise above the standard.
+
+    Raises:
+        NotReachable: Fewer places than a standard needs; which limit binds, the nearest wish.
+    """
+    wanted, rotary = probe_reach(project), _rotary(project)
+    poses = poses_within(project.chain, rotary, placement_options(project).choice.poses)
+    to_rise, retract = _to_rise(project, wanted, poses)
+    good = to_rise <= retract
+    tried = reach_of(
+        wanted,
+        *places_on(blank(project)),
+        spread_poses(poses[good] if good.any() else poses, _POSES),
+    )
+    save(draw_reach(tried, wanted.chain, blank(project)), folder / PICTURE)
+    enough = _enough(project)
+    if not good.any():
+        against = (
+            f"Z would have to rise to {np.ceil(to_rise.min()):.0f} mm for the probe to clear "
+            f"standard and table while they turn, it retracts to {retract:.0f} mm"
+        )
+    elif tried.places < enough:
+        pose, asked = tried.wanting(enough)
+        at = " ".join(
+            f"{a}{v / DEG:+.0f}" for a, v in zip(project.chain.rotary_axes, pose, strict=True)
+        )
+        against = (
+            f"{tried.places} of {len(tried.point)} places of such a standard are within reach, "
+            f"{enough} have to be; {f'even at {at} ' if at else ''}"
+            f"{' and '.join(_asked(m, v) for m, v in asked)}"
+        )
+    else:
+        return poses[good]
+    found = [wish.words for wish in _nearest(project, wanted, rotary, tried)]
+    nearest = f"{' or '.join(found)} would do" if found else f"no other {_TRIED} alone would do"
+    raise NotReachable(f"{project.path}: {against}; {nearest}")
+
+
+def _enough(project: Project) -> int:
+    return _PLACES_A_PATCH * placement_options(project).patches
+
+
+def _rotary(project: Project) -> Array:
+    axes = project.chain.rotary_axes
+    return np.array([project.workspace[name] for name in axes]).reshape(-1, 2)
+
+
+def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array, float]:
+    """Reading of Z (K,) that a visit of a pose asks for at least, and the one it retracts to, mm.
+
+    By what every standard has: its base, and its highest sphere, taken over the middle.
+    """
+    made, options, chain = blank(project), PlanOptions(), project.chain
+    fit, top = made.fittings, made.base.thickness
+    middle = np.array([0.0, 0.0, max(fit.sphere_heights)])
+    ball = DatumSphere("SPH", middle, fit.sphere_radius, fit.stem_radius, fit.foot_radius, top)
+    least = Standard("least", "", made.material, made.base, None, (), (ball,), (), made.height)
+    solid = solid_hull(least, wanted.setup, wanted.table_radius)
+    tool = replace(probe(project), length=wanted.length, stylus_length=0.5 * wanted.length)
+    path = np.tile(home_readings(chain), (2 * len(poses) + 1, 1))
+    path[1::2] = poses
+    turning = swing_height(chain, path, solid, tool)[::2] + 0.5 * options.clearance
+    standing = top_height(chain, poses, solid, tool) + options.clearance
+    return np.maximum(turning, standing), chain.link("Z").range[1] - options.retract
+
+
+def _fits(project: Project, wish: Wish) -> bool:
+    """Whether a changed project is within reach; by few places and poses first."""
+    grid = poses_within(project.chain, wish.rotary, placement_options(project).choice.poses)
+    for some, step in ((spread_poses(grid, _ROUGH), 3), (spread_poses(grid, _POSES), 1)):
+        point, normal = (v[::step] for v in places_on(blank(project)))
+        if reach_of(wish.reach, point, normal, some).places * step < _enough(project):
+            return False
+    to_rise, retract = _to_rise(project, wish.reach, some)
+    good = some[to_rise <= retract]
+    return reach_of(wish.reach, point, normal, good).places >= _enough(project)
+
+
+def _asked(limit: Limit, value: float) -> str:
+    """What a limit would have to allow."""
+    if limit.name == ANGLE:
+        return (
+            f"the probe would have to touch faces that look {np.ceil(value / DEG):.0f} degrees "
+            f"away from the tool axis, {limit.at / DEG:g} at most"
+        )
+    end = np.ceil(value) if limit.upper else np.floor(value)
+    return f"{limit.name} would have to go to {end:.0f} mm, its travel ends at {limit.at:g}"
+
+
+def _nearest(
+    project: Project, wanted: ProbeReach, rotary: Array, tried: PlacesInReach
+) -> list[Wish]:
+    """The smallest change of every kind that would do."""
+    found: dict[str, Wish] = {}
+    wishes = [
+        *_moved(project, wanted, rotary, tried),
+        *_wider(wanted, rotary),
+        *_longer(wanted, rotary),
+        *_turned(wanted, rotary),
+    ]
+    for wish in sorted(wishes, key=lambda w: w.size):
+        try:
+            if wish.kind not in found and _fits(project, wish):
+                found[wish.kind] = wish
+        except NotReachable:  # no room to approach a reading
+            continue
+    return list(found.values())[:_TOLD]
+
+
+def _moved(
+    project: Project, wanted: ProbeReach, rotary: Array, tried: PlacesInReach
+) -> Iterator[Wish]:
+    """Along the axes of the table, and the way by which touches miss their travels."""
+    chain, T = wanted.chain, wanted.setup.T_table_artefact
+    ways = [(d, sign * s) for d in np.eye(3) for sign in (1.0, -1.0) for s in _SHIFTS]
+    missed = np.zeros(3)
+    pose, asked = tried.wanting(_enough(project)) if len(tried.poses) else (rotary[:, 0], [])
+    along = linear_directions(chain, readings_at(chain, pose[None]))[0]
+    for limit, value in asked:
+        if limit.name != ANGLE:
+            missed -= (value - limit.at) * along[:, chain.linear_axes.index(limit.name)]
+    for direction, size in [*ways, *((missed, scale) for scale in _SCALES if missed.any())]:
+        shift = 10.0 * np.sign(direction * size) * np.ceil(np.abs(direction * size) / 10.0 - 1e-6)
+        moved = T.copy()
+        moved[:3, 3] += shift
+        place = ", ".join(f"{v + 0.0:.0f}" for v in moved[:3, 3])
+        setup = Setup(wanted.setup.name, moved)
+        yield Wish(
+            f"setup.{setup.name}.origin_mm = [{place}]",
+            float(np.linalg.norm(shift)),
+            "place",
+            replace(wanted, setup=setup),
+            rotary,
+        )
+
+
+def _wider(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+    """One rotary axis with more of its travel."""
+    for i, name in enumerate(wanted.chain.rotary_axes):
+        ends = np.array(wanted.chain.link(name).range)
+        for step in range(1, _WIDER + 1):
+            wide = rotary.copy()
+            for to in ((0, 1), (0,), (1,)):
+                wide = rotary.copy()
+                wide[i, to] += (ends[[*to]] - wide[i, to]) * step / _WIDER
+                words = ", ".join(f"{v / DEG:.0f}" for v in wide[i])
+                size = float(np.abs(wide - rotary).sum() / DEG)
+                yield Wish(f"workspace.{name} = [{words}]", size, f"range {name}", wanted, wide)
+
+
+def _longer(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+    for more in _LENGTHS:
+        if wanted.length + more > 4.0 * wanted.radius:
+            words = f"probe.length_mm = {wanted.length + more:g}"
+            other = replace(wanted, length=wanted.length + more)
+            yield Wish(words, abs(more), "length", other, rotary)
+
+
+def _turned(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+    for angles in _TURNS:
+        a, b, c = (v * DEG for v in angles)
+        setup = Setup(wanted.setup.name, turned(wanted.setup.T_table_artefact, (a, b, c)))
+        words = ", ".join(f"{v:g}" for v in angles)
+        yield Wish(
+            f"setup.{setup.name}.rotation_deg = [{words}]",
+            90.0,
+            "turn",
+            replace(wanted, setup=setup),
+            rotary,
+        )

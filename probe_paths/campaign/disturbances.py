@@ -1,0 +1,107 @@
+"""What disturbs a simulated campaign: effects of known size, and the record of what drives them.
+
+Effects act by their own formulas on the touches of the whole campaign, as a lag has to know what
+was before and a slip of the standard which touches came after. What drives a lag (temperatures,
+spindle speed) is followed over the whole record, between the touches too; whoever analyses the run
+later knows it at the touches only.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+
+from twin.files import SensorRecord
+from twin.frames import Array
+from twin.machine import Contribution
+from twin.model import Effect, contribution
+from twin.record import Setup, Touches
+from twin.thermal import ThermalLag
+
+Disturbance = Callable[[Touches], Contribution]
+
+_PER_TOUCH = ("q", "length", "radius", "point", "normal", "time", "approach", "feature", "pose")
+
+
+def effects_over_record(
+    effects: Sequence[tuple[Effect, Array]],
+    record: SensorRecord | None = None,
+    begin: datetime | None = None,
+) -> Disturbance:
+    """Disturbance by effects of known size.
+
+    Args:
+        effects: Each with its parameters (P,), base units.
+        record: Temperatures and spindle speeds by the clock; None where nothing is recorded.
+        begin: What the clock says when the campaign begins; None for the first reading.
+
+    Raises:
+        UnknownEffect: When it is used: an effect follows a sensor that the record lacks.
+    """
+    if record is None:
+        return lambda touches: contribution(effects, touches)
+    start = begin or record.begin
+    driven = [pair for pair in effects if isinstance(pair[0], ThermalLag) and pair[0].drive]
+    others = [pair for pair in effects if pair not in driven]
+
+    def disturbance(touches: Touches) -> Contribution:
+        touches = record.seen_by(touches, start)
+        total = contribution(others, touches)
+        if driven:
+            history = _history(touches[:1], record, start)
+            both = contribution(driven, joined_touches([history, touches]))
+            total = Contribution(*(a + b[len(history) :] for a, b in zip(total, both, strict=True)))
+        return total
+
+    return disturbance
+
+
+def _history(touch: Touches, record: SensorRecord, begin: datetime) -> Touches:
+    """A touch repeated at every reading of the record."""
+    time = record.since(begin)
+    rows = touch[np.zeros(len(time), dtype=np.int64)]
+    return record.seen_by(replace(rows, time=time), begin)
+
+
+def joined_touches(parts: Sequence[Touches]) -> Touches:
+    """Touches of one machine, one after the other; set-ups of the same name are one."""
+    setups: dict[str, Setup] = {}
+    index = []
+    for part in parts:
+        for setup in part.setups:
+            setups.setdefault(setup.name, setup)
+        numbers = np.array([list(setups).index(s.name) for s in part.setups], dtype=np.int64)
+        index.append(numbers[part.setup])
+    first = parts[0]
+    speeds = [p.spindle_rpm for p in parts if p.spindle_rpm is not None]
+    columns: dict[str, Any] = {
+        name: np.concatenate([getattr(p, name) for p in parts]) for name in _PER_TOUCH
+    }
+    return replace(
+        first,
+        setups=tuple(setups.values()),
+        setup=np.concatenate(index),
+        temperature={
+            s: np.concatenate([p.temperature[s] for p in parts]) for s in first.temperature
+        },
+        spindle_rpm=np.concatenate(speeds) if len(speeds) == len(parts) else None,
+        **columns,
+    )
+
+
+def in_campaign(
+    disturbance: Disturbance, before: Sequence[Touches], after: Sequence[Touches]
+) -> Disturbance:
+    """The disturbance of some touches that are made between others of the same campaign."""
+    if not before and not after:
+        return disturbance
+    skipped = sum(len(part) for part in before)
+
+    def disturbed(touches: Touches) -> Contribution:
+        whole = disturbance(joined_touches([*before, touches, *after]))
+        mine = slice(skipped, skipped + len(touches))
+        return Contribution(*(part[mine] for part in whole))
+
+    return disturbed

@@ -1,0 +1,167 @@
+"""Numbers, times, units and columns of files as a reader says them."""
+
+import math
+
+from twin.units import DAY, HOUR, MINUTE, UM, URAD
+
+_SPANS = ((DAY, "days", 2.0), (HOUR, "h", 1.5), (MINUTE, "min", 1.5))
+"""Units of time, the longest first, each with the number of it from which it is used."""
+
+_PLACES = {"px_mm": "x", "py_mm": "y", "pz_mm": "z"}
+_NOUNS = {
+    "time_s": "time",
+    "spindle_rpm": "spindle speed",
+    "setup": "set-up",
+    **{column: f"{letter} on the standard" for column, letter in _PLACES.items()},
+    **{f"n{letter}": f"the normal's {letter}" for letter in "xyz"},
+    **{f"F{letter}_N": f"load in {letter}" for letter in "xyz"},
+}
+_SHOWN = {"mm": ("µm", UM), "rad": ("µrad", URAD)}
+"""Base unit -> unit that a reader sees, and what one of it is in the base unit."""
+
+_UNITS = (("_mm", "mm"), ("_deg", "deg"), ("_degC", "°C"), ("_N", "N"), ("_rpm", "1/min"))
+
+
+def digits(value: float | None, significant: int = 3) -> str:
+    """A number with so many significant digits, without an exponent where it is readable.
+
+    Example:
+        >>> digits(0.012345), digits(1.6e12)
+        ('0.0123', '1.60e+12')
+    """
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    exponent = math.floor(math.log10(abs(value)))
+    if not -4 <= exponent <= 6:
+        return f"{value:.{significant - 1}e}"
+    return f"{value:.{max(0, significant - 1 - exponent)}f}"
+
+
+def with_uncertainty(value: float, u: float | None, unit: str = "") -> str:
+    """A number to two digits of its uncertainty.
+
+    Example:
+        >>> with_uncertainty(11.137, 0.538, "µm")
+        '11.14 ± 0.54 µm'
+    """
+    tail = f" {unit}" if unit else ""
+    if u is None or not u > 0.0 or not math.isfinite(u):
+        return f"{digits(value)}{tail}"
+    places = max(0, 1 - math.floor(math.log10(u)))
+    return f"{value:.{places}f} ± {u:.{places}f}{tail}"
+
+
+def signed(value: float, u: float | None, unit: str = "") -> str:
+    """A difference, its sign always shown, to two digits of its uncertainty.
+
+    Example:
+        >>> signed(0.7914, 0.0812, "µm"), signed(-3.0, 0.5)
+        ('+0.791 ± 0.081 µm', '-3.00 ± 0.50')
+    """
+    words = with_uncertainty(value, u, unit)
+    return words if words.startswith("-") else f"+{words}"
+
+
+def time_unit(span: float) -> tuple[float, str]:
+    """The unit (s) in which a span of time is told, and its name."""
+    for unit, name, least in _SPANS:
+        if abs(span) >= least * unit:
+            return unit, name
+    return 1.0, "s"
+
+
+def span(seconds: float, significant: int = 3) -> str:
+    """A span of time in the unit that a reader would choose.
+
+    Example:
+        >>> span(46710.0), span(847.7), span(12.0)
+        ('13.0 h', '14.1 min', '12.0 s')
+    """
+    unit, name = time_unit(seconds)
+    return f"{digits(seconds / unit, significant)} {name}"
+
+
+def noun(column: str) -> str:
+    """What a column of a run file is about.
+
+    Example:
+        >>> noun("B_deg"), noun("T_scaleX_degC"), noun("nz")
+        ('B', 'temperature of scaleX', "the normal's z")
+    """
+    if column in _NOUNS:
+        return _NOUNS[column]
+    if column.startswith("T_") and column.endswith("_degC"):
+        return f"temperature of {column.removeprefix('T_').removesuffix('_degC')}"
+    if column.startswith("dir"):
+        return f"direction of approach of {column.removeprefix('dir')}"
+    for ending, _ in _UNITS:
+        if column.endswith(ending):
+            return column.removesuffix(ending)
+    return column
+
+
+def unit_of(column: str) -> str:
+    """Unit of a column of a run file as a reader sees it, "" where it has none."""
+    if column == "time_s":
+        return "s"
+    return next((unit for ending, unit in _UNITS if column.endswith(ending)), "")
+
+
+def quantity(column: str, value: float) -> str:
+    """A value of a column with its unit; times in the unit that a reader would choose.
+
+    Example:
+        >>> quantity("B_deg", 60.0), quantity("time_s", 2400.0), quantity("nz", 0.85)
+        ('60 deg', '40 min', '0.85')
+    """
+    if column == "time_s":
+        unit, name = time_unit(value)
+        return f"{value / unit:.3g} {name}"
+    unit_name = unit_of(column)
+    return f"{value:.6g} {unit_name}" if unit_name else f"{value:.6g}"
+
+
+def condition(column: str, low: float, high: float) -> str:
+    """A range of a column in words; ends that are infinite are open.
+
+    A column such as `feature = pad4` holds 1 where that is so, else 0.
+
+    Example:
+        >>> condition("B_deg", 60.0, math.inf), condition("time_s", -math.inf, 2400.0)
+        ('B > 60 deg', 'time < 40 min')
+        >>> condition("feature = pad4", 0.5, math.inf)
+        'on pad4'
+    """
+    key, is_label, label = column.partition(" = ")
+    if is_label:
+        at = {"feature": "on", "setup": "in set-up"}.get(key, f"{key} =")
+        return f"{at} {label}" if low > -math.inf else f"not {at} {label}"
+    name = noun(column)
+    if math.isinf(low):
+        return f"{name} < {quantity(column, high)}"
+    if math.isinf(high):
+        return f"{name} > {quantity(column, low)}"
+    return f"{name} from {quantity(column, low)} to {quantity(column, high)}"
+
+
+def shown(unit: str) -> tuple[str, float]:
+    """Unit in which a report shows a number, and what one of it is in the base unit.
+
+    Example:
+        >>> shown("mm/K")
+        ('µm/K', 0.001)
+        >>> shown("1/K")
+        ('µm/(m K)', 1e-06)
+    """
+    if unit == "1/K":
+        return "µm/(m K)", 1e-6
+    head, slash, tail = unit.partition("/")
+    label, factor = _SHOWN.get(head, (head, 1.0))
+    return label + slash + tail, factor
+
+
+def percent(value: float) -> str:
+    """A share in percent."""
+    return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"

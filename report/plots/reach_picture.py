@@ -1,0 +1,104 @@
+"""Picture of what a machine reaches of a blank: places from two sides, table poses, limits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from artefact.layout import Blank
+from artefact.reach import ANGLE, Limit, PlacesInReach
+from report.style import BLUE, INK, RED, figure, plain
+from twin.machine import Chain
+from twin.units import DEG
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COLOURS = "viridis"
+
+
+def draw_reach(reach: PlacesInReach, chain: Chain, blank: Blank) -> Figure:
+    """What is reached by angle and travels, before anything is designed.
+
+    Args:
+        reach: Places, poses, what each touch is beyond.
+        chain: The machine.
+        blank: The blank.
+    """
+    drawn = figure(12.0, 8.4, None)  # a constrained layout would draw everything twice
+    drawn.subplots_adjust(0.07, 0.07, 0.97, 0.89, 0.24, 0.32)
+    top, side, poses, limits = drawn.subplots(2, 2).ravel()
+    drawn.suptitle(
+        f"{reach.places} of {len(reach.point)} places of a standard of this blank are within reach "
+        f"at {int(reach.reached.any(axis=0).sum())} of {len(reach.poses)} table poses",
+        color=INK,
+    )
+    _places(drawn, top, reach, 1, "from above")
+    _places(drawn, side, reach, 2, "from the side")
+    a, b = blank.base.half_size
+    for axes, low, high, across in ((top, -b, b, a), (side, 0.0, blank.height, a)):
+        axes.plot(
+            [-across, across, across, -across, -across], [low, low, high, high, low], color=INK
+        )
+    _poses(drawn, poses, reach, chain)
+    _limits(limits, reach)
+    return drawn
+
+
+def _places(drawn: Figure, axes: Axes, reach: PlacesInReach, other: int, title: str) -> None:
+    """Places with the share of the table poses at which each is reached."""
+    share = 100.0 * reach.reached.mean(axis=1)
+    x, y = reach.point[:, 0], reach.point[:, other]
+    shown = axes.scatter(x, y, c=share, cmap=_COLOURS, vmin=0.0, vmax=100.0, s=22)
+    never = share == 0.0
+    axes.scatter(x[never], y[never], marker="x", color=RED, s=26, label="never reached")
+    axes.set(
+        title=f"the blank {title}",
+        xlabel="x of the standard / mm",
+        ylabel=f"{'xyz'[other]} of the standard / mm",
+        aspect="equal",
+    )
+    if never.any():
+        axes.legend(loc="upper right", fontsize=8)
+    drawn.colorbar(shown, ax=axes, label="table poses that reach it / %")
+
+
+def _poses(drawn: Figure, axes: Axes, reach: PlacesInReach, chain: Chain) -> None:
+    """Share of the places that each table pose reaches."""
+    names, share = chain.rotary_axes, 100.0 * reach.reached.mean(axis=0)
+    axes.set_title("table poses")
+    if len(names) >= 2:
+        a, b = (reach.poses[:, i] / DEG for i in (0, 1))
+        shown = axes.scatter(a, b, c=share, cmap=_COLOURS, vmin=0.0, vmax=100.0, s=40)
+        axes.set(xlabel=f"{names[0]} / °", ylabel=f"{names[1]} / °")
+        drawn.colorbar(shown, ax=axes, label="places reached / %")
+    elif names:
+        order = np.argsort(reach.poses[:, 0])
+        axes.plot(reach.poses[order, 0] / DEG, share[order], ".-", color=BLUE)
+        axes.set(xlabel=f"{names[0]} / °", ylabel="places reached / %", ylim=(0.0, 105.0))
+        plain(axes)
+    else:
+        axes.axis("off")
+        axes.text(0.5, 0.5, f"no rotary axis: {share[0]:.0f} % of the places", ha="center")
+
+
+def _limits(axes: Axes, reach: PlacesInReach) -> None:
+    """Share of all touches, every place at every pose, that each limit bars."""
+    barred = reach.barred()
+    axes.set_title("what bars touches")
+    if not barred:
+        axes.axis("off")
+        axes.text(0.5, 0.5, "every place is reached at every table pose", ha="center")
+        return
+    words = [_words(limit) for limit, _ in barred]
+    axes.barh(words, [100.0 * share for _, share in barred], color=BLUE)
+    axes.invert_yaxis()
+    axes.set(xlabel="share of all touches tried / %", xlim=(0.0, 100.0))
+
+
+def _words(limit: Limit) -> str:
+    if limit.name == ANGLE:
+        return f"over {limit.at / DEG:g}° from the tool axis"
+    return f"{limit.name} {'above' if limit.upper else 'below'} {limit.at:g} mm"

@@ -1,0 +1,60 @@
+"""Sentences about a design: what its touches were chosen for, what another way would buy."""
+
+from artefact.brief import StandardTable
+from artefact.compare import Alternative
+from artefact.place import Placement
+from report.numbers import percent
+
+_CRITERIA = {
+    "I": "mean variance of the predicted tool point over probed volume and workspace",
+    "G": "largest variance of the predicted tool point at any pose of probed volume and workspace",
+    "D": "volume of what stays unknown of the parameters, in units of what is expected",
+    "A": "mean variance of the parameters, in units of what is expected",
+    "E": "variance of the least well determined error pattern, as the tool point feels it",
+}
+
+
+def criterion_words(wanted: StandardTable) -> str:
+    """What touches were chosen for."""
+    words = [_CRITERIA[wanted.criterion]]
+    if wanted.drawn_machines:
+        which = "" if wanted.worst_share == 1.0 else f"the worst {percent(wanted.worst_share)} of "
+        words.append(f"averaged over {which}{wanted.drawn_machines} drawn machines")
+    if wanted.potential and wanted.criterion == "D":
+        words.append("with the effects of the library beside them")
+    elif wanted.potential:
+        words.append(
+            f"with a share of {percent(wanted.potential)} for showing effects of the library"
+        )
+    return ", ".join(words)
+
+
+def alternative_words(other: Alternative) -> str:
+    """What another stylus length or set-up would buy."""
+    if not other.is_possible:
+        return f"{other.name}: {other.refusal}"
+    gained = other.rank_gained
+    seen = (
+        f"{gained} more combinations of machine errors seen"
+        if gained
+        else ("no combination more is seen")
+    )
+    ratio = other.variance_ratio
+    change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
+    variance = f"mean predicted variance of the tool point {change} at equal touches"
+    return f"{other.name}: {seen}; {variance}"
+
+
+def comparison_remarks(placement: Placement) -> list[str]:
+    """What has to be known of the comparison with other artefacts, one line each."""
+    remarks = [
+        f"Not compared with: {name}; this machine can make no touch on it."
+        for name in placement.unreachable
+    ]
+    wanted = len(placement.requests)
+    return remarks + [
+        f"{r.name}: {r.available} touches can be made on it, {wanted} are compared; "
+        "some are made more than once."
+        for r in placement.rivals
+        if r.available < wanted
+    ]

@@ -1,0 +1,74 @@
+"""A small design for every kind of machine: from the project file to programs and proof, no CAD."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.body.limits import check
+from artefact.brief.project_file import Project, read_project
+from matstd import design
+from matstd.from_project import blank, placement_options, probe_reach
+from matstd.reach import PICTURE, check_reach
+from probe_paths.campaign.order_study import orders
+from probe_paths.emit.program import make_programs
+from report.plots.plan_pictures import write_order_picture
+from sensitivity.first_order.workspace import Workspace
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+MACHINES = {
+    "hsm600u": "[w C' B' X' f Y Z (C1) t]",
+    "machines/head-table": "[w C' X' f Y Z B (C1) t]",
+    "machines/trunnion": "[w C' A' Y' f X Z (C1) t]",
+    "machines/gantry": "[w f X Y Z C A t]",
+    "machines/vertical": "[w X' Y' f Z (C1) t]",
+    "machines/horizontal": "[w B' Z' f X Y (C1) t]",
+    "machines/four-axis": "[w A' X' Y' f Z (C1) t]",
+    "machines/upright": "[w B' X' f Y Z (C1) t]",
+}
+TOUCHES = 80
+
+
+def small(name: str) -> Project:
+    """One of the examples with few patches, poses and touches, and one machine to prove it on."""
+    project = read_project(EXAMPLES / f"{name}.toml")
+    few = project.standard.model_copy(
+        update={"patches": 6, "poses": 5, "touches": TOUCHES, "potential": 0.0}
+    )
+    return replace(project, standard=few, machines=1)
+
+
+SLOW = ("hsm600u", "machines/head-table", "machines/trunnion", "machines/four-axis")
+"""Ten seconds and more each; the first is designed as a whole by the command's own test."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow if n in SLOW else ()) for n in MACHINES]
+)
+def test_a_design_for_every_kind_of_machine(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project = small(name)
+    assert project.chain.notation == MACHINES[name]
+    fewer = replace(placement_options(project), sites=60)
+    monkeypatch.setattr(design, "placement_options", lambda _: fewer)
+    rng_place, rng_proof = np.random.default_rng(project.seed).spawn(2)
+    poses = check_reach(project, tmp_path)
+    assert (tmp_path / PICTURE).stat().st_size > 0
+    workspace = Workspace(project.chain, project.workspace, project.probe_length)
+    placement = design._placement(project, workspace, rng_place, lambda *_: None, poses)
+    check(placement.standard, blank(project).limits)
+    assert len(placement.requests) == TOUCHES
+    assert (probe_reach(project).reasons(placement.standard, placement.requests) == "").all()
+    plan = design._plan(project, placement)
+    found = orders(plan, placement.criterion.model, project.noise)
+    assert all(len(order.reversal) == len(project.chain.rotary_axes) for order in found)
+    assert all(np.isfinite([o.drift, *o.reversal]).all() and o.duration > 0.0 for o in found)
+    write_order_picture(tmp_path / "order.png", plan)
+    programs = make_programs(plan).write(tmp_path)
+    machine = design._prove(project, project.population, placement, programs, 0, rng_proof)
+    assert len(machine.campaign.run) == len(plan)
+    # what the touches predict: far better than nothing, and as well as they say themselves
+    assert machine.proof.factor > 5.0
+    assert machine.proof.rms_after < 2.0 * machine.proof.rms_u

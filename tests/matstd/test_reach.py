@@ -1,0 +1,144 @@
+"""Reach comes first: what binds is named and true, the nearest wish does, a picture stays."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.brief.project_file import Project, read_project
+from artefact.reach.face_of_table import table_face
+from artefact.reach.touchable import Requests
+from artefact.reach.within_reach import ANGLE, places_on, reach_of
+from matstd.cli import main
+from matstd.commands.design import REFUSED
+from matstd.from_project import blank, probe_reach
+from matstd.reach import check_reach
+from twin.errors import NotReachable
+from twin.frames import fixed_xyz, pose
+from twin.units import DEG
+
+MACHINES = Path(__file__).parents[2] / "examples" / "machines"
+
+
+def changed(folder: Path, name: str, project: dict[str, str], machine: dict[str, str]) -> Path:
+    """An example with lines of project and machine changed."""
+    for kind, changes in (("", project), ("-machine", machine)):
+        text = (MACHINES / f"{name}{kind}.toml").read_text()
+        for pattern, new in changes.items():
+            text, count = re.subn(f"(?m){pattern}", new, text)
+            assert count == 1, pattern
+        (folder / f"{name}{kind}.toml").write_text(text)
+    return folder / f"{name}.toml"
+
+
+def with_setup(line: str) -> dict[str, str]:
+    return {r"\Z": f"\n[setup.a]\n{line}\n"}
+
+
+def refusal(project: Project, folder: Path) -> str:
+    with pytest.raises(NotReachable) as caught:
+        check_reach(project, folder)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["gantry", "upright", "vertical"])
+def test_reach_is_what_every_single_touch_says(name: str) -> None:
+    project = read_project(MACHINES / f"{name}.toml")
+    wanted, rng = probe_reach(project), np.random.default_rng(1)
+    limits = [project.workspace[a] for a in project.chain.rotary_axes]
+    poses = np.array([[rng.uniform(*pair) for pair in limits] for _ in range(7)]).reshape(7, -1)
+    point, normal = (v[::9] for v in places_on(blank(project)))
+    found = reach_of(wanted, point, normal, poses)
+    each = Requests(
+        np.full(7 * len(point), "place"),
+        np.repeat(point, 7, axis=0),
+        np.repeat(normal, 7, axis=0),
+        np.tile(poses, (len(point), 1)),
+    )
+    assert np.array_equal(found.reached.ravel(), wanted.is_reachable(each))
+
+
+def test_the_travel_that_binds_is_named_and_enough(tmp_path: Path) -> None:
+    """Z ends 150 mm too high; with the travel that the refusal asks for, the design may begin."""
+    short = {r"^\[axis.Z\]\nrange = .*": "[axis.Z]\nrange = [-150.0, 0.0]"}
+    wishes = {r"^Z = .*\n": ""}
+    told = refusal(read_project(changed(tmp_path, "vertical", wishes, short)), tmp_path)
+    asked = re.search(r"Z would have to go to (-\d+) mm, its travel ends at -150", told)
+    assert asked, told
+    enough = {next(iter(short)): f"[axis.Z]\nrange = [{asked[1]}.0, 0.0]"}
+    project = read_project(changed(tmp_path, "vertical", wishes, enough))
+    assert check_reach(project, tmp_path).shape == (1, 0)
+
+
+def test_the_nearest_wish_does(tmp_path: Path) -> None:
+    far = with_setup("origin_mm = [700.0, 0.0, 0.0]")
+    told = refusal(read_project(changed(tmp_path, "vertical", far, {})), tmp_path)
+    assert "X would have to go to" in told
+    place = re.search(r"setup.a.origin_mm = (\[.*?\]) would do", told)
+    assert place, told
+    near = with_setup(f"origin_mm = {place[1]}")
+    check_reach(read_project(changed(tmp_path, "vertical", near, {})), tmp_path)
+
+
+def test_a_standard_that_looks_away_is_told_to_turn(tmp_path: Path) -> None:
+    told = refusal(
+        read_project(
+            changed(tmp_path, "vertical", with_setup("rotation_deg = [180.0, 0.0, 0.0]"), {})
+        ),
+        tmp_path,
+    )
+    assert "degrees away from the tool axis, 75 at most" in told
+
+
+def test_z_that_cannot_rise_is_told_before_anything_is_designed(tmp_path: Path) -> None:
+    low = {r"^\[axis.Z\]\nrange = .*": "[axis.Z]\nrange = [-500.0, -250.0]"}
+    project = changed(tmp_path, "vertical", {r"^Z = .*\n": ""}, low)
+    told = refusal(read_project(project), tmp_path)
+    # table at -500, sphere 130 + 12.5 high, ball pole 163 below the gauge point, 20 mm to spare
+    assert "Z would have to rise to -174 mm" in told
+    assert "retracts to -251 mm" in told
+
+
+def test_a_refused_command_leaves_its_picture_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # whatever would design has not begun: it would fail with a traceback
+    monkeypatch.setattr("matstd.design.design_standard", None)
+    far = with_setup("origin_mm = [2000.0, 0.0, 0.0]")
+    path, out = changed(tmp_path, "gantry", far, {}), tmp_path / "out"
+    for _ in range(2):  # its own picture does not stand in the way of the next run
+        assert main(["design", str(path), "-o", str(out)]) == 2
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1
+        assert f"{out / REFUSED} shows what is reached" in told
+        assert [p.name for p in out.iterdir()] == [REFUSED]
+        assert (out / REFUSED).read_bytes().startswith(b"\x89PNG")
+
+
+def test_limits_bar_what_they_say() -> None:
+    project = read_project(MACHINES / "upright.toml")
+    poses = np.array([[0.0], [180.0 * DEG]])
+    found = reach_of(probe_reach(project), *places_on(blank(project)), poses)
+    shares = {(m.name, m.upper): share for m, share in found.barred()}
+    # faces that look up or away from a horizontal spindle
+    assert shares[ANGLE, True] > 0.5
+
+
+@pytest.mark.parametrize(
+    ("angles", "up"),
+    [
+        ((0.0, 0.0, 0.0), (0, 0, 1)),
+        ((15.0, 0.0, 70.0), (0, 0, 1)),
+        ((45.0, 0.0, 0.0), (0, 0, 1)),
+        ((-90.0, 0.0, 0.0), (0, 1, 0)),
+        ((90.0, 0.0, 0.0), (0, -1, 0)),
+        ((0.0, 90.0, 0.0), (1, 0, 0)),
+        ((-80.0, 0.0, 30.0), (0, 1, 0)),
+    ],
+)
+def test_the_face_of_the_table(angles: tuple[float, ...], up: tuple[int, ...]) -> None:
+    found = table_face(pose(fixed_xyz(np.array(angles) * DEG), np.array([5.0, 6.0, 7.0])))
+    np.testing.assert_array_equal(found[:3, 2], up)
+    np.testing.assert_array_equal(found[:3, 3], 0.0)
+    assert np.linalg.det(found[:3, :3]) == pytest.approx(1.0)

@@ -1,0 +1,67 @@
+"""What the pages and docstrings name exists: modules, names, files, commands."""
+
+import importlib
+import re
+from pathlib import Path
+
+import pytest
+
+from matstd.cli import COMMANDS
+
+ROOT = Path(__file__).parents[1]
+ROOMS = (
+    "twin",
+    "sensitivity",
+    "information",
+    "artefact",
+    "diagnosis",
+    "cad_out",
+    "probe_paths",
+    "report",
+    "matstd",
+)
+PAGES = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")]
+SOURCES = [f for room in ROOMS for f in sorted((ROOT / room).rglob("*.py"))]
+IDS = [f.relative_to(ROOT).as_posix() for f in [*PAGES, *SOURCES]]
+OURS = re.compile(r"`((?:{})(?:[./]\w+)+)(?:\([^`]*\))?`".format("|".join(ROOMS)))
+FILES = {"html", "json", "csv", "toml", "md"}
+"""Endings of files that a command writes: `diagnosis.json` is no module."""
+
+
+def is_there(name: str) -> bool:
+    """Whether a dotted name or a path means something in this repository."""
+    words = name.replace("/", ".").split(".")
+    if (ROOT / name).exists() or words[-1] in FILES:
+        return True
+    for k in range(len(words), 0, -1):
+        try:
+            thing = importlib.import_module(".".join(words[:k]))
+        except ImportError:
+            continue
+        for word in words[k:]:
+            if not hasattr(thing, word):
+                return False
+            thing = getattr(thing, word)
+        return True
+    return False
+
+
+def test_a_dead_name_is_seen() -> None:
+    assert is_there("twin.machine.Chain")
+    assert is_there("docs/conventions.md")
+    assert not is_there("twin.machine.Chein")
+    assert not is_there("twin.engine")
+
+
+@pytest.mark.parametrize("file", [*PAGES, *SOURCES], ids=IDS)
+def test_what_is_named_exists(file: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert [name for name in OURS.findall(text) if not is_there(name)] == []
+    commands = re.findall(r"`matstd ([a-z]+)[ `]", text)
+    assert set(commands) <= set(COMMANDS)
+
+
+@pytest.mark.parametrize("file", PAGES, ids=IDS[: len(PAGES)])
+def test_links_of_the_pages_lead_somewhere(file: Path) -> None:
+    for goal in re.findall(r"\]\(([^)#]+)[^)]*\)", file.read_text(encoding="utf-8")):
+        assert "://" in goal or (file.parent / goal).exists(), goal

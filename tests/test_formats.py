@@ -1,0 +1,229 @@
+"""The pages on formats are true: readers read their examples, and no key is left out."""
+
+import importlib
+import json
+import re
+import tomllib
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+import pytest
+from formats import examples, tables, write_examples
+from pydantic_core import PydanticUndefined
+
+from artefact.body.standard_file import read_standard
+from artefact.brief.project_file import read_project
+from diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
+from diagnosis.files.model_file import read_model
+from probe_paths.control.log import read_log
+from twin.files import run_columns, run_file
+from twin.files.error_file import read_errors
+from twin.files.machine_file import read_machine
+from twin.files.pose_file import read_poses
+from twin.files.run_file import read_run
+from twin.files.sensor_file import read_sensors
+from twin.files.toml import Table
+from twin.foreign.mapping_file import MappingTable
+from twin.machine.ranges import DEFAULT_RANGES
+from twin.units import UM, URAD
+
+ROOT = Path(__file__).parents[1]
+UNSTATED = {PydanticUndefined: "needed", None: "none", float("inf"): "none"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = tmp_path_factory.mktemp("formats")
+    write_examples(made)
+    return made
+
+
+# --- the examples ---------------------------------------------------------------------------
+
+
+def test_machine_errors_and_poses_are_read(folder):
+    chain = read_machine(folder / "machine.toml")
+    assert chain.programmed_axes == ("C", "B", "X", "Y", "Z")
+    errors = read_errors(folder / "errors.toml", chain)
+    assert [effect.symbol.name for effect, _ in errors] == ["EC0Y", "EXX", "EXX"]
+    q, length = read_poses(folder / "poses.csv", chain)
+    assert q.shape == (2, len(chain.axes))
+    assert set(length) == {160.0}
+
+
+def test_runs_sensors_logs_and_mappings_are_read(folder):
+    run = read_run(folder / "run.csv")
+    np.testing.assert_allclose(run.deviation, np.array([0.4, -0.2, 0.9]) * UM)
+    assert run.touches.setups[0].T_table_artefact[:3, 3].tolist() == [20.0, 0.0, 5.0]
+    assert run.remarks == ()
+    sensors = read_sensors(folder / "sensors.csv")
+    assert set(sensors.temperature) == {"ambient", "spindle"}
+    (part,) = read_log(folder / "log.txt", ("C", "B"))
+    assert part.is_complete
+    assert part.time.tolist() == [12.0]
+    mapping = MappingTable.model_validate(tomllib.loads(examples()["mapping.toml"]))
+    assert mapping.columns["X_mm"].source == "x pos"
+
+
+def test_the_deviation_of_the_run_is_what_its_readings_say(folder, tmp_path):
+    """Without `dev_um` the readings give it: they stand where the example says, to its digits."""
+    write_examples(tmp_path)
+    lines = examples()["run.csv"].splitlines()
+    head = [line for line in lines if line.startswith("#")]
+    rows = [line.split(",") for line in lines if not line.startswith("#")]
+    place = rows[0].index("dev_um")
+    rows = [row[:place] + row[place + 1 :] for row in rows]
+    text = "\n".join(head + [",".join(row) for row in rows]) + "\n"
+    (tmp_path / "run.csv").write_text(text, encoding="utf-8")
+    run = read_run(tmp_path / "run.csv")
+    np.testing.assert_allclose(run.deviation, 0.0, atol=1e-9)
+
+
+def test_projects_standards_and_models_are_read(folder):
+    project = read_project(folder / "project.toml")
+    assert project.standard.touches == 300
+    assert project.population.dependence is not None
+    standard = read_standard(folder / "standard.toml")
+    assert [patch.name for patch in standard.patches] == ["FF1"]
+    saved = read_model(folder / "model.toml")
+    assert saved.model.effects[2].tuning == {"tau": pytest.approx(18.2 * 60.0)}
+    np.testing.assert_allclose(saved.estimates.mean, [12.5 * URAD, 1.8 * UM, 24.9 * UM])
+
+
+# --- the keys of files that are read --------------------------------------------------------
+
+
+def every_table():
+    """All models of tables that any reader of the tool has."""
+    for room in ("twin", "artefact", "diagnosis", "probe_paths", "cad_out", "matstd"):
+        for file in (ROOT / room).rglob("*.py"):
+            if "(Table)" in file.read_text(encoding="utf-8"):
+                name = file.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")
+                importlib.import_module(name)
+    todo, out = [Table], {}
+    while todo:
+        for model in todo.pop().__subclasses__():
+            if not model.__module__.startswith("test"):
+                out[f"{model.__module__}.{model.__qualname__}"] = model
+                todo.append(model)
+    return out
+
+
+TABLES = every_table()
+
+
+def test_every_model_of_a_table_is_described():
+    assert len(TABLES) > 20
+    assert sorted(set(TABLES) - set(tables())) == []
+
+
+@pytest.mark.parametrize("name", sorted(TABLES))
+def test_every_key_is_described_with_its_default(name):
+    described = tables()[name]
+    fields = {f.alias or key: f for key, f in TABLES[name].model_fields.items()}
+    assert sorted(described) == sorted(fields)
+    for key, field in fields.items():
+        default = field.get_default(call_default_factory=True, validated_data={})
+        told = described[key]
+        default = default.value if isinstance(default, Enum) else default
+        if isinstance(default, Table):
+            assert told == "its defaults", key
+        elif isinstance(default, dict) and default:
+            assert told == "one, `[setup.a]`", key
+        elif default in ({}, []) or default == ():
+            assert told == "none", key
+        elif isinstance(default, list | tuple) or default not in UNSTATED:
+            value = tomllib.loads("x = " + told.strip("`"))["x"]
+            assert value == (list(default) if isinstance(default, tuple) else default), key
+        else:
+            assert told == UNSTATED[default], key
+
+
+def test_every_column_of_a_run_is_described(folder):
+    columns = {*run_columns.POINT, *run_columns.NORMAL, *run_columns.FORCE, *run_file._OPTIONAL}
+    placeholders = {"X_mm", "B_deg", "dirX", "dirB", "T_<sensor>_degC"}
+    assert set(tables()["columns of runs"]) == columns | placeholders
+
+
+def test_classes_of_errors_are_described_with_their_amplitudes():
+    described = tables()["classes of errors"]
+    assert set(described) == set(DEFAULT_RANGES)
+    for name, told in described.items():
+        is_angle = name.endswith(("_rotation", "_tilt")) or name in ("squareness", "rotary_zero")
+        shown = np.array(DEFAULT_RANGES[name]) / (URAD if is_angle else UM)
+        assert json.loads(told.strip("`")) == pytest.approx(shown.tolist())
+
+
+# --- the keys of results --------------------------------------------------------------------
+
+
+def paths(value, at=""):
+    """Every key of a JSON value with the way to it."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            here = f"{at}.{key}" if at else key
+            yield here
+            yield from paths(inner, here)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from paths(inner, f"{at}[]")
+
+
+def undescribed(value, name):
+    """Keys of a result that its page does not know; `<unit>` stands for any word."""
+    known = [re.sub(r"<\w+>", r"\\w+", re.escape(key)) for key in tables()[name]]
+    return sorted(p for p in set(paths(value)) if not re.fullmatch("|".join(known), p))
+
+
+RESULTS = {
+    "diagnosis.json": ["diagnosis/files/diagnosis_file.py"],
+    "comparison.json": ["diagnosis/files/diagnosis_file.py"],
+    "identification.json": ["report/identifiability/identification_file.py"],
+    "identifiability.json": [
+        "report/identifiability/identifiability_file.py",
+        "artefact/compare/alternatives.py",
+        "information/identifiability/separation.py",
+    ],
+    "montecarlo.json": ["sensitivity/study/study_file.py"],
+}
+
+
+@pytest.mark.parametrize("name", list(RESULTS))
+def test_examples_of_results_have_described_keys_alone_and_all_of_them(name):
+    example = json.loads(examples()[name])
+    assert undescribed(example, name) == []
+    shown = set(paths(example))
+    assert [key for key in tables()[name] if "<" not in key and key not in shown] == []
+
+
+@pytest.mark.parametrize("name", list(RESULTS))
+def test_described_keys_are_those_that_are_written(name):
+    """Every key on the page stands in the module that writes the file."""
+    source = "".join((ROOT / file).read_text(encoding="utf-8") for file in RESULTS[name])
+    for key in tables()[name]:
+        word = key.rpartition(".")[2]
+        if "<" not in word and not re.fullmatch(r"p\d+_um", word):
+            assert re.search(rf'"{word}"|\b{word}:', source), key
+
+
+@pytest.fixture(scope="module")
+def warm_up():
+    """A run whose starting model lacks a thermal lag, with rivals and regions."""
+    return read_run(ROOT / "examples" / "hidden_effect" / "warm_up.csv")
+
+
+def test_a_comparison_has_described_keys_alone(warm_up):
+    from diagnosis.answer.comparison import compare
+    from twin.library.ordinary import ordinary_model
+
+    found = compare(warm_up, ordinary_model(warm_up.touches.chain))
+    words = ["words"] * len(found.structure)
+    assert undescribed(comparison_table(found, words, ["remark"]), "comparison.json") == []
+
+
+def test_a_diagnosis_has_described_keys_alone(warm_up):
+    from diagnosis.answer.run_diagnosis import diagnose
+
+    result = diagnose(warm_up, rng=np.random.default_rng(0))
+    assert undescribed(diagnosis_table(result), "diagnosis.json") == []

@@ -1,0 +1,55 @@
+"""Instruments other than a touching ball: what is not offered to them, and what stays."""
+
+from dataclasses import replace
+
+import pytest
+
+from twin.errors import BadFile
+from twin.files.run_file import read_run
+from twin.files.run_writer import run_text
+from twin.library.catalogue import proposals
+from twin.record.instrument import Instrument
+
+OF_A_BALL = {
+    "probe-lobing",
+    "probe-radius",
+    "stylus-bending",
+    "artefact-form",
+    "artefact-expansion",
+}
+
+
+def words(touches):
+    return {effect.name.split("(")[0] for effect in proposals(touches)}
+
+
+@pytest.fixture
+def run(case):
+    return case(3).run
+
+
+def test_a_ball_on_a_standard_is_offered_probe_and_standard(run):
+    assert words(run.touches) >= OF_A_BALL - {"artefact-form", "artefact-expansion"}
+
+
+@pytest.mark.parametrize("instrument", [i for i in Instrument if i is not Instrument.TOUCH_PROBE])
+def test_other_instruments_are_not(run, instrument):
+    touching, other = words(run.touches), words(replace(run.touches, instrument=instrument))
+    assert not other & OF_A_BALL
+    assert touching - other <= OF_A_BALL, "everything else is offered all the same"
+    assert "backlash" in other
+
+
+def test_the_instrument_stands_in_the_head_of_a_run(run, tmp_path):
+    """Written, read back; an unknown one is refused with those that are known."""
+    chain = run.touches.chain
+    laser = replace(run, touches=replace(run.touches, instrument=Instrument.LASER))
+    path = tmp_path / "run.csv"
+    path.write_text(run_text(laser, "machine.toml"), encoding="utf-8")
+    assert read_run(path, chain).touches.instrument is Instrument.LASER
+    assert "instrument" not in run_text(run, "machine.toml"), "a touch probe needs no word"
+    path.write_text(
+        path.read_text(encoding="utf-8").replace('"laser"', '"lidar"'), encoding="utf-8"
+    )
+    with pytest.raises(BadFile, match=r"instrument: found 'lidar', expected .*'tracker'"):
+        read_run(path, chain)
