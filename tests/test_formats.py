@@ -177,8 +177,16 @@ def undescribed(value, name):
 
 
 RESULTS = {
-    "diagnosis.json": ["diagnosis/files/diagnosis_file.py"],
-    "comparison.json": ["diagnosis/files/diagnosis_file.py"],
+    "diagnosis.json": [
+        "diagnosis/files/diagnosis_file.py",
+        "diagnosis/files/geometry_table.py",
+        "diagnosis/files/fault_table.py",
+    ],
+    "comparison.json": [
+        "diagnosis/files/diagnosis_file.py",
+        "diagnosis/files/geometry_table.py",
+        "diagnosis/files/fault_table.py",
+    ],
     "identification.json": ["report/identifiability/identification_file.py"],
     "identifiability.json": [
         "report/identifiability/identifiability_file.py",
