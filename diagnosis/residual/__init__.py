@@ -1,11 +1,10 @@
 """What a model leaves: patterns, regions, tests for structure.
 
-In: a `Fit` or an `EffectSet`. Out: a `Comparison` with the `Structure` and the `Region`s of its
+In: a `Fit` or an `EffectSet`. Out: the `Structure` and the `Region`s of its
 residual and a `Remark` for everything noteworthy; `partial` is what the run shows of one effect.
 A new test is a module beside `waves` and `crowds`, called by `structure`.
 """
 
-from diagnosis.residual.comparison import Comparison, GroupResidual, compare
 from diagnosis.residual.failing_regions import Condition, Region, Side, regions
 from diagnosis.residual.mean_displacements import has_poses, pose_vectors
 from diagnosis.residual.partial_residuals import SEES, Partial, partial
@@ -15,9 +14,7 @@ from diagnosis.residual.structure import Shape, Structure, find_structure
 
 __all__ = [
     "SEES",
-    "Comparison",
     "Condition",
-    "GroupResidual",
     "Partial",
     "RankedVariable",
     "Region",
@@ -25,7 +22,6 @@ __all__ = [
     "Side",
     "Structure",
     "binned",
-    "compare",
     "directions",
     "find_structure",
     "groups",
