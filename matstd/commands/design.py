@@ -33,6 +33,7 @@ def run(args: argparse.Namespace) -> int:
         from matstd.console import stages
         from matstd.design import design
         from report.pages import write_design_page
+        from report.words import identification_sentence
 
         with stages() as progress, connected(args.scheduler) as workers:
             made = design(project, folder, progress, workers)
@@ -40,6 +41,8 @@ def run(args: argparse.Namespace) -> int:
             remarks = write_design_page(made, folder)
     for remark in remarks:
         print(remark)
+    if sentence := identification_sentence(made.placement):
+        print(sentence)
     for machine in made.machines:
         proof = machine.proof
         print(

@@ -7,6 +7,7 @@ units, values with their uncertainty.
 from report.words.artefact_words import (
     comparison_remarks,
     criterion_words,
+    identification_sentence,
 )
 from report.words.diagnosis_words import (
     comparison_sentence,
@@ -50,6 +51,7 @@ __all__ = [
     "dominant_words",
     "family_words",
     "gist",
+    "identification_sentence",
     "in_words",
     "microns",
     "named_value",
