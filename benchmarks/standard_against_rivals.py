@@ -77,7 +77,7 @@ def main() -> list[tuple[float, float, float]]:
         shares.append((ratios[1], max(ratios[2:]), own.visible / own.could_be_visible))
         words = "  ".join(f"{100 * r:+5.1f} %" for r in ratios)
         print(
-            f"seed {seed}: against {spheres.name} and D-scatter, volume and workspace each: {words}; "
+            f"seed {seed}: against {spheres.name} and D-scatter, volume and workspace: {words}; "
             f"shows {own.visible} of {own.could_be_visible}; "
             f"{time.process_time() - start:.0f} s CPU",
             flush=True,
