@@ -11,11 +11,12 @@ measure next), and model and result files. It needs no standard and no CAD.
 `fit` estimates parameters with a prior, whatever the noise, and finds gross errors. `evidence`
 projects effects that are not in the model on what the fit leaves, and says how much a set of them
 explains. `residual` tests what is left for structure, and finds regions where a model fails.
-`search` chooses the set of effects. `answer` turns it into a verdict with sizes and look-alikes.
+`search` finds sets of effects, `choice` takes the one that predicts best. `answer` turns
+it into a verdict with sizes and look-alikes.
 `files` reads and writes models and results.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
-should know about a run is a record in `residual.run_remarks`, its sentence in `report.words`; a
+should know about a run is a record in `remarks`, its sentence in `report.words`; a
 new effect needs nothing here.
 """
 
@@ -31,7 +32,7 @@ from diagnosis.files import (
 from diagnosis.fit import Estimable, Fit, Prior, estimable, fit_run
 from diagnosis.residual import Comparison, Region, Structure, compare
 
-PARTS = ("fit", "evidence", "residual", "search", "answer", "files")
+PARTS = ("fit", "evidence", "remarks", "residual", "search", "choice", "answer", "files")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

@@ -32,11 +32,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser(arguments)
     args = parser.parse_args(arguments)
-    from matstd.console import clean_stop
+    from matstd.stop import STOPPED, clean_stop, stopped_words
     from twin.errors import DesignError
 
     try:
-        with clean_stop():
+        with clean_stop(args.command):
             return int(args.run(args) or 0)
     except DesignError as error:
         print(f"matstd {args.command}: {error}", file=sys.stderr)
@@ -45,8 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
         return 0
     except KeyboardInterrupt:
-        print(f"matstd {args.command}: stopped, and nothing half-written is left", file=sys.stderr)
-        return 130
+        print(stopped_words(args.command), file=sys.stderr)
+        return STOPPED
     except (Exception, SystemExit) as error:
         theirs = _users_fault(error)
         if theirs is None:

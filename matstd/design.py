@@ -13,7 +13,7 @@ from artefact.brief import Project
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
 from cad_out.verify import export_standard
-from diagnosis.answer import probed_volume, prove
+from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.fit import fit_run
 from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
 from matstd.reach import check_reach
@@ -21,17 +21,19 @@ from matstd.streams import streams
 from probe_paths.campaign import VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import TouchPlan, plan_touches
+from report.identifiability import write_identifiability, write_identification
 from report.maps import draw_maps, draw_path
 from report.pages import Design, Proven
-from report.words import sampling_words, write_identifiability, write_identification
-from sensitivity.first_order import Workspace
+from report.words import sampling_words
+from sensitivity.first_order import Workspace, latin_hypercube
 from sensitivity.montecarlo import Workers
-from sensitivity.population import Population, drawn_errors
+from sensitivity.population import drawn_errors
 from sensitivity.study import run_study, write_study
 from twin.compute import Progress
 from twin.files import errors_toml, write_run, write_whole
 from twin.frames import Array
 from twin.model import contribution
+from twin.record import at_poses
 
 PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""
@@ -88,7 +90,8 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     machines = []
     for seed in range(project.machines):
         progress("proof on the twin", seed, project.machines)
-        machines.append(_prove(project, population, placement, paths, seed, rng.proof.spawn(1)[0]))
+        machine = _prove(project, workspace, placement, paths, seed, rng.proof.spawn(1)[0])
+        machines.append(machine)
     first = machines[0]
     write_whole(folder / "errors.toml", errors_toml(first.errors))
     write_run(folder / "run.csv", first.campaign.run, "machine.toml")
@@ -142,14 +145,15 @@ def _plan(project: Project, placement: Placement) -> TouchPlan:
 
 def _prove(
     project: Project,
-    population: Population,
+    workspace: Workspace,
     placement: Placement,
     programs: list[Path],
     seed: int,
     rng: np.random.Generator,
 ) -> Proven:
     """Probe one random machine by the text of the programs, identify it, compare with its truth."""
-    rng_errors, rng_noise, rng_poses = rng.spawn(3)
+    rng_errors, rng_noise, rng_volume, rng_workspace = rng.spawn(4)
+    population = project.population
     errors = drawn_errors(population, rng_errors)
     machine = VirtualMachine(
         project.chain, lambda touches: contribution(errors, touches), noise=project.noise
@@ -157,5 +161,15 @@ def _prove(
     table = project.limits.table_radius_mm
     campaign = simulate(programs, placement.standard, machine, rng_noise, table_radius=table)
     fit = fit_run(campaign.run, population.expected())
-    poses = probed_volume(campaign.run, PROOF_POSES, rng_poses)
-    return Proven(seed, errors, campaign, fit, prove(fit, errors, project.setup, poses))
+    in_volume = probed_volume(campaign.run, PROOF_POSES, rng_volume)
+    q = latin_hypercube(workspace, PROOF_POSES, rng_workspace)
+    believed = campaign.run.touches.setups[0]
+    in_workspace = seen_from(at_poses(project.chain, q, project.probe_length), believed)
+    return Proven(
+        seed=seed,
+        errors=errors,
+        campaign=campaign,
+        fit=fit,
+        proof=prove(fit, errors, project.setup, in_volume),
+        in_workspace=prove(fit, errors, project.setup, in_workspace),
+    )

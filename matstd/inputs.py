@@ -1,9 +1,10 @@
 """What compare and diagnose begin with: a run, a model that fits it, effects of the user's own."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from diagnosis.choice import offered
 from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
 from twin.errors import DesignError, NotEnoughData
@@ -94,3 +95,44 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
             )
         out.append(effect)
     return out
+
+
+def candidates(only: Sequence[str], without: Sequence[str], run: Run) -> list[Effect] | None:
+    """Effects that may be found, narrowed by the user; None for all that make sense.
+
+    Args:
+        only: Kinds, or names of effects; empty for all.
+        without: Kinds, or names of effects, that are left out.
+        run: The measurements.
+
+    Raises:
+        DesignError: A word that is no kind and no effect of this run, or nothing is left.
+    """
+    if not only and not without:
+        return None
+    everything = offered(run.touches)
+    words = {k.word for k in kinds()}
+    names = {_plain(e.name) for e in everything}
+    for option, given in (("--only", only), ("--without", without)):
+        for word in given:
+            if word not in words and _plain(word) not in names:
+                raise DesignError(
+                    f"{option} {word}: expected a kind ({', '.join(sorted(words))}) or an effect "
+                    "that this run could show (matstd effects)"
+                )
+    out = [e for e in everything if not only or _is_among(e, only)]
+    out = [e for e in out if not _is_among(e, without)]
+    if not out:
+        raise DesignError(
+            f"--only {' '.join(only)} --without {' '.join(without)}: nothing is left to look for, "
+            "expected at least one effect that this run could show"
+        )
+    return out
+
+
+def _plain(name: str) -> str:
+    return name.replace(" ", "")
+
+
+def _is_among(effect: Effect, words: Iterable[str]) -> bool:
+    return any(w == effect.kind or _plain(w) == _plain(effect.name) for w in words)

@@ -7,6 +7,8 @@ is a number in a result.
 
     style   paper, colours and labels of every picture
     words   sentences, for pages and for the console
+    identifiability
+            what touches can know, in words and in result files
     maps    sensitivities and volumetric error over a workspace or along a path
     plots   plans, proofs, residuals, effects
     scenes  pictures in three dimensions, rendered in a process of their own
@@ -36,7 +38,7 @@ from report.plots import (
 from report.scenes import Scene, draw_standard, draw_values, draw_volumes
 from report.words import comparison_sentence, study_words, verdict_sentence
 
-PARTS = ("style", "words", "maps", "plots", "scenes", "pages")
+PARTS = ("style", "words", "identifiability", "maps", "plots", "scenes", "pages")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

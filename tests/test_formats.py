@@ -179,9 +179,9 @@ def undescribed(value, name):
 RESULTS = {
     "diagnosis.json": ["diagnosis/files/diagnosis_file.py"],
     "comparison.json": ["diagnosis/files/diagnosis_file.py"],
-    "identification.json": ["report/words/identification_file.py"],
+    "identification.json": ["report/identifiability/identification_file.py"],
     "identifiability.json": [
-        "report/words/identifiability_file.py",
+        "report/identifiability/identifiability_file.py",
         "artefact/compare/alternatives.py",
         "information/identifiability/separation.py",
     ],

@@ -101,6 +101,13 @@ class MissingLibrary(DesignError, ImportError):
     """Something outside this package is needed for what was asked; the message names it."""
 
 
+def _short(value: object, most: int = 120) -> str:
+    """What stood in a file as a part of one line: on a screen, whatever stood there."""
+    text = " ".join(str(value).split())
+    half = most // 2
+    return text if len(text) <= most else f"{text[:half]} ... {text[-half // 2 :]}"
+
+
 class BadFile(DesignError, ValueError):
     """A file that says something else than it should.
 
@@ -113,7 +120,8 @@ class BadFile(DesignError, ValueError):
 
     def __init__(self, path: str | Path, where: str, found: object, expected: str) -> None:
         super().__init__(
-            f"{path}: {where}: found {found}, expected {expected}",
+            f"{_short(path, 300)}: {_short(where)}: found {_short(found)}, "
+            f"expected {_short(expected, 400)}",
             path=str(path),
             where=where,
             found=found,

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from pydantic import Field
 
 from artefact.brief.errors_table import ErrorsTable, Expected, expected_errors
@@ -31,6 +30,9 @@ from twin.files import (
 from twin.machine import Chain
 from twin.record import Setup
 from twin.units import DEG, UM
+
+FARTHEST = 1e6
+"""A reading beyond this (mm, degrees) is a slip; larger whole numbers are no floating ones."""
 
 
 class ProbeTable(Table):
@@ -217,8 +219,8 @@ def _workspace(
 
 def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
     """Two finite numbers, the smaller first."""
-    numbers = isinstance(value, list) and len(value) == 2
-    if not numbers or not all(isinstance(v, int | float) and np.isfinite(v) for v in value):
+    is_pair = isinstance(value, list) and len(value) == 2
+    if not is_pair or not all(type(v) in (int, float) and abs(v) < FARTHEST for v in value):
         raise BadFile(path, key, repr(value), "two numbers")
     low, high = float(value[0]), float(value[1])
     if not low <= high:

@@ -26,6 +26,7 @@ from information.identifiability import (
     in_families,
     supported_degrees,
 )
+from twin.display import Shown
 from twin.frames import Array
 from twin.machine import Chain
 from twin.model import Model
@@ -48,8 +49,8 @@ class Alone:
     unit: str
 
 
-@dataclass(frozen=True, eq=False)
-class IdentifiabilityReport:
+@dataclass(frozen=True, eq=False, repr=False)
+class IdentifiabilityReport(Shown):
     """What a design's touches can and cannot know.
 
     Attributes:

@@ -8,7 +8,7 @@ shown, `next_measurement` touches that tell look-alikes apart, `proof` compares 
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.next_measurement import Plan
-from diagnosis.answer.proof import Proof, probed_volume, prove
+from diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
@@ -25,4 +25,5 @@ __all__ = [
     "diagnose",
     "probed_volume",
     "prove",
+    "seen_from",
 ]

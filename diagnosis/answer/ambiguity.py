@@ -1,7 +1,7 @@
 """What cannot be told apart: effects that explain the same touches equally well."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -62,6 +62,18 @@ class ConfusionClass:
     def effect(self) -> Effect:
         """The named effect itself."""
         return self.sized.effect
+
+    def headed(self, sized: ScaledEffect) -> "ConfusionClass":
+        """The class with another of its members named: the one that was weighed."""
+        if sized.effect.name == self.effect.name:
+            return replace(self, sized=sized)
+        own = (Rival(self.sized, 0.0, 1.0), *self.rivals)
+        return replace(
+            self,
+            sized=sized,
+            rivals=tuple(r for r in own if r.effect.name != sized.effect.name),
+            told_apart=tuple(r for r in self.told_apart if r.effect.name != sized.effect.name),
+        )
 
 
 def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float]:

@@ -186,8 +186,9 @@ def _later(touches: Touches, offers: Touches) -> Touches:
     last = int(np.argmax(touches.time))
     time = np.asarray(touches.time.max() + pace * np.arange(1, len(offers) + 1), dtype=float)
     temperature = {k: np.full(len(offers), v[last]) for k, v in touches.temperature.items()}
+    own = {k: np.full(len(offers), v[last]) for k, v in touches.value.items()}
     rpm = None if touches.spindle_rpm is None else np.full(len(offers), touches.spindle_rpm[last])
-    return replace(offers, time=time, temperature=temperature, spindle_rpm=rpm)
+    return replace(offers, time=time, temperature=temperature, value=own, spindle_rpm=rpm)
 
 
 def _joined(first: Touches, second: Touches) -> Touches:
@@ -197,7 +198,7 @@ def _joined(first: Touches, second: Touches) -> Touches:
         a, b = getattr(first, field.name), getattr(second, field.name)
         if field.name in ("chain", "setups", "instrument") or a is None:
             merged[field.name] = a
-        elif field.name == "temperature":
+        elif field.name in ("temperature", "value"):
             merged[field.name] = {k: np.concatenate([a[k], b[k]]) for k in a}
         else:
             merged[field.name] = np.concatenate([a, b])

@@ -15,7 +15,7 @@ from twin.record import Run, Setup, Touches, at_poses
 
 @dataclass(frozen=True, eq=False)
 class Proof:
-    """Volumetric error over the probed volume, before and after the identification.
+    """Volumetric error over some poses, before and after the identification.
 
     The volumetric error is the displacement of the ball centre relative to the standard, in the
     artefact frame: what is left once the standard has been aligned, so that no set-up is counted
@@ -119,7 +119,7 @@ def prove(
         fit: The identified model.
         truth: Errors of the simulated machine with their parameters.
         true_setup: Where the standard really stood.
-        poses: Poses with the believed set-up, as from `probed_volume`.
+        poses: Poses with the believed set-up, as from `probed_volume` or `seen_from`.
     """
     chain = poses.chain
     actual = exact_tip(chain, poses.q, poses.length, contribution(truth, poses))

@@ -1,6 +1,7 @@
 """The diagnosis of a run: which effect the model lacks, how sure that is, what stays open."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,6 +10,14 @@ from diagnosis.answer.detectable import detectable
 from diagnosis.answer.next_measurement import Plan, plan
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
+from diagnosis.choice import (
+    chosen_by_prediction,
+    field_shares,
+    followed,
+    offered,
+    remembered,
+    ways_tried,
+)
 from diagnosis.evidence import (
     EffectSet,
     Progress,
@@ -19,15 +28,8 @@ from diagnosis.evidence import (
     quiet,
 )
 from diagnosis.fit import Fit, GrossErrors, Prior
-from diagnosis.residual import (
-    Region,
-    Remark,
-    SearchEnded,
-    Structure,
-    find_structure,
-    regions,
-    remarks,
-)
+from diagnosis.remarks import Remark, SearchEnded, remarks
+from diagnosis.residual import Region, Structure, find_structure, regions
 from diagnosis.search import (
     LISTED,
     MOST_SETS,
@@ -40,9 +42,10 @@ from diagnosis.search import (
     search_until_stable,
 )
 from twin.compute import one_blas_thread
-from twin.library import ordinary_model, proposals
+from twin.library import ordinary_model
 from twin.model import Effect, Model
 from twin.record import Run, without_copies
+from twin.thermal import ThermalField
 
 DEPENDENCES = 2
 """Patterns, one after the other, of which `depends_on` tells."""
@@ -79,12 +82,22 @@ def diagnose(
     start = model or ordinary_model(run.touches.chain)
     belief = prior or Prior.of_effects(start.effects)
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
-    library = proposals(run.touches) if candidates is None else list(candidates)
+    library = offered(run.touches) if candidates is None else list(candidates)
     added = refined_named(task, named, progress)
     known = {e.name for e in (*start.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
-    final = search_until_stable(task, added, library, progress)
-    return _result(task, added, final, progress, rng)
+    single = [e for e in library if not getattr(e, "is_shrunk", False)]
+    final = search_until_stable(task, added, single, progress)
+    task, final = remembered(task, added, final, single, progress)
+    choice = chosen_by_prediction(task, added, final, library, progress)
+    if choice is not None:
+        task, final = followed(task, added, final, choice, single, progress)
+    result = _result(task, added, final, progress, rng)
+    if choice is None:
+        return result
+    fields = [e for e in result.found if isinstance(e, ThermalField)]
+    told: tuple[Remark, ...] = (ways_tried(choice), *(field_shares(result.fit, e) for e in fields))
+    return replace(result, choice=choice, remarks=(*told, *result.remarks))
 
 
 def _result(
@@ -153,7 +166,11 @@ def _classes(final: SearchState) -> list[ConfusionClass]:
     out = []
     for i, effect in enumerate(final.effects):
         others = final.effects[:i] + final.effects[i + 1 :]
-        out.append(confusion_class(final.pool, effect, others, final.fixed))
+        if effect.effect.name in final.chances:
+            out.append(ConfusionClass(effect, (), ()))
+            continue
+        found = confusion_class(final.pool, effect, others, final.fixed)
+        out.append(found.headed(effect) if final.is_weighed else found)
     return out
 
 
@@ -166,7 +183,8 @@ def _steps(
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""
-    p_values = [verified[m.effect.name].p_value for m in final.chosen.members]
+    names = [m.effect.name for m in final.chosen.members]
+    p_values = [final.chances.get(n, verified[n].p_value) for n in names]
     order = _by_worth(final)
     heads = [classes[i].sized for i in order]
     effects = [*added, *heads]
@@ -227,7 +245,7 @@ def _candidates(final: SearchState) -> tuple[Candidate, ...]:
                 kind=member.effect.kind,
                 p_value=search.corrected(member.candidate, float(scores.p[variant])),
                 rms=float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
-                test_rms=effects.held_out.rms * float(np.sqrt(np.mean(u**2))),
+                test_rms=float(np.sqrt(np.mean((effects.held_out.error * u) ** 2))),
                 log_odds=float(effects.evidence - nothing.effects.evidence),
             )
         )

@@ -81,8 +81,9 @@ def _settled(
         prior = prior.joined(task.found_prior(sized))
     for remaining in reversed(range(STEPS)):
         model = Model(task.model.chain, (*task.model.effects, *at))
-        theta = fit_run(task.run, model, prior, gross=gross).theta[: len(model.parameters)]
-        fit = fit_run(task.run, model, prior, free_inner=theta, gross=gross)
+        theta = fit_run(task.run, model, prior, None, gross, task.memory).theta
+        theta = theta[: len(model.parameters)]
+        fit = fit_run(task.run, model, prior, theta, gross, task.memory)
         moved = _stepped(fit, at)
         if moved is None or not remaining:
             break

@@ -2,14 +2,19 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.next_measurement import Plan
+from diagnosis.choice import Choice
 from diagnosis.fit import Fit, Reported
-from diagnosis.residual import Region, Remark, Structure
+from diagnosis.remarks import Remark
+from diagnosis.residual import Region, Structure
+from twin.display import Tabular
 from twin.model import Effect
 from twin.record import Run
+from twin.units import UM
 
 
 class Verdict(Enum):
@@ -72,8 +77,8 @@ class Dependence:
     structure: Structure
 
 
-@dataclass(frozen=True, eq=False)
-class Diagnosis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Diagnosis(Tabular):
     """All that a run tells about what its model lacks.
 
     Attributes:
@@ -88,6 +93,7 @@ class Diagnosis:
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
         remarks: What else a user should know.
+        choice: How the set was chosen by prediction; None where the search left nothing to choose.
     """
 
     run: Run
@@ -101,6 +107,18 @@ class Diagnosis:
     detectable: tuple[Detectable, ...]
     plans: tuple[Plan, ...]
     remarks: tuple[Remark, ...]
+    choice: Choice | None = None
+
+    def columns(self) -> dict[str, list[Any]]:
+        """Every step in which the error falls; the first is the starting model."""
+        fits = [step.fit for step in self.steps]
+        return {
+            "effect": [step.effect.name if step.effect else "" for step in self.steps],
+            "p_value": [step.p_value for step in self.steps],
+            "rms_um": [fit.rms / UM for fit in fits],
+            "test_rms_um": [fit.test_rms / UM for fit in fits],
+            "chi2_ratio": [fit.noise.chi2_ratio for fit in fits],
+        }
 
     @property
     def start(self) -> Fit:

@@ -15,19 +15,23 @@ from diagnosis.evidence.effect_signatures import (
     projected,
     quiet,
     signatures,
+    tuned_variants,
     whole_grids,
 )
 from diagnosis.evidence.evidence import (
+    SCALES,
     EffectSet,
     Scores,
     addition,
     f_probability,
+    log_evidence,
     reduced,
     score_all,
     screen,
 )
 
 __all__ = [
+    "SCALES",
     "EffectSet",
     "Grid",
     "Progress",
@@ -38,11 +42,13 @@ __all__ = [
     "addition",
     "blocks",
     "f_probability",
+    "log_evidence",
     "projected",
     "quiet",
     "reduced",
     "score_all",
     "screen",
     "signatures",
+    "tuned_variants",
     "whole_grids",
 ]

@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit import BoolArray, Fit
+from diagnosis.fit import PRIOR_DOF, BoolArray, Fit, Whitener
 from twin.frames import Array
 from twin.model import Effect, Tunable, columns
 from twin.record import Touches
@@ -47,6 +47,10 @@ class ResidualSpace:
         dof: Degrees of freedom left.
         groups: Rows of every table pose.
         gross: Which of all touches were left out as gross errors.
+        whitener: Filter of the noise's memory; None for white noise.
+        stated: Squared residual that the stated size of the noise counts for, as `PRIOR_DOF`
+            observations, in units of the found one.
+        independent: Number of independent observations; None for one a touch.
     """
 
     touches: Touches
@@ -57,6 +61,9 @@ class ResidualSpace:
     dof: float
     groups: tuple[IntArray, ...]
     gross: BoolArray
+    whitener: Whitener | None = None
+    stated: float = PRIOR_DOF
+    independent: float | None = None
 
     @classmethod
     def of(cls, fit: Fit) -> "ResidualSpace":
@@ -64,16 +71,26 @@ class ResidualSpace:
         solution = fit.solution
         Q = np.vstack([solution.Q, solution.root])
         residual = np.concatenate([solution.residual, -solution.phi])
+        u = fit.u[fit.used] * fit.weight
+        count = len(u) / fit.weight**2
         return cls(
             touches=fit.run.touches,
             used=fit.used,
-            u=fit.u[fit.used],
+            u=u,
             Q=Q,
             residual=residual,
-            dof=solution.dof,
+            dof=max(solution.dof - len(u) + count, 1.0),
             groups=fit.groups,
             gross=fit.gross.rows,
+            whitener=fit.whitener,
+            stated=PRIOR_DOF / (fit.noise.factor * fit.weight) ** 2,
+            independent=count if fit.weight > 1.0 else None,
         )
+
+    @property
+    def count(self) -> float:
+        """Number of independent observations."""
+        return float(len(self.u)) if self.independent is None else self.independent
 
     def thinned(self, count: int) -> "ResidualSpace":
         """The same model fitted to an even choice of so many of the touches."""
@@ -90,14 +107,18 @@ class ResidualSpace:
         place = np.full(n, -1)
         place[rows] = np.arange(kept)
         groups = tuple(g for g in (place[k][place[k] >= 0] for k in self.groups) if len(g))
-        return replace(
-            self, used=used, u=self.u[rows], Q=Q, residual=residual, dof=dof, groups=groups
-        )
+        filter_ = None if self.whitener is None else replace(self.whitener, rows=rows)
+        thin = replace(self, used=used, u=self.u[rows], Q=Q, residual=residual, dof=dof)
+        whole = self.independent
+        independent = None if whole is None else whole * kept / n
+        return replace(thin, groups=groups, whitener=filter_, independent=independent)
 
     def columns(self, effects: Sequence[Effect]) -> Array:
         """Whitened columns of effects, scaled by their prior, (N, K)."""
         sd = np.array([p.sd for e in effects for p in e.parameters])
         C = columns(effects, self.touches)
+        if self.whitener is not None:
+            return self.whitener(C * sd)
         return (C if self.used.all() else C[self.used]) * sd / self.u[:, None]
 
     def project(self, C: Array) -> Array:

@@ -168,12 +168,13 @@ def log_evidence(
 ) -> Array:
     """Logarithm of the evidence up to a constant, with a scale-free noise.
 
-    ``-(n + nu)/2 log(objective + nu) - log_det/2``: the marginal likelihood of a normal linear
-    model whose noise has an inverse chi-squared prior of nu degrees of freedom.
+    ``-(n + nu)/2 log(objective + nu s^2) - log_det/2``: the marginal likelihood of a normal linear
+    model whose noise has an inverse chi-squared prior of nu degrees of freedom about the stated
+    size s, in units of the size that the model to begin with leaves.
     """
-    n = len(complement.u)
-    objective = np.maximum(objective, 1e-9)
-    return -0.5 * (n + PRIOR_DOF) * np.log(objective + PRIOR_DOF) - 0.5 * np.asarray(log_det)
+    n = complement.count
+    objective = np.maximum(objective, 1e-9) + complement.stated
+    return -0.5 * (n + PRIOR_DOF) * np.log(objective) - 0.5 * np.asarray(log_det)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -236,7 +237,8 @@ def _scores(effects: EffectSet, pool: Signatures, E: Array, g: Array, share: flo
         S = share * (pool.gram[k] - np.einsum("vai,vaj->vij", own, own))
         values, along = _principal(S, g[cols])
         evidence[which], scale[which] = _scaled_evidence(effects, values, along)
-        seen = values > VISIBLE
+        # beside what is in the set already: a large effect must not hide all smaller ones
+        seen = values * effects.dof > VISIBLE * effects.objective
         free[which] = np.where(seen, along / np.where(seen, values, 1.0), 0.0).sum(axis=1)
         freedom[which] = seen.sum(axis=1)
     rest = np.maximum(effects.objective - free, 1e-9)

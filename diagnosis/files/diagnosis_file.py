@@ -109,22 +109,7 @@ def write_comparison(
 
 def write_residuals(path: str | Path, found: Comparison) -> None:
     """Write a table of every touch: measured, predicted, residual, in µm and normalised."""
-    t = found.run.touches
-    gross = found.fit.gross.rows | found.fit.gross_test_rows
-    lines = ["line,feature,setup,pose,measured_um,predicted_um,residual_um,normalised,gross_error"]
-    for i in range(len(found.run)):
-        numbers = (found.run.deviation[i], found.predicted[i], found.residual[i])
-        cells = [
-            str(found.run.line[i]),
-            str(t.feature[i]),
-            t.setups[t.setup[i]].name,
-            str(t.pose[i]),
-            *(f"{v / UM:.4f}" for v in numbers),
-            f"{found.normalised[i]:.4f}",
-            str(int(gross[i])),
-        ]
-        lines.append(",".join(cells))
-    write_whole(path, "\n".join(lines) + "\n")
+    write_whole(path, found.to_csv())
 
 
 def _text(table: dict[str, Any]) -> str:

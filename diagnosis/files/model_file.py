@@ -25,6 +25,13 @@ from twin.units import DEG
 
 FORMAT = "model/1"
 
+LARGEST, SMALLEST = 1e12, 1e-300
+"""Variances of a file beyond the first (µm, µrad squared ...) are slips; of none below the second a
+root is taken."""
+
+ROUNDED = 1e-6
+"""By so much rounding may leave correlations of a file beyond one, or variances below zero."""
+
 
 class EffectEntry(Table):
     """`[[effect]]`: its name, its inner parameters, and the estimates of the others."""
@@ -38,7 +45,8 @@ class SourceEntry(Table):
     """`[source]`: what the estimates rest upon.
 
     `revision` counts the runs that the model has learnt from, one after the other; `learnt_from`
-    has their fingerprints, so that no touch is counted twice.
+    has their fingerprints, so that no touch is counted twice. `held_out_um` is the plain error that
+    the model promises for rows it has not seen; 0 where it promises none.
     """
 
     run: str
@@ -48,6 +56,7 @@ class SourceEntry(Table):
     revision: int = 1
     learnt_from: list[str] = Field(default_factory=list)
     made_with: str = ""
+    held_out_um: float = 0.0
 
 
 class ModelTable(Table):
@@ -165,4 +174,22 @@ def _covariance(rows: list[list[float]], factors: Array, path: str | Path) -> Ar
     for i, row in enumerate(rows):
         out[i, : i + 1] = row
         out[: i + 1, i] = row
+    _check_covariance(out, path)
     return np.asarray(out * np.outer(factors, factors))
+
+
+def _check_covariance(matrix: Array, path: str | Path) -> None:
+    """Refuse numbers that no covariance has: correlations beyond one, variances below zero."""
+    variance = np.diag(matrix)
+    wrong = np.flatnonzero(~((variance >= 0.0) & (variance < LARGEST)))
+    if len(wrong):
+        i = int(wrong[0])
+        raise BadFile(path, f"covariance[{i}][{i}]", matrix[i, i], "a variance")
+    sd = np.sqrt(np.maximum(variance, SMALLEST))
+    correlation = matrix / np.outer(sd, sd)
+    if np.abs(correlation).max(initial=0.0) > 1.0 + ROUNDED:
+        i, j = (int(k) for k in np.argwhere(np.abs(correlation) > 1.0 + ROUNDED)[0])
+        expected = "a covariance within what the two variances allow"
+        raise BadFile(path, f"covariance[{max(i, j)}][{min(i, j)}]", matrix[i, j], expected)
+    if np.linalg.eigvalsh(correlation).min(initial=0.0) < -ROUNDED * len(matrix):
+        raise BadFile(path, "covariance", "variances below zero of sums", "a covariance")

@@ -20,6 +20,7 @@ def write_model(
     run_name: str,
     before: SavedModel | None = None,
     made_with: str = "",
+    held_out: float | None = None,
 ) -> None:
     """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
 
@@ -29,12 +30,17 @@ def write_model(
         run_name: Name of the run file, for whoever reads the model later.
         before: Model whose estimates the fit began with; None if it began with none.
         made_with: Name and version of the program, for the same reader.
+        held_out: Plain error that is promised for rows not seen, mm; None for that of the fit.
     """
-    write_whole(path, model_text(fit, run_name, before, made_with))
+    write_whole(path, model_text(fit, run_name, before, made_with, held_out))
 
 
 def model_text(
-    fit: Fit, run_name: str, before: SavedModel | None = None, made_with: str = ""
+    fit: Fit,
+    run_name: str,
+    before: SavedModel | None = None,
+    made_with: str = "",
+    held_out: float | None = None,
 ) -> str:
     """Text of a model file; arguments as of `write_model`."""
     import tomli_w
@@ -58,14 +64,16 @@ def model_text(
     shown = covariance[:count, :count] / np.outer(scale, scale)
     tables = {
         "machine": _machine(fit.model.chain),
-        "source": _source(fit, run_name, before, made_with),
+        "source": _source(fit, run_name, before, made_with, held_out),
         "effect": entries,
     }
     # top-level keys stand before tables in TOML, so the covariance goes before what it is about
     return f'format = "{FORMAT}"\n' + _triangle(shown) + tomli_w.dumps(tables)
 
 
-def _source(fit: Fit, run_name: str, before: SavedModel | None, made_with: str) -> dict[str, Any]:
+def _source(
+    fit: Fit, run_name: str, before: SavedModel | None, made_with: str, held_out: float | None
+) -> dict[str, Any]:
     """What the estimates rest upon."""
     earlier = before.source.learnt_from if before else []
     return {
@@ -76,6 +84,7 @@ def _source(fit: Fit, run_name: str, before: SavedModel | None, made_with: str) 
         "revision": before.source.revision + 1 if before else 1,
         "learnt_from": [*earlier, fit.run.fingerprint],
         "made_with": made_with,
+        "held_out_um": float(fit.test_rms if held_out is None else held_out) / UM,
     }
 
 

@@ -11,11 +11,13 @@ from diagnosis.fit.gross import GrossErrors
 from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
 from diagnosis.fit.inner import continuous_inner, shifted, spacing
 from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
+from diagnosis.fit.memory import CLEARLY, Memory, Whitener, likely_memory
 from diagnosis.fit.noise import PRIOR_DOF
 from diagnosis.fit.prior import Prior
 from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 
 __all__ = [
+    "CLEARLY",
     "MIN_POSES",
     "MIN_TOUCHES",
     "PRIOR_DOF",
@@ -25,17 +27,20 @@ __all__ = [
     "GrossErrors",
     "InstantEstimate",
     "LeftOut",
+    "Memory",
     "MistakenUnit",
     "Prior",
     "Reported",
     "Role",
     "UnitMistake",
+    "Whitener",
     "continuous_inner",
     "estimable",
     "file_unit",
     "fit_run",
     "inner_unit",
     "left_out",
+    "likely_memory",
     "reported",
     "shifted",
     "solve",

@@ -8,9 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from diagnosis.fit.identification import Fit
+from diagnosis.fit.linear import BoolArray
 from twin.frames import Array
-from twin.model import Effect, Inner, inner_values
+from twin.model import Effect, Inner, columns, inner_values
 from twin.units import DEG, MINUTE, UM, URAD
+
+AT_END = 1e-3
+"""Share of an end of a scan within which a value lies at it."""
+
+UNSEEN = 0.99
+"""Share of its prior uncertainty that a parameter keeps if no touch sees it."""
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
@@ -35,6 +42,8 @@ class Reported:
         u: Standard uncertainty, or None where the run gives none.
         factor: One of that unit in the base unit.
         role: Of the number among those of its effect.
+        bound: -1 or 1 where it lies at the lower or upper end of what was scanned, and is no more
+            than a bound; 0 for an estimate.
     """
 
     quantity: str
@@ -43,6 +52,7 @@ class Reported:
     u: float | None
     factor: float
     role: Role
+    bound: int = 0
 
     @property
     def name(self) -> str:
@@ -103,8 +113,10 @@ def reported(
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
     out = list(_inner(fit, effect, wider, settled or {}))
-    if len(theta) > 1:
-        out.append(size(effect, theta, covariance))
+    if getattr(effect, "is_shrunk", False):
+        out.append(explained_rms(fit, effect, theta, covariance))
+    elif len(theta) > 1:
+        out.append(size(effect, theta, covariance, _is_seen(fit, place)))
     for i, parameter in enumerate(effect.parameters):
         suffix, factor = file_unit(parameter.unit)
         out.append(
@@ -121,18 +133,51 @@ def reported(
     return tuple(out)
 
 
-def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
+def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
+    """Deviation that an effect of many parameters explains, root mean square over the rows used.
+
+    Of parameters that share what they know neither one nor their length means anything.
+    """
+    C = columns([effect], fit.run.touches)[fit.used]
+    explained = C @ theta
+    rms = float(np.sqrt(np.mean(explained**2)))
+    # d rms / d theta = C^T C theta / (n rms)
+    slope = C.T @ explained / max(len(C) * rms, 1e-300)
+    return Reported(
+        quantity="amplitude",
+        unit="um",
+        value=rms / UM,
+        u=float(np.sqrt(slope @ covariance @ slope)) / UM,
+        factor=UM,
+        role=Role.SIZE,
+    )
+
+
+def _is_seen(fit: Fit, place: slice) -> BoolArray:
+    """Which parameters the run says anything of; all, where it says nothing of any."""
+    u = np.sqrt(np.diag(fit.covariance[place, place]))
+    seen = np.asarray(u < UNSEEN * fit.prior.sd[place])
+    return seen if seen.any() else np.ones(len(u), dtype=bool)
+
+
+def size(
+    effect: Effect, theta: Array, covariance: Array, seen: BoolArray | None = None
+) -> Reported:
     """Length of those parameters that share the unit of the first, with its uncertainty.
 
-    Of a sine and a cosine it is the amplitude; of a displacement its length. Noise across a vector
-    makes it longer, ``E|v|^2 = |v_true|^2 + tr C_across``: that is taken off, three quarters of the
-    square at most, and its own scatter ``tr C_across^2 / (2 |v|^2)`` is in the uncertainty.
+    Parameters that no touch sees, such as a slip across the only direction that was probed, are
+    left out. Of a sine and a cosine it is the amplitude; of a displacement its length. Noise across
+    a vector makes it longer, ``E|v|^2 = |v_true|^2 + tr C_across``: that is taken off, three
+    quarters of the square at most, and its own scatter ``tr C_across^2 / (2 |v|^2)`` is in the
+    uncertainty.
 
     Reference:
         Gudbjartsson and Patz, Magnetic Resonance in Medicine 34 (1995) 910 (Rician bias).
     """
     units = [p.unit for p in effect.parameters]
-    same = np.array([unit == units[0] for unit in units])
+    seen = np.ones(len(units), dtype=bool) if seen is None else seen
+    first = units[int(np.argmax(seen))]
+    same = seen & np.array([unit == first for unit in units])
     part, C = theta[same], covariance[np.ix_(same, same)]
     squared = max(float(part @ part), 1e-300)
     direction = part / np.sqrt(squared)
@@ -141,7 +186,7 @@ def size(effect: Effect, theta: Array, covariance: Array) -> Reported:
     length = np.sqrt(max(squared - float(np.trace(across)), 0.25 * squared))
     variance = direction @ C @ direction + float((across**2).sum()) / (2.0 * squared)
     u = float(np.sqrt(max(variance, 0.0)))
-    suffix, factor = file_unit(units[0])
+    suffix, factor = file_unit(first)
     return Reported(
         quantity="amplitude",
         unit=suffix,
@@ -165,15 +210,26 @@ def _inner(
     out = []
     for i, (inner, value) in enumerate(inner_values(effect, fit.run.touches)):
         suffix, factor = inner_unit(inner)
+        bound = _bound(inner, value)
         value, own = settled.get(i, (value, u.get(i)))
         out.append(
             Reported(
                 quantity=inner.name,
                 unit=suffix.removeprefix("_"),
                 value=value / factor,
-                u=None if own is None else own / factor,
+                u=None if own is None or bound else own / factor,
                 factor=factor,
                 role=Role.INNER,
+                bound=bound,
             )
         )
     return out
+
+
+def _bound(inner: Inner, value: float) -> int:
+    """Whether a value, such as a time constant or a period, lies at an end of its scan."""
+    grid = np.asarray(inner.grid, dtype=float)
+    if not inner.continuous or inner.acts == "at an instant" or len(grid) < 2:
+        return 0
+    at_low, at_high = value < grid.min() * (1.0 + AT_END), value > grid.max() * (1.0 - AT_END)
+    return -1 if at_low else 1 if at_high else 0

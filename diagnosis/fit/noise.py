@@ -14,6 +14,9 @@ PRIOR_DOF = 4.0
 SAME_PLACE = 0.05
 """Touches whose calibrated points lie within this (mm) in one pose are replicates."""
 
+SAME_SIDE = 0.02
+"""Their normals agree within this."""
+
 WRONG_BY = 1.96
 """Standard deviations between stated and found noise from which the statement is called wrong."""
 
@@ -55,7 +58,9 @@ def replicate_groups(run: Run, rows: BoolArray) -> np.ndarray:
     """
     t = run.touches
     cells = np.round(t.point / SAME_PLACE).astype(np.int64)
-    key = np.column_stack([cells, t.setup, t.pose, t.approach.astype(np.int64)])
+    sides = np.round(t.normal / SAME_SIDE).astype(np.int64)
+    readings = np.round(t.q / SAME_PLACE).astype(np.int64)
+    key = np.column_stack([cells, sides, readings, t.setup, t.pose, t.approach.astype(np.int64)])
     group = np.full(len(run), -1)
     group[rows] = np.unique(key[rows], axis=0, return_inverse=True)[1].reshape(-1)
     return group

@@ -9,51 +9,23 @@ from diagnosis.residual.comparison import Comparison, GroupResidual, compare
 from diagnosis.residual.failing_regions import Condition, Region, Side, regions
 from diagnosis.residual.partial_residuals import SEES, Partial, partial
 from diagnosis.residual.patterns import directions, groups, variables
-from diagnosis.residual.run_remarks import (
-    FewDegreesOfFreedom,
-    FewPoses,
-    FewTouches,
-    HeldOutInDoubt,
-    NoiseMisstated,
-    OutliersKept,
-    OutliersLeftOut,
-    PriorWidened,
-    ReaderRemark,
-    Remark,
-    SearchEnded,
-    WorseThanReplicates,
-    remarks,
-)
 from diagnosis.residual.structure import Shape, Structure, find_structure
 
 __all__ = [
     "SEES",
     "Comparison",
     "Condition",
-    "FewDegreesOfFreedom",
-    "FewPoses",
-    "FewTouches",
     "GroupResidual",
-    "HeldOutInDoubt",
-    "NoiseMisstated",
-    "OutliersKept",
-    "OutliersLeftOut",
     "Partial",
-    "PriorWidened",
-    "ReaderRemark",
     "Region",
-    "Remark",
-    "SearchEnded",
     "Shape",
     "Side",
     "Structure",
-    "WorseThanReplicates",
     "compare",
     "directions",
     "find_structure",
     "groups",
     "partial",
     "regions",
-    "remarks",
     "variables",
 ]

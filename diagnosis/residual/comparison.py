@@ -2,18 +2,22 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
+from diagnosis.remarks import Remark, remarks
 from diagnosis.residual.failing_regions import Region, regions
-from diagnosis.residual.run_remarks import Remark, remarks
 from diagnosis.residual.structure import Structure, find_structure
 from twin.compute import one_blas_thread
+from twin.display import Tabular
 from twin.frames import Array
+from twin.library import ordinary_model
 from twin.model import Model
 from twin.record import Run, without_copies
+from twin.units import UM
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +39,8 @@ class GroupResidual:
     normalised: float
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Tabular):
     """A run against a model.
 
     Attributes:
@@ -57,10 +61,27 @@ class Comparison:
     where: tuple[Region, ...]
     remarks: tuple[Remark, ...]
 
+    number_format = ".4f"  # a tenth of a nanometre
+
     @property
     def run(self) -> Run:
         """The measurements."""
         return self.fit.run
+
+    def columns(self) -> dict[str, list[Any]]:
+        """Every touch: measured, predicted, residual, as in `residuals.csv`."""
+        t, gross = self.run.touches, self.fit.gross.rows | self.fit.gross_test_rows
+        return {
+            "line": self.run.line.tolist(),
+            "feature": t.feature.tolist(),
+            "setup": [t.setups[i].name for i in t.setup],
+            "pose": t.pose.tolist(),
+            "measured_um": (self.run.deviation / UM).tolist(),
+            "predicted_um": (self.predicted / UM).tolist(),
+            "residual_um": (self.residual / UM).tolist(),
+            "normalised": self.normalised.tolist(),
+            "gross_error": gross.astype(int).tolist(),
+        }
 
     @property
     def residual(self) -> Array:
@@ -136,13 +157,16 @@ class Comparison:
 
 @one_blas_thread()
 def compare(
-    run: Run, model: Model, estimates: Prior | None = None, progress: Progress = quiet
+    run: Run,
+    model: Model | None = None,
+    estimates: Prior | None = None,
+    progress: Progress = quiet,
 ) -> Comparison:
     """Measured against predicted deviations.
 
     Args:
         run: The measurements.
-        model: Machine and effects.
+        model: Machine and effects; None for the ordinary geometric model of the machine.
         estimates: Of the model's parameters, from an earlier run; then nothing but where the
             standard stands is learnt from this one. None fits the whole model to this run.
         progress: Told of the tests.
@@ -151,6 +175,7 @@ def compare(
         NotEnoughData: So few touches that nothing can be said.
     """
     run = without_copies(run)
+    model = model or ordinary_model(run.touches.chain)
     if estimates is None:
         fit = fit_run(run, model)
         u = run.u

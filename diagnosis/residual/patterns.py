@@ -165,4 +165,6 @@ def whitened(complement: ResidualSpace, features: Array, rows: IntArray) -> Arra
         features: Of all touches of the run, (all, K), mm per mm.
         rows: Which of the touches in use, (R,).
     """
+    if complement.whitener is not None:
+        return complement.whitener(features)[rows]
     return np.asarray(features[np.flatnonzero(complement.used)[rows]] / complement.u[rows, None])

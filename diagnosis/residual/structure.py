@@ -130,9 +130,10 @@ def _evidence(effects: EffectSet, values: Array, along: Array, sizes: Array) -> 
     scaled = sizes[:, None, None]
     fall = (scaled * along / (1.0 + scaled * values)).sum(axis=2)
     charge = np.log1p(scaled * values).sum(axis=2)
-    n = len(effects.complement.u) + PRIOR_DOF
-    left = np.maximum(effects.objective - fall, 1e-9) + PRIOR_DOF
-    return np.asarray(-0.5 * n * np.log(left / (effects.objective + PRIOR_DOF)) - 0.5 * charge)
+    n = effects.complement.count + PRIOR_DOF
+    stated = effects.complement.stated
+    left = np.maximum(effects.objective - fall, 1e-9) + stated
+    return np.asarray(-0.5 * n * np.log(left / (effects.objective + stated)) - 0.5 * charge)
 
 
 def _as_structure(pattern: Pattern, tested: _Tested, count: int) -> Structure:
@@ -172,7 +173,7 @@ def _corrected(found: Structure, count: int) -> Structure:
 
 def _wave_structure(effects: EffectSet, wave: Wave, count: int) -> Structure:
     """The best wave in time as a structure; its two amplitudes are as free as the data like."""
-    n = len(effects.complement.u) + PRIOR_DOF
+    n = effects.complement.count + PRIOR_DOF
     fall = -np.log(max(1.0 - wave.drop / effects.objective, 1e-9))
     gained = 0.5 * n * fall - np.log1p(wave.drop) - np.log(max(wave.count, 1))
     p = min(1.0, wave.p_value * count)

@@ -78,7 +78,7 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
     lowest, step = frequency[0], frequency[1] - frequency[0]
     drop, found = _finer(effects, time, best[1], step, lowest, weight, rows)
     p = float(f_probability(drop, 2.0, effects.objective - drop, effects.dof - 2.0))
-    columns = _wave(time, np.array([found]), weight)
+    columns = _seen(effects, _wave(time, np.array([found]), weight))
     scale = 10.0 / max(float(np.abs(columns).max()), 1e-300)
     return Wave(count * len(along), p, drop, 1.0 / found, best[2], columns * scale)
 
@@ -94,10 +94,25 @@ def _scan(
     """Largest fall of the objective by a wave, and its frequency."""
     best = (0.0, float(frequency[0]))
     for block in np.array_split(frequency, -(-len(frequency) // BLOCK)):
-        drop = _drops(effects, _wave(time[rows], block, weight[rows]), rows)
+        drop = _drops(effects, _of_rows(effects, time, block, weight, rows), rows)
         i = int(np.argmax(drop))
         best = max(best, (float(drop[i]), float(block[i])))
     return best
+
+
+def _of_rows(
+    effects: EffectSet, time: Array, frequency: Array, weight: Array, rows: IntArray
+) -> Array:
+    """Waves at some of the touches, freed of the noise's memory where it has one."""
+    if effects.complement.whitener is None:
+        return _wave(time[rows], frequency, weight[rows])
+    return _seen(effects, _wave(time, frequency, weight))[rows]
+
+
+def _seen(effects: EffectSet, F: Array) -> Array:
+    """Columns freed of the noise's memory where it has one."""
+    filter_ = effects.complement.whitener
+    return F if filter_ is None else filter_.filtered(F)
 
 
 def _finer(

@@ -6,26 +6,45 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 `screening` what makes long runs affordable, `edges` gross errors that are none.
 """
 
-from diagnosis.search.refine import refined
+from diagnosis.search.refine import refined, refined_set
+from diagnosis.search.screening import Library
 from diagnosis.search.search_loop import (
+    FREEDOM,
     DiagnosisTask,
     SearchState,
     most_evident,
     refined_named,
     search_until_stable,
+    searched,
 )
-from diagnosis.search.selection import CHANCE, LISTED, MOST_SETS, Search, Verified
+from diagnosis.search.selection import (
+    CHANCE,
+    LISTED,
+    MOST_SETS,
+    WORTH,
+    Budget,
+    Member,
+    Search,
+    Verified,
+)
 
 __all__ = [
     "CHANCE",
+    "FREEDOM",
     "LISTED",
     "MOST_SETS",
+    "WORTH",
+    "Budget",
     "DiagnosisTask",
+    "Library",
+    "Member",
     "Search",
     "SearchState",
     "Verified",
     "most_evident",
     "refined",
     "refined_named",
+    "refined_set",
     "search_until_stable",
+    "searched",
 ]

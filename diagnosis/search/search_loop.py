@@ -12,8 +12,8 @@ no effect explains. So they are looked for in turn:
    without a name, and the effects must stand beside it: what only imitated it falls.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from diagnosis.evidence import (
     signatures,
     whole_grids,
 )
-from diagnosis.fit import Fit, GrossErrors, Prior, fit_run
+from diagnosis.fit import Fit, GrossErrors, Memory, Prior, fit_run
 from diagnosis.residual import Structure, find_structure
 from diagnosis.search.edges import unexplained_near_slip, without
 from diagnosis.search.refine import refined_set
@@ -51,6 +51,13 @@ they only imitate it."""
 SCREENINGS = 3
 """Most screenings of the library in one round of a long run."""
 
+STRETCHES = 5
+"""Stretches of time that are left out to weigh patterns against named effects."""
+
+BETTER = 0.8
+"""Share of the held-out error of patterns that named effects must reach to stay beside them: an
+effect that only imitates an unknown law is rarely much better than a pattern."""
+
 FREEDOM = 3.0
 """Factor on the prior of a found effect in its last fit: being found tells more of its size than
 what is usual, and an estimate shall not be drawn to zero."""
@@ -65,12 +72,14 @@ class DiagnosisTask:
         model: Machine and effects of the starting model.
         prior: Of its parameters.
         is_known: Whether the prior is an earlier fit, rather than what is usual.
+        memory: Of the noise; None for white noise.
     """
 
     run: Run
     model: Model
     prior: Prior
     is_known: bool = False
+    memory: Memory | None = None
 
     def fit(
         self,
@@ -83,11 +92,11 @@ class DiagnosisTask:
         prior = self.prior
         for sized in effects:
             prior = prior.joined(self.found_prior(sized))
-        fit = fit_run(self.run, model, prior, gross=gross)
+        fit = fit_run(self.run, model, prior, gross=gross, memory=self.memory)
         if not free_inner or not effects:
             return fit
         theta = fit.theta[: len(model.parameters)]
-        return fit_run(self.run, model, prior, free_inner=theta, gross=fit.gross)
+        return fit_run(self.run, model, prior, theta, fit.gross, self.memory)
 
     def found_prior(self, sized: ScaledEffect) -> Prior:
         """Of the parameters of an effect that was added."""
@@ -107,6 +116,8 @@ class SearchState:
         at_start: Structure that the starting model leaves.
         left: Structure that the effects and the patterns leave.
         nameless: Patterns without a name that had to be put beside them.
+        chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
+        is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
     """
 
     base: Fit
@@ -117,6 +128,8 @@ class SearchState:
     at_start: tuple[Structure, ...]
     left: tuple[Structure, ...]
     nameless: tuple[Structure, ...]
+    chances: Mapping[str, float] = field(default_factory=dict)
+    is_weighed: bool = False
 
     @property
     def pool(self) -> Signatures:
@@ -201,12 +214,15 @@ def _with_structure(
     if not left:
         left = _patterns_that_win(at_start, nothing, chosen)
     nameless: list[Structure] = []
+    named = (search, chosen, left)
     while any(s.columns is not None for s in left) and len(nameless) < NAMELESS:
         nameless.append(most_evident(left))
         fixed = np.hstack([s.columns for s in nameless if s.columns is not None])
         search = Search(search.pool, fixed, progress, search.budget)
         chosen = search.run(chosen.members)
         left = find_structure(chosen.effects, progress)
+    if _evicted(named[1], chosen):
+        (search, chosen, left), nameless = named, []
     return SearchState(
         base=base,
         library=library,
@@ -217,6 +233,26 @@ def _with_structure(
         left=tuple(left),
         nameless=tuple(nameless),
     )
+
+
+def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
+    """Whether patterns without a name pushed out named effects that predict better than they do.
+
+    They are judged by long stretches of time left out: between neighbours a pattern of time always
+    runs well.
+    """
+    kept = {m.effect.name for m in after.members}
+    if all(m.effect.name in kept for m in before.members):
+        return False
+    return _by_stretches(before.effects) < BETTER * _by_stretches(after.effects)
+
+
+def _by_stretches(effects: EffectSet) -> float:
+    """Held-out error of a set when long stretches of time are left out."""
+    complement = effects.complement
+    order = np.argsort(complement.touches.time[complement.used], kind="stable")
+    groups = tuple(np.array_split(order, STRETCHES))
+    return EffectSet(replace(complement, groups=groups), effects.A).held_out.rms
 
 
 def _scaled(chosen: EffectSubset) -> list[ScaledEffect]:
@@ -242,6 +278,20 @@ def _searched(
         shortlist = joined_shortlists(shortlist, further)
         found = [m.effect.name for m in chosen.members]
     return search, chosen
+
+
+def searched(
+    library: Library, found: Sequence[str], budget: Budget, progress: Progress = quiet
+) -> list[ScaledEffect]:
+    """Effects of the best set, without a look at patterns or at gross errors.
+
+    Args:
+        library: Candidates.
+        found: Names of effects to begin with.
+        budget: Sets that may be tried.
+        progress: Told of every step.
+    """
+    return _scaled(_searched(library, found, budget, progress)[1])
 
 
 def _found_again(chosen: EffectSubset, found: Sequence[str]) -> bool:

@@ -8,8 +8,8 @@ directions at once, each by an amount of its own, but all at the same pace.
 
 from dataclasses import dataclass, replace
 
-from twin.effects import SPINDLE, ThermalLag
 from twin.model import Kind, Parameter, Term, Where, sensors
+from twin.thermal import SPINDLE, ThermalLag
 from twin.units import UM
 
 

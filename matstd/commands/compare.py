@@ -6,10 +6,12 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+
 if TYPE_CHECKING:
     from diagnosis.residual import Comparison
 
-OURS = ("pictures/*.png", "report.html")
+OURS = ("pictures/*.png", *REPORT_FILES)
 """Results that not every comparison leaves."""
 
 
@@ -25,6 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
     )
     parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
+    add_pdf(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
@@ -35,16 +38,18 @@ def run(args: argparse.Namespace) -> int:
 
     from diagnosis.files import write_comparison, write_residuals
     from diagnosis.residual import compare
-    from matstd.console import stages
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
+    from matstd.progress import stages
     from report.words import remark_sentence, structure_words
     from twin.library import ordinary_model
+    from twin.units import UM
 
     run, saved = read_inputs(
         args.run_file, args.model, args.effects, "so the agreement is optimistic"
     )
     model = saved.model if saved else ordinary_model(run.touches.chain)
+    printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         found = compare(
             run,
@@ -65,18 +70,26 @@ def run(args: argparse.Namespace) -> int:
             show("report", 0, 1)
             title = Path(args.run_file).name
             write_compare_page(found, folder, title, np.random.default_rng(0))
-    _tell(args, found)
+            print_report(folder, printed_by)
+    _tell(args, found, saved.source.held_out_um * UM if saved else 0.0)
     return 0
 
 
-def _tell(args: argparse.Namespace, found: Comparison) -> None:
-    """The comparison in words."""
+def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
+    """The comparison in words, and beside what the model promised (mm, 0 for nothing)."""
     from matstd.console import say
     from report.numbers import signed
-    from report.words import comparison_sentence, region_words, remark_sentence
+    from report.words import (
+        comparison_sentence,
+        promise_sentence,
+        region_words,
+        remark_sentence,
+    )
     from twin.units import UM
 
     say(comparison_sentence(found), style="bold")
+    if promised > 0.0 and found.is_prediction:
+        say(promise_sentence(found, promised))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
 
 REFUSED = "reach-refused.png"
@@ -16,41 +17,41 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("project", metavar="PROJECT.toml", help="what to design, for which machine")
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
     add_scheduler(parser)
+    add_pdf(parser)
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
 
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from artefact.brief import read_project
+    from matstd.console import say
     from matstd.folder import results_folder
     from matstd.workers import connected
+    from report.words import design_lines, identification_sentence, proof_line
 
-    project = read_project(args.project)
+    project, printed_by = read_project(args.project), asked_printer(args)
     with (
-        results_folder(args.output, args.force, [REFUSED]) as folder,
+        results_folder(args.output, args.force, REPORT_FILES, [REFUSED]) as folder,
         _pictured(folder, args.output),
     ):
-        from matstd.console import stages
         from matstd.design import design
+        from matstd.progress import stages
         from report.pages import write_design_page
-        from report.words import identification_sentence
 
         with stages() as progress, connected(args.scheduler) as workers:
             made = design(project, folder, progress, workers)
             progress("report", 0, 1)
             remarks = write_design_page(made, folder)
+            print_report(folder, printed_by)
     for remark in remarks:
-        print(remark)
-    if sentence := identification_sentence(made.placement):
-        print(sentence)
+        say(f"- {remark}")
+    verdict, *others = design_lines(made.placement)
+    say(verdict, style="bold")
+    for line in filter(None, [*others, identification_sentence(made.placement)]):
+        say(f"- {line}")
     for machine in made.machines:
-        proof = machine.proof
-        print(
-            f"machine {machine.seed + 1}: volumetric error {proof.rms_before * 1e3:.1f} µm rms, "
-            f"not predicted {proof.rms_after * 1e3:.2f} µm (stated uncertainty "
-            f"{proof.rms_u * 1e3:.2f} µm): {proof.factor:.0f} times smaller"
-        )
-    print(f"{args.output}: look at report.html")
+        say(f"- {proof_line(machine.seed + 1, machine.in_workspace, machine.proof)}")
+    say(f"{args.output}: look at report.html")
     return 0
 
 

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
     from diagnosis.files import SavedModel
     from twin.record import Run
 
-OURS = ("next_measurement_*.csv", "pictures/*.png", "report.html")
+OURS = ("next_measurement_*.csv", "pictures/*.png", *REPORT_FILES)
 """Results that not every diagnosis leaves."""
 
 
@@ -43,7 +45,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
     )
+    parser.add_argument(
+        "--only",
+        metavar="KIND",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="look for effects of these kinds alone, or of these names",
+    )
+    parser.add_argument(
+        "--without",
+        metavar="KIND",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="do not look for effects of these kinds, or of these names",
+    )
     parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
+    add_pdf(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
@@ -52,12 +71,13 @@ def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
     import numpy as np
 
-    from matstd.console import stages
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
+    from matstd.progress import stages
 
     same = "so that its estimates are made anew: no touch counts twice"
     run, saved = read_inputs(args.run_file, args.model, args.effects, same)
+    printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         result = _diagnosed(
             args, run, saved, lambda share, doing: show(doing, int(100 * share), 100)
@@ -69,6 +89,7 @@ def run(args: argparse.Namespace) -> int:
             show("report", 0, 1)
             title = Path(args.run_file).name
             write_diagnosis_page(result, folder, title, np.random.default_rng(0))
+            print_report(folder, printed_by)
     _tell(args, result)
     return 0
 
@@ -83,13 +104,15 @@ def _diagnosed(
     import numpy as np
 
     from diagnosis.answer import diagnose
-    from matstd.inputs import is_learnt_from, named_effects
+    from matstd.inputs import candidates, is_learnt_from, named_effects
     from twin.library import ordinary_model
 
     start = saved.model if saved else ordinary_model(run.touches.chain)
     known = saved.estimates if saved and not is_learnt_from(saved, run) else None
     added = named_effects(args.add, start.effects, run)
-    return diagnose(run, start, known, added, progress=progress, rng=np.random.default_rng(0))
+    found = candidates(args.only, args.without, run)
+    rng = np.random.default_rng(0)
+    return diagnose(run, start, known, added, found, progress, rng)
 
 
 def _write(
@@ -107,7 +130,9 @@ def _write(
     fit = result.fit if args.auto else result.steps[len(args.add)].fit
     before = saved if saved and not is_learnt_from(saved, result.run) else None
     made_with = f"material-standard {versions()['material-standard']}"
-    write_model(folder / "model.toml", fit, Path(args.run_file).name, before, made_with)
+    promised = result.choice.best.error if fit is result.fit and result.choice else None
+    name = Path(args.run_file).name
+    write_model(folder / "model.toml", fit, name, before, made_with, promised)
     for i, plan in enumerate(result.plans, start=1):
         write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 
+from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
 
-_STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler")
+_STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,6 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--tolerance-um", type=float, metavar="T", help="share of the machines beyond T µm"
     )
     add_scheduler(parser)
+    add_pdf(parser)
     parser.add_argument("--force", action="store_true", help="overwrite the output")
 
 
@@ -45,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
         raise BadFile(path, "format", "no project", "a project/1, or a machine followed by poses")
     if given := [name for name in _STUDY_ONLY if getattr(args, name) is not None]:
         option = given[0].replace("_", "-")
-        raise DesignError(f"--{option} is for random machines, which a PROJECT.toml describes")
+        raise DesignError(f"--{option} is for the random machines that a PROJECT.toml describes")
     return _table(args)
 
 
@@ -72,13 +74,14 @@ def _study(args: argparse.Namespace) -> int:
     from matstd.folder import results_folder
     from matstd.workers import connected
 
-    project = read_project(args.source, _settings(args))
-    with results_folder(args.output, args.force) as folder:
-        from matstd.console import stages
+    project, printed_by = read_project(args.source, _settings(args)), asked_printer(args)
+    with results_folder(args.output, args.force, REPORT_FILES) as folder:
+        from matstd.progress import stages
         from matstd.study_run import study_project
 
         with stages() as progress, connected(args.scheduler) as workers:
             told = study_project(project, args.poses, folder, progress, workers)
+            print_report(folder, printed_by)
     for line in told:
         print(line)
     print(f"{args.output}: look at report.html")

@@ -25,6 +25,13 @@ _NOISE = 2.0 * UM
 _HUBER = 3.0
 """Residuals beyond so many times the median count with less than their full weight."""
 
+_DISPLACED = 50.0 * UM
+"""A feature that stands so far beside its calibrated place has been moved or calibrated wrongly:
+no model of a machine leaves as much to all touches of one feature and to no others, mm."""
+
+_SURE = 4.0
+"""Times its standard error that such a displacement must be."""
+
 _ROUNDS = 4
 """With errors of ordinary size and a standard 1 mm beside its place three were enough."""
 
@@ -65,7 +72,7 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
     weight = np.ones(len(run))
     for _ in range(_ROUNDS):
         t, before = run.touches, run.deviation
-        moved, weight = _displacement(run, weight)
+        moved, residual, weight = _displacement(run, weight)
         point, normal = foot_points(standard, t.feature, t.ball_artefact + moved)
         found = np.all(np.isfinite(point), axis=1, keepdims=True)
         t = replace(
@@ -74,15 +81,42 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
         run = replace(run, touches=t, deviation=computed_deviation(t))
         if np.abs(run.deviation - before).max() < _STILL:
             break
-    return run
+    return replace(run, remarks=(*run.remarks, *_displaced_feature(run, residual)))
 
 
-def _displacement(run: Run, weight: Array) -> tuple[Array, Array]:
+def _displaced_feature(run: Run, residual: Array) -> list[str]:
+    """The feature that is farthest beside its place, in one line; none where all are in order.
+
+    ``residual = n . e`` by least squares over the touches of each feature. The others seem
+    displaced too, as the set-up takes up a part of it, but less.
+    """
+    t, largest, out = run.touches, _DISPLACED, []
+    for name in dict.fromkeys(t.feature.tolist()):
+        rows = np.flatnonzero(t.feature == name)
+        n, r = t.normal[rows], residual[rows]
+        if len(rows) < 2 * n.shape[1] or np.linalg.matrix_rank(n, tol=0.1) < n.shape[1]:
+            continue
+        e = np.linalg.lstsq(n, r, rcond=None)[0]
+        left = np.sqrt(np.sum((r - n @ e) ** 2) / (len(rows) - n.shape[1]))
+        error = left * np.sqrt(np.trace(np.linalg.inv(n.T @ n)))
+        size = float(np.linalg.norm(e))
+        if size > max(largest, _SURE * error):
+            largest, (x, y, z) = size, e
+            out = [
+                f"{name} stands {size:.3f} mm beside its calibrated place on the standard, seen "
+                f"from the others (x {x:+.3f}, y {y:+.3f}, z {z:+.3f} mm): moved, or calibrated "
+                "wrongly"
+            ]
+    return out
+
+
+def _displacement(run: Run, weight: Array) -> tuple[Array, Array, Array]:
     """Of the balls relative to the standard by the ordinary model, artefact frame, (N, 3), mm.
 
     Least squares with the prior of the model as further rows: minimises
     ``weight |A theta - dev|^2 / noise^2 + |theta / sd|^2``. What the touches do not tell stays
-    zero. Also returns the weights (N,) of the next round: Huber's, so that a chip pulls little.
+    zero. Also returns the residuals (N,) and the weights (N,) of the next round: Huber's, so that a
+    chip pulls little.
     """
     t = run.touches
     model = Model(t.chain, (*ordinary_model(t.chain).effects, *setup_errors(t)))
@@ -92,6 +126,7 @@ def _displacement(run: Run, weight: Array) -> tuple[Array, Array]:
     A = np.concatenate([columns * sd * root[:, None], np.eye(len(sd))])
     y = np.concatenate([run.deviation * root, np.zeros(len(sd))])
     theta = sd * np.linalg.lstsq(A, y, rcond=None)[0]
-    left = np.abs(run.deviation - columns @ theta)
+    residual = run.deviation - columns @ theta
+    left = np.abs(residual)
     usual = _HUBER * max(float(np.median(left)), _NOISE)
-    return model.relative_deviation(t, theta), usual / np.maximum(left, usual)
+    return model.relative_deviation(t, theta), residual, usual / np.maximum(left, usual)

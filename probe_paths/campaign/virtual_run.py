@@ -26,7 +26,7 @@ from probe_paths.control import (
     Value,
     step_times,
 )
-from probe_paths.plan import LINEAR, Probe, ProgramFrame
+from probe_paths.plan import LINEAR, Probe, ProgramFrame, stated_serial
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
 from twin.record import Labels, Touches
@@ -199,6 +199,12 @@ def _check_standard(program: ReadProgram, standard: Standard) -> None:
         raise DesignError(
             f"{program.path}: made for standard '{program.heading.standard}', "
             f"this one is '{standard.name}'"
+        )
+    serial = stated_serial(standard.serial)
+    if program.heading.serial and program.heading.serial != serial:
+        raise DesignError(
+            f"{program.path}: made for serial number {program.heading.serial}, this standard has "
+            f"{serial or 'none'}"
         )
 
 

@@ -1,22 +1,42 @@
-"""Reads the log that FN 16 of our programs writes, on a control or in the simulator."""
+"""Reads the log that FN 16 of our programs writes, on a control or in the simulator.
+
+A log is half an hour of a machine's time. Lines that cannot be read, cut-off ends and lines of
+somebody else cost the touch that they belong to and no other; every one is remarked. Strict is only
+what no touch means anything without: set-up, probe and calibration in the head of a part.
+"""
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
+from probe_paths.control.log_clock import LogClock
 from probe_paths.language import LOG_HEAD
 from probe_paths.plan import Heading, parse_heading
 from twin.errors import BadFile
 from twin.frames import Array
 from twin.record import IntArray
 
+LARGEST = 1e6
+"""A coordinate (mm, degrees) or a number of a touch beyond this was not logged by our programs."""
+
 _PAIR = re.compile(r"([A-Z]+)\s*([-+]?\d+(?:\.\d+)?)(?=\s|\Z)")
 _CLOCK = re.compile(r"(?:END )?T *(\d{1,2}): *(\d{1,2}): *(\d{1,2})\Z")
+_WHOLE_CLOCK = len("T  0:  0:  0")
 _DATE = re.compile(r"DATE *(\d{4})- *(\d{1,2})- *(\d{1,2})\Z")
+_TOUCH = re.compile(r"P\s*[-+]?\d")
+_COMMA = re.compile(r"(?<=\d),(?=\d)")
+_VERSION = re.compile(r"MATSTD LOG \d+\Z")
+
+UNDATED = datetime(1900, 1, 1)
+"""Begin of a part whose date cannot be read: no sensor record covers it."""
+
+Line = tuple[int, str]
+"""Number in the file and text."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +47,7 @@ class LogPart:
         path: Of the log file.
         program: Name of the program.
         heading: Standard, set-up and probe as planned.
-        begin: When the program was started.
+        begin: When the program was started; `UNDATED` where its date cannot be read.
         radius: Of the ball as calibrated, mm.
         tool_length: As calibrated, mm; that of the tool table where the control keeps none.
         offset: Of the ball from the spindle axis as calibrated, (2,), mm; the control has already
@@ -39,8 +59,9 @@ class LogPart:
         xyz: As the cycle returned them, (N, 3), mm.
         rotary: Rotary positions by letter, degrees, each (N,).
         side: Side that each rotary axis came from, by letter, each (N,).
-        time: s since `begin`, (N,).
+        time: s since `begin`, (N,); never falling.
         is_complete: The program ran to its end.
+        remarks: What was left out or mended, one line each.
     """
 
     path: Path
@@ -59,6 +80,7 @@ class LogPart:
     side: Mapping[str, Array]
     time: Array
     is_complete: bool
+    remarks: tuple[str, ...] = ()
 
 
 def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -> list[LogPart]:
@@ -70,165 +92,248 @@ def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -
         text: Its text where it is already at hand.
 
     Raises:
-        BadFile: A line missing, cut off or spelt otherwise.
+        BadFile: No part of the log has a head that can be read, or it is a log of another kind.
     """
     path = Path(path)
+    lines = _lines(path, text)
+    starts = [i for i, line in enumerate(lines) if _begins_part(lines, i, line[1])]
+    if not starts:
+        found = repr(lines[0][1]) if lines else "nothing"
+        raise BadFile(path, "line 1", found, LOG_HEAD)
+    parts: list[LogPart] = []
+    refused: list[BadFile] = []
+    for begin, end in pairwise([*starts, len(lines)]):
+        if lines[begin][1] != LOG_HEAD and _VERSION.match(lines[begin][1]):
+            raise BadFile(path, f"line {lines[begin][0]}", repr(lines[begin][1]), LOG_HEAD)
+        try:
+            parts.append(_PartReader(path, lines[begin:end], rotary).part())
+        except BadFile as error:
+            refused.append(error)
+    if not any(len(part.number) for part in parts) and refused:
+        raise refused[0]
+    more = [f"{error}; the touches of this part are left out" for error in refused]
+    if starts[0]:
+        more.append(f"lines 1 to {lines[starts[0] - 1][0]} stand before the head and are left out")
+    return [replace(parts[0], remarks=(*more, *parts[0].remarks)), *parts[1:]]
+
+
+def _lines(path: Path, text: str | None) -> list[Line]:
+    """Lines that are not blank, decimal commas as points; a last line that is cut off says so."""
     if text is None:
         try:
-            text = path.read_bytes().decode("ascii")
-        except (OSError, UnicodeDecodeError) as error:
-            raise BadFile(path, "file", str(error), "a log in ASCII") from None
-    if text and not text.endswith("\n"):
-        last = text.count("\n") + 1
-        raise BadFile(path, f"line {last}", "a line cut off", "a line end: copy the whole log")
-    reader = _Reader(path, text.splitlines(), rotary)
-    parts = []
-    while not reader.is_at_end:
-        parts.append(reader.part())
-    if not parts:
-        raise BadFile(path, "line 1", "nothing", LOG_HEAD)
-    return parts
+            data = path.read_bytes()
+        except OSError as error:
+            raise BadFile(path, "file", error.strerror or "nothing", "a log") from None
+        # an editor may have saved it in its own encoding; what is no ASCII spoils its line alone
+        encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+        text = data.decode(encoding, errors="replace")
+    lines = [_COMMA.sub(".", line) for line in re.split(r"\r\n|\n|\r", text)]
+    # after a line end the last of these is empty; a clock may have lost its last digit
+    if lines[-1].strip() and not re.match(rf"(END )?T.{{{_WHOLE_CLOCK - 1}}}\Z", lines[-1]):
+        lines[-1] = f"{lines[-1]} (cut off)"
+    return [(i, s.strip()) for i, s in enumerate(lines, start=1) if s.strip()]
 
 
-class _Reader:
-    """Goes through the lines of a log; blank lines do not count."""
+def _begins_part(lines: Sequence[Line], i: int, text: str) -> bool:
+    """The head line, or the program's name where the head line is spoilt."""
+    if _VERSION.match(text):
+        return True
+    return text.startswith("PGM ") and (i == 0 or not _VERSION.match(lines[i - 1][1]))
 
-    def __init__(self, path: Path, lines: list[str], rotary: Sequence[str]) -> None:
-        self.path, self.rotary = path, tuple(rotary)
-        self.lines = [(i, s.strip()) for i, s in enumerate(lines, start=1) if s.strip()]
+
+class _PartReader:
+    """Reads one run of a program, line by line."""
+
+    def __init__(self, path: Path, lines: Sequence[Line], rotary: Sequence[str]) -> None:
+        self.path, self.lines, self.rotary = path, list(lines), tuple(rotary)
         self.place = 0
-
-    @property
-    def is_at_end(self) -> bool:
-        return self.place == len(self.lines)
-
-    def refusal(self, found: str, expected: str) -> BadFile:
-        line = self.lines[min(self.place, len(self.lines) - 1)][0] if self.lines else 1
-        return BadFile(self.path, f"line {line}", found, expected)
-
-    def peek(self, expected: str) -> str:
-        """The line to be read next; refuses the end of the file."""
-        if self.is_at_end:
-            raise self.refusal("the end of the file", expected)
-        return self.lines[self.place][1]
-
-    def taken(self, expected: str) -> str:
-        text = self.peek(expected)
-        self.place += 1
-        return text
-
-    def pairs(self, names: Sequence[str]) -> list[float]:
-        """A line of names and numbers, exactly these names."""
-        expected = " ".join(f"{n} <number>" for n in names)
-        text = self.peek(expected)
-        found = _PAIR.findall(text)
-        rest = _PAIR.sub("", text).strip()
-        if rest or [n for n, _ in found] != list(names):
-            raise self.refusal(repr(text), expected)
-        self.place += 1
-        return [float(v) for _, v in found]
-
-    def clock(self, day: datetime, after: datetime | None) -> datetime:
-        """A time of day, on the day of `after` or, past midnight, on the next one."""
-        match = _CLOCK.match(self.peek("T <h>:<m>:<s>"))
-        if match is None:
-            raise self.refusal(repr(self.lines[self.place][1]), "T <h>:<m>:<s>")
-        hour, minute, second = (int(v) for v in match.groups())
-        try:
-            now = (after or day).replace(hour=hour, minute=minute, second=second)
-        except ValueError:
-            raise self.refusal(repr(match[0]), "a time of day") from None
-        self.place += 1
-        return now + timedelta(days=1) if after is not None and now < after else now
+        self.remarks: list[str] = []
+        self.names = [["P", "S", "F"], ["X", "Y", "Z"]]
+        if rotary:
+            self.names += [list(rotary), [f"U{a}" for a in rotary]]
 
     def part(self) -> LogPart:
-        """One run of a program."""
-        if self.taken(LOG_HEAD) != LOG_HEAD:
-            self.place -= 1
-            raise self.refusal(repr(self.lines[self.place][1]), LOG_HEAD)
-        words = self.taken("PGM <name>").split()
+        """The part; raises BadFile where its head does not tell set-up, probe and calibration."""
+        if self.lines[0][1] == LOG_HEAD:
+            self.place = 1
+        words = self._peek("PGM <name>").split()
         if len(words) != 2 or words[0] != "PGM":
-            self.place -= 1
-            raise self.refusal(repr(" ".join(words)), "PGM <name>")
-        heading = parse_heading(self.lines[self.place : self.place + 4], self.path)
-        self.place += 4
-        match = _DATE.match(self.peek("DATE <y>-<m>-<d>"))
-        if match is None:
-            raise self.refusal(repr(self.lines[self.place][1]), "DATE <y>-<m>-<d>")
-        try:
-            day = datetime(int(match[1]), int(match[2]), int(match[3]))
-        except ValueError:
-            raise self.refusal(repr(match[0]), "a date") from None
+            raise self._refusal("PGM <name>")
         self.place += 1
-        begin = self.clock(day, None)
-        self.pairs(("TOOL", "PRESET"))
-        radius, tool_length = self.pairs(("R", "L"))
-        *offset, table_length = self.pairs(("EX", "EY", "TL"))
-        rows, is_complete = self._touches(begin)
-        table = np.array([row[1] for row in rows]).reshape(len(rows), -1)
-        return _part(
-            self.path, words[1], heading, begin, (radius, tool_length or table_length), offset,
-            np.array([row[0] for row in rows], dtype=np.int64), table, self.rotary, is_complete,
-        )  # fmt: skip
+        heading = parse_heading(self.lines[self.place : self.place + 5], self.path)
+        self.place += len(heading.lines)
+        day, start = self._date(), self._head_clock()
+        self._pairs(("TOOL", "PRESET"), is_needed=False)
+        calibration = self._pairs(("R", "L"))
+        assert calibration is not None
+        offset = self._pairs(("EX", "EY", "TL"), is_needed=False) or [0.0, 0.0, 0.0]
+        clock = LogClock(start)
+        rows, is_complete = self._touches(clock)
+        begin = (day or UNDATED) + timedelta(seconds=clock.start or 0)
+        table = np.array([row for _, row in rows]).reshape(len(rows), 7 + 2 * len(self.rotary))
+        return LogPart(
+            path=self.path,
+            program=words[1],
+            heading=heading,
+            begin=begin,
+            radius=calibration[0],
+            tool_length=calibration[1] or offset[2],
+            offset=np.array(offset[:2]),
+            line=np.array([line for line, _ in rows], dtype=np.int64),
+            number=table[:, 0].astype(np.int64),
+            pose=table[:, 1].astype(np.int64),
+            feature=table[:, 2].astype(np.int64),
+            xyz=table[:, 3:6],
+            rotary={a: table[:, 6 + i] for i, a in enumerate(self.rotary)},
+            side={a: table[:, 6 + len(self.rotary) + i] for i, a in enumerate(self.rotary)},
+            time=table[:, -1],
+            is_complete=is_complete,
+            remarks=(*self.remarks, *clock.remarks),
+        )
 
-    def _touches(self, begin: datetime) -> tuple[list[tuple[int, list[float]]], bool]:
-        """Rows of touches until END or NOCONTACT, or for want of them the end of what was logged.
+    def _peek(self, expected: str) -> str:
+        """The line to be read next; refuses the end of the part."""
+        if self.place >= len(self.lines):
+            raise BadFile(
+                self.path, f"line {self.lines[-1][0]}", "the end of the part after it", expected
+            )
+        return self.lines[self.place][1]
 
-        A program that the operator stopped leaves neither: its whole touches count, and the next
-        line, if any, begins the next run.
-        """
+    def _refusal(self, expected: str) -> BadFile:
+        line, text = self.lines[self.place]
+        return BadFile(self.path, f"line {line}", repr(text), expected)
+
+    def _date(self) -> datetime | None:
+        """Day of the head; None, and a remark, where it cannot be read."""
+        match = _DATE.match(self._peek("DATE <y>-<m>-<d>"))
+        try:
+            day = datetime(int(match[1]), int(match[2]), int(match[3])) if match else None
+        except ValueError:
+            day = None
+        if day is None:
+            line, text = self.lines[self.place]
+            self.remarks.append(f"line {line}: {text!r} is no date; the run is without a date")
+        self.place += day is not None or text.startswith("DATE")
+        return day
+
+    def _head_clock(self) -> int | None:
+        """Time of day of the head; None, and a remark, where the first touch stands for it."""
+        now = _time_of_day(self._peek("T <h>:<m>:<s>"))
+        if now is None:
+            line, text = self.lines[self.place]
+            self.remarks.append(f"line {line}: {text!r} is no time; the first touch's is taken")
+        self.place += now is not None or self.lines[self.place][1].startswith("T ")
+        return now
+
+    def _pairs(self, names: Sequence[str], is_needed: bool = True) -> list[float] | None:
+        """Numbers of a line of the head; None, and a remark, where it is not needed."""
+        expected = " ".join(f"{n} <number>" for n in names)
+        values = _numbers(self._peek(expected), names)
+        if values is None and is_needed:
+            raise self._refusal(expected)
+        line, text = self.lines[self.place]
+        if values is None:
+            self.remarks.append(f"line {line}: {text!r}, expected {expected}; it is left out")
+        self.place += values is not None or text.startswith(names[0])
+        return values
+
+    def _touches(self, clock: LogClock) -> tuple[list[tuple[int, list[float]]], bool]:
+        """Whole touches with their lines, and whether the program came to its end."""
         rows: list[tuple[int, list[float]]] = []
-        now = begin
-        while True:
-            if rows and (self.is_at_end or self.lines[self.place][1] == LOG_HEAD):
-                return rows, False
-            text = self.peek("P <number> S <number> F <number>, END or NOCONTACT")
+        known: dict[float, list[float]] = {}
+        is_complete = False
+        while self.place < len(self.lines):
+            line, text = self.lines[self.place]
             if text.startswith("END "):
-                self.clock(now, now)
-                return rows, True
-            if text.startswith("NOCONTACT"):
+                is_complete = _time_of_day(text) is not None
                 self.place += 1
-                self.clock(now, now)
-                return rows, False
-            line = self.lines[self.place][0]
-            row = self.pairs(("P", "S", "F")) + self.pairs(("X", "Y", "Z"))
-            if self.rotary:
-                row += self.pairs(self.rotary) + self.pairs([f"U{a}" for a in self.rotary])
-            now = self.clock(now, now)
-            rows.append((line, [*row, (now - begin).total_seconds()]))
+                if not is_complete:
+                    self.remarks.append(f"line {line}: {text!r} is no end of a program")
+            elif text.startswith("NOCONTACT"):
+                self.place += 1
+                if self.place < len(self.lines) and _time_of_day(self.lines[self.place][1]):
+                    self.place += 1
+            elif _TOUCH.match(text):
+                row = self._touch()
+                if row is None:
+                    continue
+                now, same = int(row.pop()), known.get(row[0])
+                if same is None:
+                    known[row[0]] = row
+                    rows.append((line, [*row, clock.elapsed(now, line)]))
+                else:
+                    what = "again" if same == row else "again with other numbers"
+                    self.remarks.append(f"line {line}: touch {row[0]:.0f} {what}; the first counts")
+            else:
+                self._skip()
+        return rows, is_complete
+
+    def _touch(self) -> list[float] | None:
+        """Numbers of one touch and its time of day; None, and a remark, where a line is spoilt."""
+        row: list[float] = []
+        first = self.place
+        for names in [*self.names, None]:
+            expected = (
+                "T <h>:<m>:<s>" if names is None else " ".join(f"{n} <number>" for n in names)
+            )
+            is_end = self.place >= len(self.lines)
+            text = "the end of the part" if is_end else self.lines[self.place][1]
+            if names is None:
+                now = _time_of_day(text)
+                values = None if now is None else [float(now)]
+            else:
+                values = _numbers(text, names)
+            if values is None or (names == ["P", "S", "F"] and not _are_counters(values)):
+                line = self.lines[min(self.place, len(self.lines) - 1)][0]
+                self.remarks.append(
+                    f"line {line}: found {text!r}, expected {expected}; the touch that begins in "
+                    f"line {self.lines[first][0]} is left out"
+                )
+                self.place = max(self.place, first + 1)
+                self._to_next()
+                return None
+            row += values
+            self.place += 1
+        return row
+
+    def _to_next(self) -> None:
+        """Go on to the next line that begins something."""
+        while self.place < len(self.lines) and not _begins(self.lines[self.place][1]):
+            self.place += 1
+
+    def _skip(self) -> None:
+        """Lines that belong to nothing, in one remark."""
+        line, text = self.lines[self.place]
+        self.place += 1
+        self._to_next()
+        last = self.lines[self.place - 1][0]
+        many = f"lines {line} to {last}" if last > line else f"line {line}"
+        self.remarks.append(f"{many}: {text!r} is the beginning of no touch; left out")
 
 
-def _part(
-    path: Path,
-    program: str,
-    heading: Heading,
-    begin: datetime,
-    calibration: tuple[float, float],
-    offset: Sequence[float],
-    line: IntArray,
-    table: Array,
-    rotary: Sequence[str],
-    is_complete: bool,
-) -> LogPart:
-    """A part from the table of its touches, one row each."""
-    count = len(rotary)
-    table = table if len(table) else np.zeros((0, 7 + 2 * count))
-    whole = table[:, :3].astype(np.int64)
-    return LogPart(
-        path=path,
-        program=program,
-        heading=heading,
-        begin=begin,
-        radius=calibration[0],
-        tool_length=calibration[1],
-        offset=np.array(offset),
-        line=line,
-        number=whole[:, 0],
-        pose=whole[:, 1],
-        feature=whole[:, 2],
-        xyz=table[:, 3:6],
-        rotary={a: table[:, 6 + i] for i, a in enumerate(rotary)},
-        side={a: table[:, 6 + count + i] for i, a in enumerate(rotary)},
-        time=table[:, -1],
-        is_complete=is_complete,
-    )
+def _begins(text: str) -> bool:
+    return text.startswith(("END ", "NOCONTACT")) or _TOUCH.match(text) is not None
+
+
+def _numbers(text: str, names: Sequence[str]) -> list[float] | None:
+    """A line of names and numbers, exactly these names; None for another line."""
+    found = _PAIR.findall(text)
+    if _PAIR.sub("", text).strip() or [n for n, _ in found] != list(names):
+        return None
+    numbers = [float(v) for _, v in found]
+    return numbers if all(abs(number) < LARGEST for number in numbers) else None
+
+
+def _are_counters(values: Sequence[float]) -> bool:
+    """Whole and positive: number of the touch, of its pose and of its feature."""
+    return all(0.0 < v < 1e6 and v == int(v) for v in values)
+
+
+def _time_of_day(text: str) -> int | None:
+    """Seconds since midnight of a clock line; None for another line."""
+    match = _CLOCK.match(text)
+    if match is None:
+        return None
+    hour, minute, second = (int(v) for v in match.groups())
+    is_time = hour < 24 and minute < 60 and second < 60
+    return 3600 * hour + 60 * minute + second if is_time else None

@@ -126,7 +126,7 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
     starts = [i for i, (_, text) in enumerate(remarks) if text.startswith("STANDARD ")]
     if not starts:
         raise BadFile(path, "head", "no comment ';STANDARD ... SETUP ...'", "the program's head")
-    head = parse_heading(remarks[starts[0] : starts[0] + 4], path)
+    head = parse_heading(remarks[starts[0] : starts[0] + 5], path)
     features: dict[int, str] = {}
     for line, text in remarks:
         match = _FEATURE.fullmatch(text)

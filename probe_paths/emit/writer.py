@@ -23,6 +23,7 @@ from probe_paths.plan import (
     TouchPlan,
     Visit,
     home_readings,
+    stated_serial,
     waypoints,
 )
 from twin.frames import Array, apply
@@ -59,7 +60,13 @@ class Writer:
         self.rotary = plan.chain.rotary_axes
         self.number = {name: i + 1 for i, name in enumerate(plan.standard.features)}
         probe = plan.probe
-        self.heading = Heading(plan.standard.name, plan.setup, probe.radius, probe.length)
+        self.heading = Heading(
+            standard=plan.standard.name,
+            setup=plan.setup,
+            radius=probe.radius,
+            length=probe.length,
+            serial=stated_serial(plan.standard.serial),
+        )
         top = plan.chain.link("Z").range[1]
         self.retract = k.line({"Z": top - plan.options.retract}, words="M91")
 

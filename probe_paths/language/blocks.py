@@ -14,6 +14,10 @@ _XYZ = rf"X({_NUM}) Y({_NUM}) Z({_NUM})"
 _PATH = r"[A-Z0-9_:\\.-]+"
 
 
+LONGEST = 1000
+"""Characters of a block; the longest of our programs has 71."""
+
+
 class Kind(Enum):
     """The blocks of our programs; each value is the pattern of the whole block."""
 
@@ -145,6 +149,9 @@ def read_blocks(data: bytes, path: str | Path) -> list[Block]:
             raw = f"{raw} {lines[i]}"
         i += 1
         folded = " ".join(raw.split())
+        if len(folded) > LONGEST:
+            found = f"{len(folded)} characters in one block"
+            raise BadFile(path, f"line {first}", found, f"at most {LONGEST}")
         match = re.match(r"(\d+) (.*)", folded)
         numbered = match is not None if numbered is None else numbered
         if numbered != (match is not None):
@@ -152,7 +159,7 @@ def read_blocks(data: bytes, path: str | Path) -> list[Block]:
                 path, f"line {first}", repr(folded), "block numbers everywhere or nowhere"
             )
         if match is not None:
-            if int(match[1]) != len(blocks):
+            if (match[1].lstrip("0") or "0") != str(len(blocks)):
                 raise BadFile(path, f"line {first}", f"block number {match[1]}", str(len(blocks)))
             folded = match[2]
         blocks.append(_parse(folded, first, path))

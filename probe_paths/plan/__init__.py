@@ -14,7 +14,7 @@ from probe_paths.plan.clearance import (
     top_height,
 )
 from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import Heading, parse_heading
+from probe_paths.plan.heading import Heading, parse_heading, stated_serial
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, waypoints
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
@@ -36,6 +36,7 @@ __all__ = [
     "readings_at",
     "requests_at",
     "solid_hull",
+    "stated_serial",
     "swing_height",
     "top_height",
     "waypoints",

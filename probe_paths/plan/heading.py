@@ -17,6 +17,7 @@ from twin.record import Setup
 from twin.units import DEG
 
 _NAME = re.compile(r"[A-Za-z0-9_.+-]{1,24}\Z")
+_SERIAL = re.compile(r"SERIAL ([A-Za-z0-9_.+-]{1,24})")
 _NUMBER = r"([+-]\d+\.\d+)"
 _ORIGIN = re.compile(rf"ORIGIN X{_NUMBER} Y{_NUMBER} Z{_NUMBER}")
 _TURNED = re.compile(rf"TURNED A{_NUMBER} B{_NUMBER} C{_NUMBER}")
@@ -32,16 +33,18 @@ class Heading:
         setup: Where it is believed to stand.
         radius: Of the probe's ball, mm.
         length: Of the probe to the ball centre, mm.
+        serial: Number of the standard, as far as a program can state it; empty where it has none.
     """
 
     standard: str
     setup: Setup
     radius: float
     length: float
+    serial: str = ""
 
     @property
     def lines(self) -> list[str]:
-        """The four lines; numbers with six decimals, mm and degrees."""
+        """Four lines, and a fifth with the serial number; six decimals, mm and degrees."""
         for name in (self.standard, self.setup.name):
             if not _NAME.match(name):
                 raise DesignError(
@@ -55,12 +58,18 @@ class Heading:
             "ORIGIN " + _words("XYZ", T_table_artefact[:3, 3]),
             "TURNED " + _words("ABC", angles),
             f"PROBE RADIUS {self.radius:+.6f} LENGTH TO BALL CENTRE {self.length:+.6f}",
+            *([f"SERIAL {self.serial}"] if self.serial else []),
         ]
 
 
 def _words(letters: str, values: Array) -> str:
     # + 0.0 turns a negative zero, also one that rounding brings about, into a positive one
     return " ".join(f"{a}{round(v, 6) + 0.0:+.6f}" for a, v in zip(letters, values, strict=True))
+
+
+def stated_serial(serial: str) -> str:
+    """A serial number in the letters that a program can state."""
+    return re.sub(r"[^A-Za-z0-9_.+-]", "_", serial.strip())[:24]
 
 
 def rounded_setup(setup: Setup) -> Setup:
@@ -71,7 +80,7 @@ def rounded_setup(setup: Setup) -> Setup:
 
 
 def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> Heading:
-    """Heading from its four lines, each with its line number in the file.
+    """Heading from its lines, each with its line number in the file; further ones may follow.
 
     Raises:
         BadFile: A line missing or spelt otherwise.
@@ -86,7 +95,14 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> Heading
     angles = _numbers(_TURNED, lines[2], path, "TURNED A.. B.. C..")
     radius, length = _numbers(_PROBE, lines[3], path, "PROBE RADIUS .. LENGTH TO BALL CENTRE ..")
     T_table_artefact = pose(fixed_xyz(angles * DEG), origin)
-    return Heading(words[1], Setup(words[3], T_table_artefact), float(radius), float(length))
+    serial = _SERIAL.fullmatch(lines[4][1]) if len(lines) > 4 else None
+    return Heading(
+        standard=words[1],
+        setup=Setup(words[3], T_table_artefact),
+        radius=float(radius),
+        length=float(length),
+        serial=serial[1] if serial else "",
+    )
 
 
 def _numbers(

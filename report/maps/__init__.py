@@ -5,6 +5,7 @@ draws. A new map goes into the list in `study_maps.draw_maps`.
 """
 
 from report.maps.correlation_picture import draw_ties
+from report.maps.regions_picture import draw_regions
 from report.maps.rotary_picture import level
 from report.maps.study_maps import draw_maps
 from report.maps.trajectory_pictures import draw_path
@@ -12,6 +13,7 @@ from report.maps.trajectory_pictures import draw_path
 __all__ = [
     "draw_maps",
     "draw_path",
+    "draw_regions",
     "draw_ties",
     "level",
 ]

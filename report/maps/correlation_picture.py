@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from information.identifiability import Ties
+from report.identifiability import short
 from report.style import INK, figure, nothing
-from report.words import short
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

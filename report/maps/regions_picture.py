@@ -49,7 +49,7 @@ def draw_regions(
     for axes in grid.ravel()[len(shown) :]:
         axes.set_axis_off()
     for axes in grid.ravel()[max(0, len(shown) - columns) : len(shown)]:  # the lowest of a column
-        axes.set_xlabel("share of the variance / %", fontsize=9)
+        axes.set_xlabel("share of the variance in %", fontsize=9)
         axes.tick_params(axis="x", labelbottom=True)
     present = {chain.symbols[i].link for k in shown for i in regions[k].largest(_BARS)}
     handles: list[Any] = [

@@ -118,13 +118,13 @@ def draw_rotary(study: Study) -> Figure:
         axes.set_title(f"point at {point.words}", fontsize=9)
     if mesh is not None:
         bar = drawn.colorbar(mesh, ax=grid[0], pad=0.01)
-        bar.set_label("95 % quantile / µm", fontsize=9)
+        bar.set_label("95 % quantile in µm", fontsize=9)
         bar.ax.tick_params(labelsize=8)
     for axes, symbol in zip(grid[-1], symbols, strict=False):
         unit, words = (UM / URAD, "µm/µrad") if symbol.is_angular else (1.0, "µm/µm")
         S = sensitivity(workspace.chain, points[-1].q, workspace.length, [symbol])[:, 0]
         mesh = _map(axes, study, points[-1], points[-1].shown(S) / unit, None)
-        axes.set_title(f"S of {symbol.name} / {words}", fontsize=9)
+        axes.set_title(f"S of {symbol.name} in {words}", fontsize=9)
         if mesh is not None:
             drawn.colorbar(mesh, ax=axes, pad=0.02).ax.tick_params(labelsize=8)
     for axes in grid[1:].ravel()[len(symbols) :]:

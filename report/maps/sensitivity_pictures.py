@@ -16,7 +16,7 @@ from twin.units import UM, URAD
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_COLUMNS = 5  # maps in a row: their numbers stay readable in print
+_COLUMNS = 4  # maps in a row: their numbers stay readable in print
 _PLANE = 31  # values of each reading of a map of S
 _CURVE = 121  # values of the reading of a curve of S
 _STILL = 1e-3  # relative spread of S below which a parameter is the same everywhere
@@ -101,7 +101,7 @@ def maps_of_S(study: Study) -> Figure:
         return nothing("No sensitivity depends on the pose.")
     columns = min(_COLUMNS, len(moving))
     rows = -(-len(moving) // columns)
-    drawn = figure(1.85 * rows, layout=None)  # constrained: seconds for 36 maps
+    drawn = figure(2.1 * rows, layout=None)  # constrained: seconds for 36 maps
     gap = {"left": 0.5, "right": 0.35, "bottom": 0.4, "top": 0.3}  # inch
     width, height = drawn.get_size_inches()
     drawn.subplots_adjust(

@@ -127,8 +127,8 @@ def _volumetric_sections(study: Study) -> Figure:
     drawn = figure(4.6)
     grid = drawn.subplots(2, len(sections), squeeze=False)
     kinds: list[tuple[list[Array], float, str, str]] = [
-        ([s.volumetric.p95 for s in sections], UM, "viridis", "95 % quantile / µm"),
-        ([s.volumetric.recurrence for s in sections], 0.01, "magma", "among the worst 5 % / %"),
+        ([s.volumetric.p95 for s in sections], UM, "viridis", "95 % quantile in µm"),
+        ([s.volumetric.recurrence for s in sections], 0.01, "magma", "among the worst 5 %, in %"),
     ]
     for row, (values, unit, colours, label) in enumerate(kinds):
         low = min(float(v.min()) for v in values) / unit
@@ -166,7 +166,7 @@ def _volumetric_axes(study: Study) -> Figure:
             axes.plot(middle, median, color=colour, lw=1.8, label=what)
         axes.set_xlabel(label)
         plain(axes)
-    grid[0].set_ylabel("volumetric error / µm")
+    grid[0].set_ylabel("volumetric error in µm")
     grid[0].set_ylim(bottom=0.0)
     grid[-1].legend(frameon=False, fontsize=8, loc="lower right")
     return drawn
@@ -193,7 +193,7 @@ def _shares(study: Study) -> Figure:
     axes.set_ylim(len(order) - 0.4, -0.6)
     axes.set_xlim(left=0.0)
     axes.set_xlabel(
-        "share of the variance of the deviation / %   "
+        "share of the variance of the deviation in %   "
         f"(the {len(order)} shown make {100.0 * mean[order].sum():.0f} % together)"
     )
     plain(axes, "x")

@@ -38,7 +38,7 @@ def axis_effect_picture(effect: AlongPath) -> tuple[Figure, str]:
     for k, (letter, d) in enumerate(zip("xyz", effect.deviation.T, strict=True)):
         beside.plot(path.along, d / UM, color=series(k), lw=1.4, label=letter)
     _finish(beside)
-    beside.set_ylabel("deviation in x, y, z of the table / µm")
+    beside.set_ylabel("deviation in x, y, z of the table in µm")
     first = effect.dominant[0] if effect.dominant else "nothing"
     caption = (
         f"Effect of {_words(effect)} along a trajectory ({path.name}, {len(path.q)} poses), exact: "
@@ -76,7 +76,7 @@ def statistics_picture(
         beside.plot(path.along, 100.0 * found.exceedance, color=series(3), lw=1.6,
                     label=f"beyond {found.tolerance / UM:.6g} µm")  # fmt: skip
     _finish(beside)
-    beside.set_ylabel("share of the machines / %")
+    beside.set_ylabel("share of the machines in %")
     caption = f"Volumetric error along a trajectory ({path.name}, {len(path.q)} poses)."
     return drawn, f"{caption} {sampling_words(found)}."
 
@@ -95,7 +95,7 @@ def _sheet(path: Trajectory) -> tuple[Figure, Axes, Axes]:
         below.legend(frameon=False, fontsize=7, ncols=3, loc="lower center",
                      bbox_to_anchor=(0.5, 0.98))  # fmt: skip
         _plain(below)
-    grid[0, 0].set_ylabel("volumetric error / µm")
+    grid[0, 0].set_ylabel("volumetric error in µm")
     return drawn, grid[0, 0], grid[0, 1]
 
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
+from artefact.compare import Rival
 from artefact.worth import Criterion, touch_curve
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
@@ -20,7 +21,13 @@ from report.plots import (
 )
 from report.scenes import draw_standard
 from report.style import save
-from report.words import comparison_remarks, criterion_words, identification_sentence
+from report.words import (
+    best_rival,
+    comparison_remarks,
+    criterion_words,
+    identification_sentence,
+    verdict_of_design,
+)
 from twin.errors import DesignError
 from twin.units import DEG, UM
 
@@ -28,6 +35,7 @@ MAPS, CURVES = "sensitivity", "touch_curves.png"
 """Folder of the maps, file of a picture."""
 
 _EXCERPT = 46  # lines of the first program
+_FLAT = 10_000.0  # mm: a ball of 3 mm cannot tell such a face from a plane
 
 
 def write_design_page(design: Design, folder: Path) -> list[str]:
@@ -45,12 +53,13 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
     maps = [*design.maps, *_volumes(design, folder, remarks)]
     write_touches_picture(folder / "plan_touches.png", design.plan)
     write_order_picture(folder / "plan_order.png", design.plan)
-    write_proof_picture(folder / "proof.png", [m.proof for m in design.machines])
+    write_proof_picture(folder / "proof.png", [m.in_workspace for m in design.machines])
     write_page(
         folder / "report.html",
         "design.html",
         folder=folder,
         project=design.project,
+        verdict=verdict_of_design(design.placement),
         standard=design.placement.standard,
         plan=design.plan,
         programs=design.programs,
@@ -110,29 +119,14 @@ def _on(criterion: Criterion, body: Standard | None) -> Criterion:
 def _standard(design: Design) -> dict[str, Any]:
     """Tables of the patches, of other artefacts and of the CAD files."""
     c, on_machine = design.conformity, minutes(design)
-    faces = max(c.face_deviation.values()) / UM
+    faces, best = max(c.face_deviation.values()) / UM, best_rival(design.placement)
     return {
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
         "certificate": design.placement.certificate,
         "criterion": criterion_words(design.project.standard),
         "identification": identification_sentence(design.placement),
-        "comparison": [
-            {
-                "name": r.name,
-                "is_this": r is design.placement.own,
-                "touches": len(design.placement.requests),
-                "rms_um": r.rms / UM,
-                "p95_um": r.p95 / UM,
-                "rms_user_um": r.rms_user / UM,
-                "p95_user_um": r.p95_user / UM,
-                "visible": r.visible,
-                "could_be_visible": r.could_be_visible,
-                "minutes": on_machine[r.name],
-                "rms_random_um": r.rms_random / UM,
-                "estimable": r.estimable,
-            }
-            for r in design.placement.rivals
-        ],
+        "comparison": [_rival(r, design, on_machine) for r in design.placement.rivals],
+        "rival": _rival(best, design, on_machine) if best is not None else None,
         "step_deviation": _at_most(faces),
         "cad": [
             ("STEP", f"AP242, mm, {c.step_bytes / 1e6:.1f} MB, {len(c.names)} named faces"),
@@ -158,6 +152,24 @@ def _standard(design: Design) -> dict[str, Any]:
     }
 
 
+def _rival(rival: Rival, design: Design, on_machine: dict[str, float]) -> dict[str, Any]:
+    """Row of an artefact in the table that compares them."""
+    return {
+        "name": rival.name,
+        "is_this": rival is design.placement.own,
+        "touches": len(design.placement.requests),
+        "rms_um": rival.rms / UM,
+        "p95_um": rival.p95 / UM,
+        "rms_user_um": rival.rms_user / UM,
+        "p95_user_um": rival.p95_user / UM,
+        "visible": rival.visible,
+        "could_be_visible": rival.could_be_visible,
+        "minutes": on_machine[rival.name],
+        "rms_random_um": rival.rms_random / UM,
+        "estimable": rival.estimable,
+    }
+
+
 def _at_most(um: float) -> str:
     """A deviation that may be nothing but rounding, with no more digits than make sense."""
     return "< 0.0001 µm" if um < 1e-4 else f"{digits(um, 2)} µm"
@@ -168,8 +180,10 @@ def _yes(value: bool) -> str:
 
 
 def _radius(value: float) -> str:
-    """Smallest concave radius; a face that is convex everywhere has none."""
-    return f"{value:.1f}" if np.isfinite(value) else "convex"
+    """Smallest concave radius; a face that is convex everywhere has none, one of 10 m is flat."""
+    if not np.isfinite(value):
+        return "convex"
+    return f"{value:.1f}" if value < _FLAT else "flat"
 
 
 def _patch(patch: FreeformPatch, design: Design) -> dict[str, Any]:
@@ -177,12 +191,12 @@ def _patch(patch: FreeformPatch, design: Design) -> dict[str, Any]:
     x, y, z = patch.point(np.zeros((1, 2)))[0]
     return {
         "name": patch.name,
-        "centre": f"{x:.0f}, {y:.0f}, {z:.0f}",
+        "centre": f"{x:.0f}, {y:.0f}, {z:.0f}".replace("-", "−"),
         "tilt": f"{np.arccos(patch.direction[2]) / DEG:.0f}",
         "radius": _radius(min_concave_radius(patch)),
         "slope": f"{max_slope(patch) / DEG:.0f}",
         "touches": int(np.sum(design.plan.feature == patch.name)),
-        "errors": ", ".join(f"{e.name} {100 * e.share:.0f} %" for e in patch.errors[:5]),
+        "errors": ", ".join(f"{e.name}\u00a0{100 * e.share:.0f}\u00a0%" for e in patch.errors[:5]),
     }
 
 
@@ -191,7 +205,7 @@ def _proof(design: Design) -> dict[str, Any]:
     machines = [_machine(m) for m in design.machines]
     return {
         "machines": machines,
-        "worst": min(machines, key=lambda m: m["factor"]),
+        "worst": min(machines, key=lambda m: m["proofs"][0]["factor"]),
         "noise_um": design.project.noise / UM,
         "proof_poses": len(design.machines[0].proof.before),
         "poses": len({v.pose for v in design.plan.visits}),
@@ -200,12 +214,18 @@ def _proof(design: Design) -> dict[str, Any]:
 
 
 def _machine(machine: Proven) -> dict[str, Any]:
-    proof = machine.proof
+    places = (("your workspace", machine.in_workspace), ("probed volume", machine.proof))
     return {
         "number": machine.seed + 1,
-        "rms_before_um": proof.rms_before / UM,
-        "rms_after_um": proof.rms_after / UM,
-        "rms_u_um": proof.rms_u / UM,
-        "factor": proof.factor,
-        "covered": proof.covered,
+        "proofs": [
+            {
+                "where": where,
+                "before_um": proof.rms_before / UM,
+                "after_um": proof.rms_after / UM,
+                "u_um": proof.rms_u / UM,
+                "factor": proof.factor,
+                "covered": proof.covered,
+            }
+            for where, proof in places
+        ],
     }

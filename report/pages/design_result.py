@@ -25,7 +25,8 @@ class Proven:
         errors: Its true errors.
         campaign: The programs run on its twin.
         fit: The identified model.
-        proof: Predicted against true volumetric error.
+        proof: Predicted against true volumetric error over the probed volume.
+        in_workspace: The same over the user's workspace.
     """
 
     seed: int
@@ -33,6 +34,7 @@ class Proven:
     campaign: Campaign
     fit: Fit
     proof: Proof
+    in_workspace: Proof
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,12 +7,7 @@ from typing import Any
 
 from artefact.compare import Alone, IdentifiabilityReport
 from information.identifiability import STRONG, Degree, FreedomFamily, Resolution, ties
-from report.maps import draw_ties
-from report.numbers import shown
-from report.pages.design_result import Design
-from report.pages.page import digits
-from report.style import save
-from report.words import (
+from report.identifiability import (
     combination_words,
     family_words,
     gist,
@@ -22,6 +17,11 @@ from report.words import (
     resolution_words,
     short,
 )
+from report.maps import draw_ties
+from report.numbers import shown
+from report.pages.design_result import Design
+from report.pages.page import digits
+from report.style import save
 from twin.machine import Chain, Link
 from twin.units import DEG
 

@@ -8,6 +8,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 
 from report.numbers import digits as digits
 from report.numbers import percent, signed
+from report.pages.contents import with_contents
+from report.pages.tables import write_tables
 from twin.files import write_whole
 from twin.versions import versions
 
@@ -16,10 +18,10 @@ _APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
 
 
 def write_page(path: str | Path, template: str, **content: object) -> None:
-    """Render a template of `report/pages/templates` into one file, written whole or not at all.
+    """Render a template of `report/pages/templates` into one file, and its tables beside it.
 
     Args:
-        path: The page.
+        path: The page; written whole or not at all.
         template: Name of the template, which extends `page.html`.
         content: What it shows; a missing name is our own mistake and raises.
     """
@@ -35,9 +37,11 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
         "percent": percent,
         "p_value": p_value,
         "unbroken": unbroken,
+        "with_contents": with_contents,
     }
     environment.globals |= {"signed": signed, "picture": picture, "versions": versions}
     write_whole(path, environment.get_template(template).render(**content))
+    write_tables(path)
 
 
 def unbroken(words: str) -> str:

@@ -155,7 +155,7 @@ def error_scenes(study: Study, T_table_artefact: Array | None = None) -> list[Sc
     for words, rotary in each:
         box = volume(study.workspace, rotary)
         values = box.volumetric(study.population) / UM
-        out.append(_scene(box, words, "95 % quantile / µm", values, T_table_artefact))
+        out.append(_scene(box, words, "95 % quantile in µm", values, T_table_artefact))
     return out
 
 
@@ -187,7 +187,7 @@ def _scene(
 ) -> Scene:
     """One map with its readings, axes and standard."""
     at = ", ".join(f"{name} {reading / DEG:.0f}°" for name, reading in sorted(box.rotary.items()))
-    first, second, third = (f"{name} / mm" for name in box.axes)
+    first, second, third = (f"{name} in mm" for name in box.axes)
     stands = None if T_table_artefact is None else box.T_readings_table @ T_table_artefact
     return Scene(
         title=f"{words}: {at}" if at else words,

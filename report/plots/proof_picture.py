@@ -40,7 +40,13 @@ def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
     left.set_xscale("log")
     left.set_xlabel("volumetric error at a pose in µm (lines: root mean square)")
     left.set_ylabel("poses")
-    left.legend(fontsize=8, loc="upper left", frameon=False)
+    drawn.legend(
+        *left.get_legend_handles_labels(),
+        fontsize=8.5,
+        loc="outside lower left",
+        ncols=2,
+        frameon=False,
+    )
     left.set_title(f"{len(proofs)} random machine{'s' * (len(proofs) > 1)}", loc="left")
     _uncertainty(right, proofs)
     plain(left)

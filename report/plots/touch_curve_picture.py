@@ -25,7 +25,7 @@ def draw_touch_curves(curves: Sequence[TouchCurve], noise: float) -> Figure:
     """
     drawn = figure(4.4)
     left, right = drawn.subplots(1, 2, sharey=True)
-    for axes, title, user in ((left, "probed volume", False), (right, "your workspace", True)):
+    for axes, title, user in ((left, "your workspace", True), (right, "probed volume", False)):
         for k, curve in enumerate(curves):
             _curve(axes, k, curve, (curve.rms_user if user else curve.rms) / UM)
         axes.set(xscale="log", yscale="log", xlabel=f"touches of {noise / UM:.3g} µm noise")
@@ -33,7 +33,7 @@ def draw_touch_curves(curves: Sequence[TouchCurve], noise: float) -> Figure:
         axes.grid(which="both", color=LINE, lw=0.6)
         axes.spines[["top", "right"]].set_visible(False)
         _plain_numbers(axes)
-    left.set_ylabel("tool point not predicted / µm rms")
+    left.set_ylabel("tool point not predicted in µm rms")
     handles, labels = left.get_legend_handles_labels()
     drawn.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return drawn

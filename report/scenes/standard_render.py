@@ -8,14 +8,14 @@ import numpy as np
 from artefact.body import DatumSphere, FreeformPatch, Standard, read_standard
 from cad_out.build import note_refusal, owners, read_stl
 from report.scenes.standard_scene import PICTURE, STANDARD, STL, VALUES
-from report.style import DIVERGING, LINE, RED, series
+from report.style import DIVERGING, LINE, series
 from twin.errors import DesignError
 from twin.frames import Array, apply
 
 SIZE = (2000, 860)
 SIZE_WITH_BAR = (2200, 860)
 _BODY = "#b9bec4"
-_SPHERE = RED
+_SPHERE = "#f0e442"  # a colour that no patch has
 _PLANE = "#8fae8b"
 _NAME_ROOM = 14.0  # mm in the picture between two names, one over the other
 _PITCH = 0.8  # mm, of the drawn grid of a face

@@ -9,16 +9,16 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cad_out.build import run_apart
-from report.style import INK, RED, figure, save
+from cad_out.build import read_stl, run_apart
+from report.style import INK, RED, WIDTH, figure, save
 from twin.errors import DesignError, MissingLibrary, ShapeMismatch
-from twin.frames import Array
+from twin.frames import Array, apply
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,7 +33,8 @@ COLOURS = "viridis"
 """Even in lightness, and told apart without red and green."""
 
 _VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
-_INCH = 4.4  # of one scene
+_WIDEST = 5.0  # inch, of one scene
+_FREE = 1.03  # of the half height: nothing touches the edge of the picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +50,8 @@ class Scene:
             there is none.
         T_readings_artefact: Where the standard stands in the map, (4, 4); None to leave it out.
         lines: Lines of rotary axes by name: a point and a unit direction each, (2, 3).
+        body: Lowest and highest corner of the standard in its own frame, (2, 3); `draw_volumes`
+            takes them from the STL file.
     """
 
     title: str
@@ -58,6 +61,7 @@ class Scene:
     values: Array
     T_readings_artefact: Array | None = None
     lines: Mapping[str, Array] = field(default_factory=dict)
+    body: Array | None = None
 
     def __post_init__(self) -> None:
         shape = tuple(len(r) for r in self.readings)
@@ -93,19 +97,42 @@ def draw_volumes(pictures: Mapping[Path, Sequence[Scene]], stl: str | Path | Non
         DesignError: The renderer fails otherwise.
     """
     scenes = [scene for each in pictures.values() for scene in each]
+    if stl is not None:
+        scenes = [replace(scene, body=_extent(Path(stl))) for scene in scenes]
     images = _rendered(scenes, None if stl is None else Path(stl))
     start = 0
     for path, own in pictures.items():
-        drawn = composed(own, images[start : start + len(own)])
-        start += len(own)
-        save(drawn, path)
+        end = start + len(own)
+        save(composed(scenes[start:end], images[start:end]), path)
+        start = end
+
+
+def _extent(stl: Path) -> Array:
+    """Lowest and highest corner of a body, (2, 3)."""
+    try:
+        stl.stat()
+        corners = read_stl(stl)[0]
+    except OSError as error:
+        raise DesignError(f"{stl}: cannot be read ({error.strerror})") from error
+    return np.array([corners.min(axis=0), corners.max(axis=0)])
 
 
 def _camera(scene: Scene) -> Array:
     """Middle of the picture and half its height, (4,)."""
     middle = scene.box.mean(axis=0)
     half = 0.5 * float(np.linalg.norm(np.ptp(scene.box, axis=0)))
-    return np.append(middle, 1.02 * half)
+    if scene.body is not None and scene.T_readings_artefact is not None:
+        corners = np.stack(np.meshgrid(*scene.body.T), axis=-1).reshape(-1, 3)
+        off = apply(scene.T_readings_artefact, corners) - middle
+        half = max(half, float(np.abs(off @ _across().T).max()))
+    return np.append(middle, _FREE * half)
+
+
+def _across() -> Array:
+    """Directions to the right and upwards in a picture, (2, 3)."""
+    right = np.cross([0.0, 0.0, 1.0], eye())
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(eye(), right)])
 
 
 def _rendered(scenes: Sequence[Scene], stl: Path | None) -> list[Array]:
@@ -120,10 +147,7 @@ def _rendered(scenes: Sequence[Scene], stl: Path | None) -> list[Array]:
             facts[f"T_{k}"] = np.full((4, 4), np.nan) if T is None else T
         np.savez(place / FACTS, **facts)
         if stl is not None:
-            try:
-                shutil.copyfile(stl, place / STL)
-            except OSError as error:
-                raise DesignError(f"{stl}: cannot be read ({error.strerror})") from error
+            shutil.copyfile(stl, place / STL)
         # Without this the renderer looks for an X server and complains when there is none.
         egl = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
         ending = run_apart(
@@ -147,11 +171,12 @@ def _rendered(scenes: Sequence[Scene], stl: Path | None) -> list[Array]:
 def composed(scenes: Sequence[Scene], images: Sequence[Array]) -> Figure:
     """Rendered scenes side by side with everything that is written on them."""
     n = len(scenes)
-    drawn = figure(_INCH * 1.2, _INCH * n, layout=None)
+    width = min(WIDTH / n, _WIDEST)
+    drawn = figure(1.2 * width, n * width, layout=None)
     for k, (scene, image) in enumerate(zip(scenes, images, strict=True)):
         axes = drawn.add_axes((k / n, 0.2 / 1.2, 1.0 / n, 1.0 / 1.2))
         axes.imshow(image, extent=(-1.0, 1.0, -1.0, 1.0), interpolation="antialiased")
-        axes.set(xlim=(-1.12, 0.98), ylim=(-1.08, 1.02))  # room for ticks on the left, below
+        axes.set(xlim=(-1.2, 1.0), ylim=(-1.14, 1.06))  # room for ticks on the left, below
         axes.set_axis_off()
         axes.text(0.0, 0.96, scene.title, ha="center", va="top", fontsize=10.5, color=INK)
         _ticks(axes, scene)
@@ -162,11 +187,8 @@ def composed(scenes: Sequence[Scene], images: Sequence[Array]) -> Figure:
 
 def _on_picture(scene: Scene, points: Array) -> Array:
     """Where points (N, 3) lie in a picture from -1 to 1 each way, (N, 2)."""
-    right = np.cross([0.0, 0.0, 1.0], eye())
-    right /= np.linalg.norm(right)
     camera = _camera(scene)
-    off = (points - camera[:3]) / camera[3]
-    return np.stack([off @ right, off @ np.cross(eye(), right)], axis=1)
+    return (points - camera[:3]) / camera[3] @ _across().T
 
 
 def _ticks(axes: Any, scene: Scene) -> None:
@@ -190,7 +212,7 @@ def _ticks(axes: Any, scene: Scene) -> None:
             axes.plot(*np.stack([place, place + 0.02 * across], axis=1), color=INK, lw=0.9)
             x, y = place + (0.09 if i == 2 else 0.065) * across
             axes.text(x, y, f"{tick:g}", ha="center", va="center", fontsize=8.5, color=INK)
-        x, y = places[-1] + (0.19 if i == 2 else 0.15) * across
+        x, y = places[-1] + (0.26 if i == 2 else 0.16) * across
         turn = np.degrees(np.arctan2(along[1], along[0]))
         axes.text(
             x,

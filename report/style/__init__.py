@@ -19,7 +19,7 @@ from report.style.colours import (
     series,
 )
 from report.style.labels import axis_of, axis_title, reading_label, robust_limit, tidy
-from report.style.sheet import figure, nothing, plain, save
+from report.style.sheet import WIDTH, figure, nothing, plain, save
 
 __all__ = [
     "BLUE",
@@ -33,6 +33,7 @@ __all__ = [
     "RED",
     "SOFT",
     "WASH",
+    "WIDTH",
     "axis_of",
     "axis_title",
     "figure",

@@ -5,14 +5,16 @@ units, values with their uncertainty.
 """
 
 from report.words.artefact_words import (
+    alternative_words,
     comparison_remarks,
     criterion_words,
     identification_sentence,
 )
+from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
     microns,
-    named_value,
+    promise_sentence,
     region_words,
     rivals_words,
     sizes,
@@ -22,17 +24,6 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.identifiability_file import write_identifiability
-from report.words.identifiability_words import (
-    combination_words,
-    family_words,
-    gist,
-    pair_words,
-    reason_words,
-    resolution_words,
-)
-from report.words.identification_file import write_identification
-from report.words.parameter_words import in_words, short
 from report.words.probe_words import ordering_words
 from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (
@@ -44,27 +35,23 @@ from report.words.sensitivity_words import (
 )
 
 __all__ = [
-    "combination_words",
+    "alternative_words",
+    "best_rival",
     "comparison_remarks",
     "comparison_sentence",
     "criterion_words",
+    "design_lines",
     "dominant_words",
-    "family_words",
-    "gist",
     "identification_sentence",
-    "in_words",
     "microns",
-    "named_value",
     "ordering_words",
-    "pair_words",
     "place_words",
-    "reason_words",
+    "promise_sentence",
+    "proof_line",
     "region_words",
     "remark_sentence",
-    "resolution_words",
     "rivals_words",
     "sampling_words",
-    "short",
     "sizes",
     "stated_noise",
     "structure_words",
@@ -72,7 +59,6 @@ __all__ = [
     "unit_words",
     "unsampled",
     "values",
+    "verdict_of_design",
     "verdict_sentence",
-    "write_identifiability",
-    "write_identification",
 ]

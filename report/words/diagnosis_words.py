@@ -7,6 +7,7 @@ from diagnosis.answer import Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Comparison, Condition, Shape, Side, Structure
 from report.numbers import condition, digits, noun, span, with_uncertainty
+from report.words.remark_words import memory_words
 from twin.record import Run
 from twin.units import UM
 from twin.words import listed
@@ -47,8 +48,13 @@ def named_value(reported: Reported) -> tuple[str, str]:
         ('time constant', '42.1 ± 3.3 min')
         >>> named_value(Reported("instant", "s", 7083.0, None, 1.0, Role.INNER))
         ('instant', '1.97 h')
+        >>> named_value(Reported("tau", "min", 2.0, None, 60.0, Role.INNER, bound=-1))
+        ('time constant', 'at most 2.00 min')
     """
     words = _WORDS.get(reported.quantity, reported.quantity).replace("_", " ")
+    if reported.bound:
+        side = "at most" if reported.bound < 0 else "at least"
+        return words, f"{side} {digits(reported.value, 3)} {unit_words(reported.unit)}".rstrip()
     if reported.unit == "s" and reported.u is None:
         return words, span(reported.value)
     return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))
@@ -88,9 +94,11 @@ def noise_words(fit: Fit) -> str:
     """The noise as found, and as stated where that is another."""
     stated = stated_noise(fit.run)
     found = stated * fit.noise.factor
+    remembers = fit.memory is not None and fit.memory.is_filtered
+    after = f" and remembers ({_memory(fit)})" if remembers else ""
     if fit.noise.is_wrongly_stated:
-        return f"{microns(found)} (stated: {microns(stated)})"
-    return microns(stated)
+        return f"{microns(found)} (stated: {microns(stated)}){after}"
+    return f"{microns(stated)}{after}"
 
 
 def excess(fit: Fit) -> float:
@@ -134,6 +142,12 @@ def structure_clause(found: Structure) -> str:
 
 
 def _fall(diagnosis: Diagnosis) -> str:
+    if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
+        first, best = diagnosis.choice.ways[0], diagnosis.choice.best
+        return (
+            f"the plain error of blocks left out, the choice made anew without each, falls from "
+            f"{microns(first.error)} to {microns(best.error)}"
+        )
     return (
         f"the error of held-out touches falls from {microns(diagnosis.start.test_rms)} to "
         f"{microns(diagnosis.fit.test_rms)}"
@@ -206,6 +220,28 @@ def comparison_sentence(found: Comparison) -> str:
     if not found.structure:
         return f"{text} What is left looks like noise."
     return f"{text} What is left is not noise: {structure_clause(found.structure[0])}."
+
+
+BROKEN = 1.1
+"""Error over what was promised from which a promise is called broken; the figures themselves
+scatter by a few per cent."""
+
+
+def promise_sentence(found: Comparison, promised: float) -> str:
+    """The error of a prediction beside the one that its model promised (mm), in plain words."""
+    word = "worse than" if found.rms > BROKEN * promised else "as good as"
+    return (
+        f"That is {word} was promised: {microns(found.rms)} beside {microns(promised)}, the error "
+        "of rows that the model had not seen when it was made."
+    )
+
+
+def _memory(fit: Fit) -> str:
+    """What the noise of a fit remembers; empty for white noise."""
+    memory = fit.memory
+    if memory is None:
+        return ""
+    return memory_words(memory.correlation, memory.step, memory.by_place)
 
 
 def rivals_words(step: Step, most: int = 2) -> str:

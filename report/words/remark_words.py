@@ -4,12 +4,15 @@ from collections.abc import Callable
 from typing import Any
 
 from diagnosis.fit import MistakenUnit, UnitMistake
-from diagnosis.residual import (
+from diagnosis.remarks import (
+    ChosenByPrediction,
     FewDegreesOfFreedom,
     FewPoses,
     FewTouches,
+    FieldShares,
     HeldOutInDoubt,
     NoiseMisstated,
+    NoiseRemembers,
     OutliersKept,
     OutliersLeftOut,
     PriorWidened,
@@ -27,6 +30,36 @@ LISTED = 20
 def remark_sentence(remark: Remark) -> str:
     """One line about what was noticed, without a full stop."""
     return _SENTENCES[type(remark)](remark)
+
+
+def memory_words(correlation: float, step: float, by_place: bool) -> str:
+    """What noise remembers, `correlation 0.82 from touch to touch`."""
+    over = f"over {step:.3g} s" if step else "from touch to touch"
+    return f"correlation {correlation:.2f} {over}{' at one place' if by_place else ''}"
+
+
+def _noise_remembers(r: NoiseRemembers) -> str:
+    words = memory_words(r.correlation, r.step, r.by_place)
+    count = f"{r.rows} touches count as {r.independent:.0f} independent ones"
+    if r.is_noise:
+        return f"the noise remembers ({words}): for everything slow, {count}"
+    return f"what is left is slow ({words}): in probabilities and uncertainties {count}"
+
+
+def _chosen(r: ChosenByPrediction) -> str:
+    ways = "; ".join(f"{name} {error / UM:.2f} µm" for name, error in r.ways)
+    return (
+        f"chosen by prediction: {r.chosen}. Plain error of {r.blocks} blocks left out in turn, the "
+        f"choice made anew without each: {ways}"
+    )
+
+
+def _field_shares(r: FieldShares) -> str:
+    words = ", ".join(f"{drive} {size / UM:.1f}" for drive, size in r.sizes)
+    return (
+        f"the field of {r.axis} follows {words} µm rms, which partly cancel; sensors that share "
+        "what they know stand in for one another, so their order is no finding"
+    )
 
 
 def _few_touches(r: FewTouches) -> str:
@@ -140,6 +173,9 @@ def _shown(size: float) -> str:
 
 _SENTENCES: dict[type, Callable[[Any], str]] = {
     UnitMistake: _units,
+    NoiseRemembers: _noise_remembers,
+    ChosenByPrediction: _chosen,
+    FieldShares: _field_shares,
     ReaderRemark: lambda r: r.text,
     FewTouches: _few_touches,
     FewDegreesOfFreedom: _few_dof,

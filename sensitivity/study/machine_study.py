@@ -21,8 +21,10 @@ from sensitivity.first_order import (
 from sensitivity.montecarlo import ExactCheck, Volumetric, Workers, exact_check, volumetric
 from sensitivity.population import Population
 from sensitivity.shares import TotalEffects, norm_shares
+from sensitivity.study.study_table import pose_columns, statistics_columns
 from sensitivity.study.trajectory import AlongPath, Trajectory, axis_effect, paper_trajectory
 from twin.compute import Progress, silent
+from twin.display import Tabular
 from twin.frames import Array
 from twin.machine import Chain
 
@@ -78,8 +80,8 @@ class PathStudy:
     effects: tuple[AlongPath, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Study:
+@dataclass(frozen=True, eq=False, repr=False)
+class Study(Tabular):
     """Where errors show on a machine.
 
     Attributes:
@@ -137,6 +139,11 @@ class Study:
             return 0.0, 0.0
         off = sampled[moves] / closed[moves] - 1.0
         return float(off.mean()), float(off[np.argmax(np.abs(off))])
+
+    def columns(self) -> dict[str, Array]:
+        """Every pose with the statistics of the volumetric error there, as in `poses.csv`."""
+        table = statistics_columns(self.volumetric, self.closed)
+        return pose_columns(self.chain, self.q) | table
 
     def ranking(self) -> list[tuple[str, float]]:
         """Error parameters by their mean share of the variance over the workspace."""

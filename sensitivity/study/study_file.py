@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from sensitivity.first_order import NormalLength
 from sensitivity.montecarlo import Volumetric
 from sensitivity.study.machine_study import Study
-from twin.files import reading_columns, write_whole, written_whole
+from sensitivity.study.study_table import pose_columns, statistics_columns
+from twin.files import write_whole, written_whole
 from twin.frames import Array
-from twin.machine import Chain
 from twin.units import UM, URAD
 
 
@@ -30,8 +29,8 @@ def write_study(study: Study, folder: str | Path, statement: str) -> None:
         statement: The sampling in one sentence, kept beside its figures.
     """
     folder, symbols = Path(folder), study.chain.symbols
-    readings = _readings(study.chain, study.q)
-    table = readings | _statistics(study.volumetric, study.closed)
+    readings = pose_columns(study.chain, study.q)
+    table = readings | statistics_columns(study.volumetric, study.closed)
     write_whole(folder / "poses.csv", csv_text(table))
     unit = [URAD / UM if s.is_angular else 1.0 for s in symbols]
     S = {s.name: study.sensitivity[:, i] * unit[i] for i, s in enumerate(symbols)}
@@ -45,41 +44,18 @@ def write_study(study: Study, folder: str | Path, statement: str) -> None:
         write_whole(folder / "total_effects.csv", csv_text(some))
     if study.path:
         way = study.path.trajectory
-        table = {"share_of_way": way.along} | _readings(study.chain, way.q)
-        table |= _statistics(study.path.volumetric, study.path.closed)
+        table = {"share_of_way": way.along} | pose_columns(study.chain, way.q)
+        table |= statistics_columns(study.path.volumetric, study.path.closed)
         table |= {f"errors_of_{e.axis}_um": e.size / UM for e in study.path.effects}
         write_whole(folder / "trajectory.csv", csv_text(table))
     _write_sections(study, folder / "sections.npz")
     write_whole(folder / "montecarlo.json", json.dumps(_summary(study, statement), indent=1) + "\n")
 
 
-def _readings(chain: Chain, q: Array) -> dict[str, Array]:
-    """Readings of the programmed axes, in the units of files."""
-    return {
-        column: q[:, chain.axis_index(axis)] / factor
-        for axis, (column, factor) in reading_columns(chain).items()
-        if chain.link(axis).programmed
-    }
-
-
-def _statistics(v: Volumetric, closed: NormalLength) -> dict[str, Array]:
-    """Statistics of the volumetric error with their standard errors by sampling."""
-    each = {"mean": v.mean, "mean_u": v.mean_u, "sd": v.sd, "rms": closed.rms}
-    each["p95_normal"] = closed.p95
-    for i, level in enumerate(v.levels):
-        each[f"p{100 * level:g}"] = v.quantile[i]
-        each[f"p{100 * level:g}_u"] = v.quantile_u[i]
-    table = {f"{name}_um": value / UM for name, value in each.items()}
-    table |= {"recurrence": v.recurrence, "recurrence_u": v.recurrence_u}
-    if np.isfinite(v.tolerance):
-        table |= {"exceedance": v.exceedance, "exceedance_u": v.exceedance_u}
-    return table
-
-
 def _summary(study: Study, statement: str) -> dict[str, Any]:
     """Draws, seed, precision, and the figures over the workspace."""
     v = study.volumetric
-    worst = _readings(study.chain, study.worst_pose[None])
+    worst = pose_columns(study.chain, study.worst_pose[None])
     out: dict[str, Any] = {
         "format": "montecarlo/1",
         "statement": statement,

@@ -21,7 +21,7 @@ from artefact.worth.touch_criterion import criterion_for, random_touches
 from information.identifiability.estimable_combinations import combinations
 from information.identifiability.freedoms import Resolution
 from probe_paths.plan.probe import Probe
-from report.words.identifiability_file import as_json, write_identifiability
+from report.identifiability.identifiability_file import identifiability_table, write_identifiability
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from twin.machine.chain import Axis, make_chain
@@ -159,7 +159,7 @@ def test_the_file_says_what_the_record_says(known, tmp_path):
     path = tmp_path / "identifiability.json"
     write_identifiability(path, known)
     data = json.loads(path.read_text(encoding="utf-8"))
-    assert data == json.loads(json.dumps(as_json(known)))
+    assert data == json.loads(json.dumps(identifiability_table(known)))
     assert data["format"] == "identifiability/1"
     assert data["rank"] == known.gauge.rank
     assert len(data["freedoms"]) == len(known.gauge.freedoms)

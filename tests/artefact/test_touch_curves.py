@@ -96,7 +96,7 @@ def test_the_picture_holds_the_curves_and_marks_the_design():
     standard = TouchCurve("standard", 480, counts, np.array([7, 0.8, 0.5]) * UM, np.ones(3) * UM)
     ideal = TouchCurve("ideal scatter", 480, counts, np.array([6, 0.6, 0.4]) * UM, np.ones(3) * UM)
     drawn = draw_touch_curves([standard, ideal], 1.0 * UM)
-    volume, user = drawn.axes
+    user, volume = drawn.axes
     line = volume.lines[0]
     np.testing.assert_allclose(line.get_ydata(), [7.0, 0.8, 0.5])
     assert tuple(line.get_xdata()) == counts
@@ -104,7 +104,7 @@ def test_the_picture_holds_the_curves_and_marks_the_design():
     assert [ln.get_linestyle() for ln in volume.lines] == ["-", "--"]
     assert volume.get_xscale() == volume.get_yscale() == "log"
     assert volume.get_xlabel() == "touches of 1 µm noise"
-    assert volume.get_ylabel() == "tool point not predicted / µm rms"
-    titles = [a.get_title(loc="left") for a in (volume, user)]
-    assert titles == ["probed volume", "your workspace"]
+    assert user.get_ylabel() == "tool point not predicted in µm rms"
+    titles = [a.get_title(loc="left") for a in drawn.axes]
+    assert titles == ["your workspace", "probed volume"]
     assert [t.get_text() for t in drawn.legends[0].get_texts()] == ["standard", "ideal scatter"]

@@ -2,7 +2,7 @@
 
 import diagnosis.search.search_loop as rounds
 from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.residual.run_remarks import SearchEnded
+from diagnosis.remarks.run_remarks import SearchEnded
 from diagnosis.search.selection import MOST_SETS, Budget
 from twin.library.catalogue import parse_effect
 

@@ -12,7 +12,7 @@ from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.unit_mistakes import unit_mistake
-from diagnosis.residual.run_remarks import remarks
+from diagnosis.remarks.run_remarks import remarks
 from matstd.cli import main
 from report.words.remark_words import remark_sentence
 from twin.errors import BadFile
@@ -88,7 +88,7 @@ def changed(folder, tmp_path):
 def table(diagnosed, tmp_path_factory):
     """diagnosis.json of a run with a lag, which has rivals and thus a next measurement."""
     path = tmp_path_factory.mktemp("json") / "diagnosis.json"
-    write_diagnosis(path, diagnosed(5, "hsm600u", ("thermal-lag(EXC)",)))
+    write_diagnosis(path, diagnosed(7, "hsm600u", ("thermal-lag(EXC)",)))
     return json.loads(path.read_text(encoding="utf-8"))
 
 
@@ -149,7 +149,7 @@ def test_limits_and_regions_of_the_contract(table) -> None:
 
 def test_next_measurement_is_a_run_plan(table, case) -> None:
     """Touches with the columns of a run file, within the travels, on points that are known."""
-    run = case(5, "hsm600u", ("thermal-lag(EXC)",)).run
+    run = case(7, "hsm600u", ("thermal-lag(EXC)",)).run
     (plan,) = table["next_measurement"]
     assert len(plan["tells_apart"]) == 2
     assert plan["touches"]
@@ -283,7 +283,7 @@ def test_auto_finds_puts_in_and_goes_on_from_its_own_model(folder, tmp_path, cap
 def test_plans_stand_beside_the_diagnosis(tmp_path, table) -> None:
     """Where effects are confused, a table of touches that has the columns of a run file."""
     run_file, machine, _ = simulate_case(
-        np.random.default_rng(5), "hsm600u", ("thermal-lag(EXC)",), with_alike=False
+        np.random.default_rng(7), "hsm600u", ("thermal-lag(EXC)",), with_alike=False
     )
     (tmp_path / "run.csv").write_text(run_file, encoding="utf-8")
     (tmp_path / "machine.toml").write_text(machine, encoding="utf-8")
@@ -447,7 +447,7 @@ def backwards(rows):
     ("change", "phrase"),
     [
         (with_all("T_spindle_degC", lambda i, row: "20.0"), "T_spindle_degC is constant at 20"),
-        (with_value("T_spindle_degC", "nan"), "the sensor is left out"),
+        (with_value("T_spindle_degC", "nan"), "before and after it are joined by a line"),
         (lambda rows: [rows[0], *rows], "1 row stands twice; copies are left out"),
         (backwards, "time_s goes back"),
         (lambda rows: rows[:26], "1 table pose only"),

@@ -6,9 +6,9 @@ import numpy as np
 
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.fit.describe import inner_unit
-from twin.effects.thermal_lag import ThermalLag
 from twin.library.catalogue import parse_effect
 from twin.model.effect import Inner
+from twin.thermal.thermal_lag import ThermalLag
 
 HIDDEN = (5, "hsm600u", ("thermal-lag(EXC)",))
 

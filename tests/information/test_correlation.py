@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from information.identifiability.correlation import correlation, ties
+from report.identifiability.identifiability_words import pair_words
+from report.identifiability.parameter_words import short
 from report.maps.correlation_picture import draw_ties
-from report.words.identifiability_words import pair_words
-from report.words.parameter_words import short
 from twin.errors import ShapeMismatch
 
 NAMES = (

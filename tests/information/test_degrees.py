@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from information.identifiability.degrees import HIGHEST, SUPPORTED, supported_degrees
-from report.words.identifiability_words import degree_words
+from report.identifiability.identifiability_words import degree_words
 from sensitivity.population.sampling import Population
 from twin.machine.chain import Axis, make_chain
 from twin.machine.symbols import Family

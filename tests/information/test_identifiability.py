@@ -7,7 +7,7 @@ from information.identifiability.estimable_combinations import combinations
 from information.identifiability.freedoms import Reason, Resolution, in_families
 from information.identifiability.nullspace import rank_analysis, sparse
 from information.identifiability.separation import identifiability
-from report.words.identifiability_words import family_words, freedom_words
+from report.identifiability.identifiability_words import family_words, freedom_words
 from sensitivity.first_order.workspace import Workspace, latin_hypercube
 from sensitivity.population.sampling import Population
 from twin.machine.chain import Axis, make_chain

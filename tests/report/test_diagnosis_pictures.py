@@ -39,8 +39,8 @@ from report.words.diagnosis_words import (
 )
 from twin.effects.backlash import KIND as BACKLASH
 from twin.effects.periodic import KIND as PERIODIC
-from twin.effects.thermal_lag import KIND as LAG
 from twin.library.ordinary import ordinary_model
+from twin.thermal.thermal_lag import KIND as LAG
 from twin.units import MINUTE, NM, UM
 
 ROUNDING = 1e-9

@@ -5,7 +5,7 @@ from typing import get_args
 import pytest
 
 from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake
-from diagnosis.residual.run_remarks import (
+from diagnosis.remarks.run_remarks import (
     FewPoses,
     NoiseMisstated,
     OutliersLeftOut,

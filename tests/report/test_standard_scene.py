@@ -30,7 +30,7 @@ def test_faces_spheres_and_plane_are_in_the_picture(small, built, tmp_path):
     assert image.shape == (860, 2000, 3)
     assert 0.3 < np.mean(image.min(axis=2) > 0.99) < 0.85  # white round the part
     r, g, b = image.transpose(2, 0, 1)
-    assert np.mean((r > 0.5) & (g < 0.3) & (b < 0.3)) > 0.002  # spheres
+    assert np.mean((r > 0.5) & (g > 0.85 * r) & (b < 0.6 * r)) > 0.002  # spheres, yellow
     assert np.mean((g > r + 0.05) & (g > b + 0.1)) > 0.05  # datum plane
 
 

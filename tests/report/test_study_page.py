@@ -50,8 +50,8 @@ def test_error_scenes_show_level_and_worst_table_with_the_standard_in_its_place(
     level, worst = error_scenes(study, T)
     assert level.title == "table level: B 0°, C 0°"
     assert worst.title.startswith("worst pose: B -")
-    assert level.labels == ("X / mm", "Y / mm", "Z / mm")
-    assert level.unit == "95 % quantile / µm"
+    assert level.labels == ("X in mm", "Y in mm", "Z in mm")
+    assert level.unit == "95 % quantile in µm"
     # normal errors have longer tails than bounded ones, by a few percent
     assert worst.values.max() == pytest.approx(study.volumetric.p95.max() / UM, rel=0.15)
     for scene, rotary in ((level, (0.0, 0.0)), (worst, None)):

@@ -18,8 +18,8 @@ def scene(values=None, **changes):
     x = np.ones((1, 4, 3)) * np.linspace(10.0, 20.0, 5)[:, None, None]
     facts = {
         "title": "B 0°, C 0°",
-        "unit": "95 % quantile / µm",
-        "labels": ("X / mm", "Y / mm", "Z / mm"),
+        "unit": "95 % quantile in µm",
+        "labels": ("X in mm", "Y in mm", "Z in mm"),
         "readings": READINGS,
         "values": x if values is None else values,
     }
@@ -81,15 +81,15 @@ def test_ticks_axes_and_bar_are_written_with_their_units():
     drawn = composed([scene(lines=lines)], [np.full((PIXELS, PIXELS, 3), 255, dtype=np.uint8)])
     picture, bar = drawn.axes
     words = [t.get_text() for t in picture.texts]
-    for word in ("B 0°, C 0°", "X / mm", "Y / mm", "Z / mm", "B", "-100", "100", "-300"):
+    for word in ("B 0°, C 0°", "X in mm", "Y in mm", "Z in mm", "B", "-100", "100", "-300"):
         assert word in words
     assert "seen along itself" not in words
-    assert bar.get_xlabel() == "95 % quantile / µm"
+    assert bar.get_xlabel() == "95 % quantile in µm"
     assert bar.get_xlim() == (10.0, 20.0)
     places = {t.get_text(): np.array(t.get_position()) for t in picture.texts}
     # X runs to the right and towards the eye, Y to the right and away, Z up
-    assert places["Z / mm"][0] < places["X / mm"][0] < places["Y / mm"][0]
-    inside = [np.all(np.abs(p) < 1.12) for p in places.values()]
+    assert places["Z in mm"][0] < places["X in mm"][0] < places["Y in mm"][0]
+    inside = [np.all(np.abs(p) < 1.2) for p in places.values()]
     assert all(inside)
 
 

@@ -144,6 +144,6 @@ def test_the_tornado_holds_the_shares_in_percent(found, chain):
         assert labels == [chain.symbols[i].name for i in order]
         title = axes.get_title(loc="left")
         assert title == f"{place_words(region.place)}\n{region.rms / UM:.0f} µm rms"
-    assert panels[-1].get_xlabel() == "share of the variance / %"
+    assert panels[-1].get_xlabel() == "share of the variance in %"
     ends = [100.0 * np.quantile(r.shares[:, r.largest(1)], 0.95) for r in found]
     assert max(ends) < panels[0].get_xlim()[1] < 1.2 * max(ends)

@@ -117,16 +117,16 @@ def test_maps_over_the_rotary_axes_are_labelled_and_hold_the_values(chain, works
     drawn = draw_rotary(study)
     titles = [a.get_title() for a in drawn.axes if a.get_title()]
     assert titles[0] == "point at X 0, Y 0, Z -275"
-    assert titles[4] == "S of EX0C / µm/µm"
+    assert titles[4] == "S of EX0C in µm/µm"
     maps = [a for a in drawn.axes if a.get_title()]
-    assert {a.get_xlabel() for a in maps} == {"B / °"}
-    assert {a.get_ylabel() for a in maps} == {"C / °"}
+    assert {a.get_xlabel() for a in maps} == {"B in °"}
+    assert {a.get_ylabel() for a in maps} == {"C in °"}
     # a displaced C line moves the point by 2 sin(C / 2) times the displacement
     shown = maps[4].collections[0].get_array()
     C = np.linspace(-180.0, 180.0, 61) * DEG
     expected = np.tile(2.0 * np.abs(np.sin(C / 2.0))[:, None], (1, 61))
     np.testing.assert_allclose(shown[~shown.mask], expected[~shown.mask], atol=NM / UM)
-    assert any(a.get_ylabel() == "95 % quantile / µm" for a in drawn.axes)
+    assert any(a.get_ylabel() == "95 % quantile in µm" for a in drawn.axes)
 
 
 def test_without_a_rotary_axis_the_picture_says_so():

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from made_up import MACHINES, made_up
 
-from twin.effects.thermal_lag import first_order_lag
 from twin.library.catalogue import parse_effect, proposals
 from twin.library.ordinary import ordinary_model
 from twin.machine.contribution import Contribution
 from twin.model.effect import Effect, Tunable, contribution
 from twin.model.model import Model, columns
+from twin.thermal.thermal_lag import first_order_lag
 from twin.units import NM
 
 SECOND_ORDER = 60 * NM

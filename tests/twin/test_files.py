@@ -11,6 +11,7 @@ from twin.files.error_file import errors_toml, read_errors
 from twin.files.machine_file import read_machine
 from twin.files.pose_file import read_poses
 from twin.files.whole import write_whole
+from twin.machine.chain import Axis, make_chain
 from twin.units import DEG, UM, URAD
 
 MACHINE = """format = "machine/1"
@@ -79,6 +80,20 @@ def test_machine_in_base_units(machine: Path) -> None:
         ('"machine/1"', '"machine/2"', 'format.*expected "machine/1"'),
         ("[-500.0, 0.0]", "[-500.0, 0.0", "TOML"),
         ("[axis.Z]\nrange = [-500.0, 0.0]\n", "", r"axis\.Z\.range: found nothing"),
+        (
+            "[axis.Z]\n",
+            "[axis.Z]\ndirection = [1.0, 0.0, 0.0]\n",
+            "axis: found directions of X, Y, Z that lie in one plane",
+        ),
+        (
+            "[axis.Z]\n",
+            "[axis.Z]\ndirection = [0.0, 0.0, 0.0]\n",
+            r"axis\.Z\.direction: found a vector of length 0",
+        ),
+        ("[-500.0, 0.0]", "[-2e6, 0.0]", r"axis\.Z\.range.*greater than or equal to -1000000"),
+        ("point = [", "point = [1e7, 0.0, 0.0] # [", r"axis\.B\.point\.0.*equal to 1000000"),
+        ("[axis.Z]\n", f"[axis.Z]\nrange = [{'9' * 5000}, 0]\n", "line .*fewer digits"),
+        ("[axis.Z]\n", f"[axis.Z]\nrange = {'[' * 5000}\n", "brackets nested without end"),
     ],
 )
 def test_bad_machine(machine: Path, old: str, new: str, expected: str) -> None:
@@ -88,6 +103,13 @@ def test_bad_machine(machine: Path, old: str, new: str, expected: str) -> None:
         read_machine(machine)
     assert str(machine) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_axes_of_one_direction_are_no_fault() -> None:
+    """W beside Z, as on a boring mill, and a slanted Y: three directions are spanned."""
+    axes = {a: Axis((-100.0, 100.0)) for a in "XZW"}
+    axes["Y"] = Axis((-100.0, 100.0), None, (0.0, 0.7, 0.7))
+    assert len(make_chain("mill", "[w X' f Y Z W t]", axes).linear_axes) == 4
 
 
 def test_missing_and_cut_off(tmp_path: Path) -> None:
@@ -126,7 +148,9 @@ def test_errors_in_base_units_and_back(machine: Path, tmp_path: Path) -> None:
         ('shape = "linear"\n', "", r"EXX\.shape: found nothing"),
         ("12.0", "nan", r"EXX\.amplitude.*finite"),
         ("12.0", "'12'", r"EXX\.amplitude"),
-        ("12.0", "1e300", r"EXX\.amplitude.*1000000"),
+        ("12.0", "9" * 400, r"EXX\.amplitude"),
+        ("12.0", "1e9", r"EXX\.amplitude.*1000000"),
+        ("12.0", "1e300", r"line \d: found 1e300, expected numbers below 1e\+18"),
         ("periods = 2", "periods = 0", r"EXC\[0\]\.periods.*greater than 0"),
         ("amplitude = 12.0", "amplitudes = 12.0", "EXX"),
         ("amplitude = 12.0", "amplitude = 12.0\nphase_deg = 3.0", "only with shape"),

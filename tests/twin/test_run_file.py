@@ -22,6 +22,7 @@ range = [-300.0, 300.0]
 range = [-500.0, 0.0]
 [axis.C]
 range = [-360.0, 360.0]
+point = [0.0, 0.0, 0.0]
 [workpiece]
 origin = [0.0, 0.0, -500.0]
 """
@@ -93,7 +94,7 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
         ([ROW, ROW], "line 10: 1 row stands twice; copies are left out"),
         ([later(ROW, 5.0), later(ROW, 2.0)], "line 10: time_s goes back from 5 to 2"),
         ([ROW.replace("20.5", ""), later(ROW, 2.0)], "line 9: T_s_degC has no number in 1 row;"),
-        ([ROW.replace("20.5", "nan"), later(ROW, 2.0)], "the sensor is left out"),
+        ([ROW.replace("20.5", "nan"), later(ROW, 2.0)], "before and after it are joined by"),
         ([ROW, later(ROW, 3.0)], "T_s_degC is constant at 20.5"),
         ([ROW.replace("20.5", "-9999"), later(ROW, 2.0)], "T_s_degC reads -9999 degC"),
         ([ROW.replace("20.5", "293.6")], "T_s_degC reads 293.6 degC, as no machine does: kelvin?"),
@@ -200,3 +201,40 @@ def test_a_file_that_was_appended_to_itself_keeps_its_clock(tmp_path: Path) -> N
 def test_a_run_without_any_deviation_is_told(tmp_path: Path) -> None:
     run = read_run(write(tmp_path, [ROW + ",0"], columns=COLUMNS + ",dev_um"))
     assert "every deviation is zero: nothing was measured" in run.remarks
+
+
+def with_temperatures(cells: list[str]) -> list[str]:
+    """Rows ten seconds apart with these temperatures."""
+    return [later(ROW, 10.0 * k).replace("20.5", cell) for k, cell in enumerate(cells)]
+
+
+@pytest.mark.parametrize("gap", ["", "nan", "-9999", "inf"])
+def test_a_gap_drops_a_value_and_not_its_sensor(tmp_path: Path, gap: str) -> None:
+    """21 and 22 degC twenty seconds apart: half-way in time there were 21.5."""
+    run = read_run(write(tmp_path, with_temperatures(["20", "21", gap, "22", "23"])))
+    assert run.touches.temperature["s"] == pytest.approx([20.0, 21.0, 21.5, 22.0, 23.0])
+    (remark,) = run.remarks
+    assert remark.startswith("line 11: T_s_degC ")
+    assert remark.endswith("; the readings before and after it are joined by a line")
+
+
+def test_a_sensor_of_gaps_is_left_out(tmp_path: Path) -> None:
+    run = read_run(write(tmp_path, with_temperatures(["20", "", "", "", "23"])))
+    assert run.touches.temperature == {}
+    (remark,) = run.remarks
+    assert remark.endswith("T_s_degC has no number in 3 rows; the sensor is left out")
+
+
+def test_a_line_that_nobody_placed_is_said(tmp_path: Path) -> None:
+    path = write(tmp_path, [ROW])
+    machine = path.parent / "machine.toml"
+    text = machine.read_text(encoding="utf-8")
+    machine.write_text(text.replace("point = [0.0, 0.0, 0.0]\n", ""), encoding="utf-8")
+    remark = read_run(path).remarks[0]
+    assert remark.startswith("axis C has no point in the machine file: it is taken to turn about")
+
+
+@pytest.mark.parametrize("u", ["1e300", "1e-300", "0", "-1", "nan"])
+def test_uncertainties_that_no_touch_has_are_refused(tmp_path: Path, u: str) -> None:
+    with pytest.raises(BadFile, match=r"line 9, column u_um: found"):
+        read_run(write(tmp_path, [ROW + f",{u}"], columns=COLUMNS + ",u_um"))

@@ -7,15 +7,16 @@ the search and the reports know it from then on.
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
 from twin.effects.probe import normal_in_tool
+from twin.effects.second_time import MARK, Again, again
 from twin.effects.setup_error import setup_errors
-from twin.effects.thermal_lag import SPINDLE, ThermalLag
 
 __all__ = [
-    "SPINDLE",
+    "MARK",
+    "Again",
     "ComponentError",
     "HigherOrder",
     "LocationError",
-    "ThermalLag",
+    "again",
     "component",
     "normal_in_tool",
     "setup_errors",

@@ -3,21 +3,26 @@
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Strict
+from pydantic import Field, Strict
 
 from twin.errors import BadFile, BadValue, UnknownAxis
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.machine import Axis, Chain, make_chain
 from twin.units import DEG
 
-Vector = Annotated[tuple[float, float, float], Strict(False)]  # TOML has lists, not tuples
+KILOMETRE = 1e6
+"""In mm: nothing of a machine lies, and no axis travels, farther; degrees neither."""
+
+Coordinate = Annotated[float, Field(ge=-KILOMETRE, le=KILOMETRE)]
+Vector = Annotated[tuple[Coordinate, Coordinate, Coordinate], Strict(False)]  # TOML has lists
 Pair = Annotated[tuple[float, float], Strict(False)]
+Range = Annotated[tuple[Coordinate, Coordinate], Strict(False)]
 
 
 class AxisTable(Table):
     """`[axis.X]`: range in mm or degrees, point in mm, direction."""
 
-    range: Pair | None = None
+    range: Range | None = None
     point: Vector | None = None
     direction: Vector | None = None
 

@@ -85,4 +85,4 @@ def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
         raise table.bad(int(beyond.rows[0]), beyond.column, beyond.found, beyond.expected)
     if "tool_length_mm" not in table:
         return q, np.zeros(len(table))
-    return q, table.numbers("tool_length_mm", largest=FARTHEST)
+    return q, table.numbers("tool_length_mm", largest=FARTHEST, smallest=0.0)

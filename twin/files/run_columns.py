@@ -3,6 +3,7 @@
 import re
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.errors import BadFile
 from twin.files.pose_file import FARTHEST
@@ -12,7 +13,11 @@ from twin.machine import Chain
 from twin.record import IntArray, Labels, Moved, linear_approach
 from twin.units import DEG, UM
 
+BoolArray = NDArray[np.bool_]
+
 SENSOR = re.compile(r"T_(\w+)_degC\Z")
+OWN = re.compile(r"V_(\w+_\w+)\Z")
+"""A column of the user's own: name and unit."""
 POINT = ("px_mm", "py_mm", "pz_mm")
 NORMAL = ("nx", "ny", "nz")
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
@@ -20,8 +25,15 @@ FORCE = ("Fx_N", "Fy_N", "Fz_N")
 COLDEST, HOTTEST = -60.0, 200.0
 """Temperatures (degC) of a machine lie between; a logger writes -9999 for none."""
 
+MOST_GAPS = 0.5
+"""A sensor with gaps in a larger share of its rows is left out."""
+
 LATEST = 1e11
 """Times (s) beyond this, three thousand years, are in another unit."""
+
+FINEST, COARSEST = 1e-6, 1e4
+"""Standard uncertainties of a touch (µm) lie between: a picometre, and the largest deviation that
+is a measurement."""
 
 SKEW = 0.01
 """A normal whose length is off by more is no unit normal."""
@@ -56,18 +68,31 @@ def times(table: CsvTable) -> Array:
     return table.numbers("time_s", largest=LATEST) if "time_s" in table else np.zeros(len(table))
 
 
-def temperatures(table: CsvTable, remarks: list[str]) -> dict[str, Array]:
-    """Temperature of every sensor; one with gaps or absurd values is left out and told."""
+def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
+    """Temperature of every sensor, (N,) each; gaps are filled and told.
+
+    A value that is missing or absurd is replaced by one between its neighbours in time, linearly;
+    a sensor of which less than half is left is left out.
+
+    Args:
+        table: The table.
+        at: Time of every row, (N,), s.
+        remarks: What was noticed; more is added.
+    """
     out = {}
     for column in table.columns:
         match = SENSOR.match(column)
         if match is None:
             continue
-        values = table.numbers(column, finite=False, largest=np.inf)
-        fault = _sensor_fault(table, column, values)
-        if fault:
-            remarks.append(f"{fault}; the sensor is left out")
-            continue
+        values = table.numbers(column, empty=np.nan, finite=False, largest=np.inf)
+        gaps = ~((values >= COLDEST) & (values <= HOTTEST))
+        if gaps.any():
+            fault = _sensor_fault(table, column, values, gaps)
+            if gaps.mean() > MOST_GAPS:
+                remarks.append(f"{fault}; the sensor is left out")
+                continue
+            remarks.append(f"{fault}; the readings before and after it are joined by a line")
+            values = _filled(values, gaps, at)
         if np.ptp(values) == 0.0:
             remarks.append(
                 f"{column} is constant at {values[0]:g} degC: it cannot explain anything"
@@ -76,20 +101,43 @@ def temperatures(table: CsvTable, remarks: list[str]) -> dict[str, Array]:
     return out
 
 
-def _sensor_fault(table: CsvTable, column: str, values: Array) -> str:
-    """What is wrong with the readings of a sensor, "" if nothing is."""
-    missing = np.flatnonzero(~np.isfinite(values))
-    if len(missing):
-        line = table.lines[int(missing[0])]
-        return f"line {line}: {column} has no number in {_rows(len(missing))}"
-    absurd = np.flatnonzero((values < COLDEST) | (values > HOTTEST))
-    if not len(absurd):
-        return ""
-    first = int(absurd[0])
+def own_columns(table: CsvTable, remarks: list[str]) -> dict[str, Array]:
+    """Columns `V_name_unit` of the user's own; one with gaps is left out and told."""
+    out = {}
+    for column in table.columns:
+        match = OWN.match(column)
+        if match is None:
+            continue
+        values = table.numbers(column, finite=False, largest=np.inf)
+        missing = np.flatnonzero(~np.isfinite(values))
+        if len(missing):
+            line = table.lines[int(missing[0])]
+            gaps = f"line {line}: {column} has no number in {_rows(len(missing))}"
+            remarks.append(f"{gaps}; the column is left out")
+            continue
+        out[match.group(1)] = values
+    return out
+
+
+def _filled(values: Array, gaps: BoolArray, at: Array) -> Array:
+    """A record with values between their neighbours in the gaps; rows count where no time does."""
+    along = at if np.ptp(at) > 0.0 and np.all(np.diff(at) >= 0.0) else np.arange(len(at))
+    out = values.copy()
+    out[gaps] = np.interp(along[gaps], along[~gaps], values[~gaps])
+    return out
+
+
+def _sensor_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) -> str:
+    """What is wrong with the readings of a sensor at its gaps."""
+    first = int(np.argmax(gaps))
+    rows = _rows(int(gaps.sum()))
+    if not np.isfinite(values[gaps]).any():
+        return f"line {table.lines[first]}: {column} has no number in {rows}"
+    first = int(np.argmax(gaps & np.isfinite(values)))
     why = ": kelvin?" if np.all((values > HOTTEST) & (values < 400.0)) else ""
     return (
         f"line {table.lines[first]}: {column} reads {values[first]:g} degC, as no machine does"
-        f"{why} ({_rows(len(absurd))})"
+        f"{why} ({rows})"
     )
 
 
@@ -129,6 +177,14 @@ def approach(table: CsvTable, chain: Chain, q: Array, normal_table: Array) -> Ar
     return out
 
 
+def assumed_point(axis: str) -> str:
+    """Remark on a rotary axis whose place the machine file leaves open."""
+    return (
+        f"axis {axis} has no point in the machine file: it is taken to turn about a line through "
+        "the origin of the machine"
+    )
+
+
 def uncertainties(table: CsvTable, common: float | None) -> Array:
     """Standard uncertainty of every row, (N,), mm: its own, else the head's (µm)."""
     if common is None and "u_um" not in table:
@@ -136,9 +192,10 @@ def uncertainties(table: CsvTable, common: float | None) -> Array:
     if "u_um" not in table:
         return np.full(len(table), common) * UM
     u = table.numbers("u_um", empty=common)
-    if np.any(u <= 0.0):
-        row = int(np.argmax(u <= 0.0))
-        raise table.bad(row, "u_um", f"{u[row]:g}", "a positive number of µm")
+    wrong = (u < FINEST) | (u > COARSEST)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise table.bad(row, "u_um", f"{u[row]:g}", f"a number of {FINEST:g} to {COARSEST:g} µm")
     return u * UM
 
 

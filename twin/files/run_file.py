@@ -12,7 +12,7 @@ from twin.files.machine_file import Vector, read_machine
 from twin.files.pose_file import FARTHEST, reading_columns, readings
 from twin.files.run_checks import checked_run
 from twin.files.table import CsvTable
-from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.files.toml import Table, check_format, checked, is_file, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
 from twin.machine import Chain
 from twin.record import Instrument, IntArray, Run, Setup, Touches, aligned, computed_deviation
@@ -35,7 +35,7 @@ class ProbeTable(Table):
     """`probe`: radius of the ball and length from the gauge point to its centre, mm."""
 
     radius_mm: float = Field(ge=0.0, le=FARTHEST)
-    length_mm: float = Field(ge=-FARTHEST, le=FARTHEST)
+    length_mm: float = Field(ge=0.0, le=FARTHEST)
 
 
 class SetupTable(Table):
@@ -57,7 +57,7 @@ class HeadTable(Table):
     machine: str
     probe: ProbeTable
     instrument: Instrument = Field(default=Instrument.TOUCH_PROBE, strict=False)
-    u_um: float | None = Field(default=None, gt=0.0)
+    u_um: float | None = Field(default=None, ge=columns.FINEST, le=columns.COARSEST)
     setup: dict[str, SetupTable] = Field(default_factory=dict)
 
 
@@ -85,7 +85,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     _check_columns(table, chain)
     if not len(table):
         raise BadFile(path, "table", "no rows", "a row a touch")
-    remarks: list[str] = []
+    remarks = [columns.assumed_point(axis) for axis in chain.assumed_points]
     run = _assemble(table, chain, head, remarks)
     placed, moved = aligned(run)
     run = replace(placed, deviation=run.deviation) if "dev_um" in table else placed
@@ -113,7 +113,7 @@ def _split_head(text: str, path: str | Path) -> tuple[str, str, int]:
 def _machine(path: str | Path, named: str) -> Chain:
     """The machine that the head of a run file names, by a path relative to that file."""
     place = Path(path).parent / named
-    if not place.is_file():
+    if not is_file(place):
         found = f"{named!r}, and {place} is no file"
         raise BadFile(path, "machine", found, "the path of a machine file, seen from this file")
     return read_machine(place)
@@ -123,9 +123,9 @@ def _check_columns(table: CsvTable, chain: Chain) -> None:
     """Needed columns are there, and none that nobody understands."""
     names = [column for column, _ in reading_columns(chain).values()]
     directions = [f"dir{axis}" for axis in chain.axes]
-    sensors = [c for c in table.columns if columns.SENSOR.match(c)]
+    sensors = [c for c in table.columns if columns.SENSOR.match(c) or columns.OWN.match(c)]
     known = [*names, *columns.POINT, *columns.NORMAL, *_OPTIONAL, *columns.FORCE]
-    table.allow_only([*known, *directions, *sensors], " or T_<sensor>_degC")
+    table.allow_only([*known, *directions, *sensors], " or T_<sensor>_degC or V_<name>_<unit>")
     needed = [reading_columns(chain)[axis][0] for axis in chain.programmed_axes]
     table.require([*needed, *columns.POINT, *columns.NORMAL])
 
@@ -135,6 +135,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
     n = len(table)
     q = readings(table, chain)
     setups, setup = _setups(table, head)
+    time = columns.times(table)
     touches = Touches(
         chain=chain,
         q=q,
@@ -145,13 +146,14 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         normal=columns.normals(table, remarks),
         setups=setups,
         setup=setup,
-        time=columns.times(table),
+        time=time,
         approach=np.zeros(q.shape),
-        temperature=columns.temperatures(table, remarks),
+        temperature=columns.temperatures(table, time, remarks),
         spindle_rpm=table.numbers("spindle_rpm") if "spindle_rpm" in table else None,
         force=columns.force(table),
         feature=np.array(table.text("feature") if "feature" in table else [""] * n),
         pose=columns.poses(table, chain, q, setup),
+        value=columns.own_columns(table, remarks),
     )
     signs = columns.approach(table, chain, q, touches.normal_table)
     touches = replace(touches, approach=signs)

@@ -73,6 +73,7 @@ def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
     columns |= {n: _cells(t.normal[:, i], 12) for i, n in enumerate(NORMAL)}
     columns |= {f"dir{axis}": _cells(t.last_move(axis), 0) for axis in _stated_directions(run)}
     columns |= {f"T_{sensor}_degC": _cells(v, 3) for sensor, v in t.temperature.items()}
+    columns |= {f"V_{name}": [f"{v:.9g}" for v in values] for name, values in t.value.items()}
     columns |= _optional_columns(run, common_u)
     # the deviation is in the readings, but only to their digits; instruments state it themselves
     columns["dev_um"] = _cells(run.deviation / UM, 6)

@@ -111,7 +111,7 @@ def read_sensors(path: str | Path) -> SensorRecord:
         if i and clock[i] <= clock[i - 1]:
             raise table.bad(i, "clock", cell, "a later reading in every row")
     remarks: list[str] = []
-    found = temperatures(table, remarks)
+    found = temperatures(table, clock, remarks)
     speed = table.numbers("spindle_rpm") if "spindle_rpm" in table else None
     if not found and speed is None:
         found_words = "; ".join(remarks) or f"columns {', '.join(table.columns)}"

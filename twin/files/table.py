@@ -100,6 +100,7 @@ class CsvTable:
         empty: float | None = None,
         finite: bool = True,
         largest: float = LARGEST,
+        smallest: float = -math.inf,
     ) -> Array:
         """Column as numbers, (N,).
 
@@ -108,6 +109,7 @@ class CsvTable:
             empty: What an empty cell means; None refuses it.
             finite: Whether NaN and infinity are refused.
             largest: Numbers beyond this, of either sign, are refused as slips.
+            smallest: Numbers below this are refused.
 
         Raises:
             BadFile: Line, what stood there.
@@ -128,6 +130,8 @@ class CsvTable:
                 raise self.bad(i, name, cell, "a finite number")
             if abs(out[i]) > largest and math.isfinite(out[i]):
                 raise self.bad(i, name, cell, f"at most {largest:.6g}")
+            if out[i] < smallest:
+                raise self.bad(i, name, cell, f"{smallest:g} or more")
         return out
 
     def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:

@@ -1,5 +1,6 @@
 """TOML at the border: read with one clear line for whatever is wrong in it."""
 
+import math
 import re
 import tomllib
 from pathlib import Path
@@ -19,6 +20,10 @@ _NO_TEXT = {
 }
 """How files begin that users take for text, and what they are."""
 
+LARGEST = 1e18
+"""No number of a file of ours is larger; the product of two such is a floating number still."""
+
+_MANY_DIGITS = re.compile(r"[\d_]{4300,}")
 _TWICE = re.compile(r"Cannot declare \((.+?),?\) twice")
 
 _DECIMAL_COMMA = re.compile(r"=\s*-?\d+,\d+\s*$")
@@ -39,8 +44,9 @@ def read_text(path: str | Path) -> str:
     """Text of a user's file; raises BadFile if it is missing or not UTF-8."""
     try:
         data = Path(path).read_bytes()
-    except OSError as error:
-        raise BadFile(path, "file", error.strerror, "a file that can be read") from error
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
+        found = getattr(error, "strerror", None) or str(error)
+        raise BadFile(path, "file", found, "a file that can be read") from error
     for begin, what in _NO_TEXT.items():
         if data.startswith(begin):
             raise BadFile(path, "file", what, "a text file (UTF-8)")
@@ -52,6 +58,14 @@ def read_text(path: str | Path) -> str:
             raise BadFile(path, "file", "no text", "a text file (UTF-8)") from error
         found = f"byte {data[error.start]:#04x}, which is no UTF-8"
         raise BadFile(path, f"line {line}", found, "text saved as UTF-8") from error
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is such a file; a name that the system cannot take has none."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
 
 
 def _one_line_end(text: str) -> str:
@@ -74,9 +88,25 @@ def parse_toml(
         BadFile: The line, what stood there, what was expected.
     """
     try:
-        return tomllib.loads(text)
+        return tomllib.loads(text, parse_float=_moderate)
     except tomllib.TOMLDecodeError as error:
         raise _no_toml(error, text, path, first_line, twice) from error
+    except RecursionError:
+        raise BadFile(path, "file", "brackets nested without end", "a valid TOML file") from None
+    except ValueError as error:  # Python converts no whole number of more than 4300 digits
+        long = _MANY_DIGITS.search(text)
+        literal = long.group() if long else str(error)
+        line = first_line + text.count("\n", 0, max(text.find(literal), 0))
+        expected = "a number of fewer digits" if long else f"numbers below {LARGEST:g}"
+        raise BadFile(path, f"line {line}", literal, expected) from None
+
+
+def _moderate(literal: str) -> float:
+    """A number that may be squared without overflow; NaN and infinity are for the models."""
+    value = float(literal)
+    if LARGEST < abs(value) < math.inf:
+        raise ValueError(literal)
+    return value
 
 
 def _no_toml(
@@ -141,7 +171,11 @@ def _as_bad_file(
         table = ".".join(key.split(".")[:-1]) or "file"
         return BadFile(path, table, "nothing for several keys", f"the keys {', '.join(lacking)}")
     message = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
-    return BadFile(path, key, repr(first["input"]), message)
+    try:
+        shown = repr(first["input"])
+    except (RecursionError, ValueError):  # lists without end, a number of thousands of digits
+        shown = f"a {type(first['input']).__name__} too large to show"
+    return BadFile(path, key, shown, message)
 
 
 def _keys(model: type[BaseModel], steps: list[str]) -> dict[str, Any]:

@@ -14,10 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from twin.effects import (
+    MARK,
+    Again,
     artefact,
     artefact_form,
     backlash,
-    column_bending,
     coupling,
     geometric,
     gravity,
@@ -25,14 +26,20 @@ from twin.effects import (
     periodic,
     probe,
     stiffness,
-    thermal_expansion,
-    thermal_lag,
 )
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.library.trial import users_fault
 from twin.machine import Chain
 from twin.model import Effect, Kind, Tunable, columns
 from twin.record import Touches
+from twin.thermal import (
+    column_bending,
+    follows,
+    thermal_expansion,
+    thermal_field,
+    thermal_lag,
+    thermal_static,
+)
 from twin.units import NM
 from twin.words import listed, nearest
 
@@ -102,12 +109,15 @@ def kinds() -> tuple[Kind, ...]:
 
 
 def parse_effect(text: str, chain: Chain) -> Effect:
-    """Effect of a name such as `backlash(X)`, `thermal-lag(EZZ,spindle_rpm)`, `probe-lobing`.
+    """Effect of a name such as `backlash(X)`, `thermal-lag(EZZ,bed)#2`, `probe-lobing`.
 
     Raises:
         UnknownEffect: No such kind, or arguments that it does not take.
         UnknownAxis, UnknownSymbol: An axis or error parameter that the machine does not have.
     """
+    whole, mark, number = text.strip().rpartition(MARK)
+    if mark:
+        return _parse_again(whole, number, text, chain)
     match = _NAME.match(text)
     kind = _REGISTER.get(match.group(1)) if match else None
     if match is None or kind is None:
@@ -115,6 +125,18 @@ def parse_effect(text: str, chain: Chain) -> Effect:
     inside = match.group(2)
     arguments = [a.strip() for a in inside.split(",")] if inside and inside.strip() else []
     return kind.make(chain, arguments)
+
+
+def _parse_again(whole: str, number: str, text: str, chain: Chain) -> Effect:
+    """Effect of a name that ends in #2; raises UnknownEffect."""
+    effect = parse_effect(whole, chain)
+    if not number.isdecimal() or int(number) < 2:
+        raise UnknownEffect(f"effect '{text}': expected a number from 2 after {MARK}")
+    if not isinstance(effect, Tunable):
+        raise UnknownEffect(
+            f"effect '{text}': {effect.kind} has no inner parameter, so a second one is the first"
+        )
+    return Again(effect, int(number))
 
 
 def _unknown(text: str, chain: Chain) -> UnknownEffect:
@@ -249,6 +271,9 @@ for _kind in (
     periodic.KIND,
     thermal_expansion.KIND,
     thermal_lag.KIND,
+    thermal_static.KIND,
+    thermal_field.KIND,
+    follows.KIND,
     column_bending.KIND,
     gravity.KIND,
     stiffness.KIND,

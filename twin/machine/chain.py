@@ -24,6 +24,13 @@ _TOKEN = re.compile(r"([XYZUVWABCS]\d?)('?)\Z")
 _SAME = 1e-6
 """Two machines whose numbers differ by less (mm, rad) are the same."""
 
+SHORTEST = 1e-6
+"""A direction that is shorter is none."""
+
+FLATTEST = 0.01
+"""Smallest singular value of the directions of linear axes: below, two of three axes stand within
+about a degree of one another."""
+
 SPINDLE_RANGE = (-360.0 * DEG, 360.0 * DEG)
 """Range of a bracketed spindle whose machine file says nothing about it, rad."""
 
@@ -90,12 +97,15 @@ class Chain:
         notation: ISO chain notation as the user wrote it.
         links: `w` first, `t` last, without the foundation.
         table_origin: Origin of the table frame, machine frame with every axis at zero, (3,), mm.
+        assumed_points: Rotary axes of which nobody said where their line is: they are taken to
+            turn about lines through the machine's origin.
     """
 
     name: str
     notation: str
     links: tuple[Link, ...]
     table_origin: Array = field(default_factory=lambda: np.zeros(3))
+    assumed_points: tuple[str, ...] = ()
 
     @cached_property
     def axes(self) -> tuple[str, ...]:
@@ -273,8 +283,23 @@ def make_chain(
     origin = np.array(table_origin, dtype=float)
     links = [Link("w", "fixed", True, zero, origin, (0.0, 0.0))]
     links += [_make_link(n, primed, prog, axes.get(n, Axis())) for n, primed, prog in parsed]
+    _check_directions([link for link in links if link.kind == "linear"])
     links.append(Link("t", "fixed", False, zero, zero, (0.0, 0.0)))
-    return Chain(name, notation, tuple(links), origin)
+    rotary = [link.name for link in links if link.kind == "rotary" and link.programmed]
+    assumed = tuple(n for n in rotary if axes.get(n, Axis()).point is None)
+    return Chain(name, notation, tuple(links), origin, assumed)
+
+
+def _check_directions(linear: list[Link]) -> None:
+    """Refuse linear axes of different letters that move in one plane, or along one line."""
+    letters = {link.own for link in linear}
+    if len(letters) < 2:
+        return
+    strength = np.linalg.svd(np.array([link.direction for link in linear]), compute_uv=False)
+    if len(strength) < len(letters) or strength[len(letters) - 1] < FLATTEST:
+        names = ", ".join(link.name for link in linear)
+        where = "in one plane" if len(letters) == 3 else "along one line"
+        raise BadValue("axis", f"directions of {names} that lie {where}", "directions that span")
 
 
 def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
@@ -290,7 +315,7 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
     own = np.eye(3)["XYZ".index(_ALONG[name[0]])]
     direction = own if axis.direction is None else np.array(axis.direction, dtype=float)
     length = float(np.linalg.norm(direction))
-    if not length > 0.0:
-        raise BadValue(f"axis.{name}.direction", "a vector of length zero", "a unit vector")
+    if not length > SHORTEST:
+        raise BadValue(f"axis.{name}.direction", f"a vector of length {length:g}", "a unit vector")
     point = np.array(axis.point or (0.0, 0.0, 0.0), dtype=float)
     return Link(name, kind, primed, direction / length, point, reach, programmed)

@@ -21,12 +21,17 @@ SAME_PLACE = 0.05
 """Touches whose readings lie within this (mm, or mrad) at one calibrated point are repeated."""
 
 
+COARSE = 8
+"""Rows for every different deviation from which the reading is coarse; a file is rarely pasted
+under itself more often than that."""
+
+
 def without_copies(run: Run) -> Run:
     """The run without copied rows, and a remark that says so; the run itself if there are none.
 
     A row that stands twice, its time included, is a copy. So are rows that agree with earlier ones
-    in every reading and in the deviation to the last digit at other times, if most touches that are
-    repeated do: the noise of real ones differs.
+    in all columns but the time to the last digit, if most touches that are repeated do: the noise
+    of real ones differs, unless it is read too coarsely to show.
 
     Example:
         A file that was pasted twice under itself counts once.
@@ -37,7 +42,8 @@ def without_copies(run: Run) -> Run:
         out = out[~same]
         remarks.append(_words(run, same, "stand twice" if same.sum() > 1 else "stands twice"))
     again = _copies(out, with_time=False)
-    if again.sum() >= FEWEST and again.sum() > MOSTLY * _repeated(out):
+    is_odd = again.sum() >= FEWEST and again.sum() > MOSTLY * _repeated(out)
+    if is_odd and not _coarse(out):
         remarks.append(
             _words(out, again, "repeat the readings and the deviation of earlier rows exactly")
         )
@@ -48,7 +54,9 @@ def without_copies(run: Run) -> Run:
 def _copies(run: Run, with_time: bool) -> BoolArray:
     """Rows that agree with an earlier one in everything measured, (N,)."""
     t = run.touches
-    key = [t.q, t.point, t.normal, t.setup, run.deviation]
+    recorded = [*t.temperature.values(), *t.value.values()]
+    recorded += [v for v in (t.spindle_rpm, t.force) if v is not None]
+    key = [t.q, t.point, t.normal, t.setup, t.approach, *recorded, run.deviation]
     return _later(np.column_stack([*key, t.time] if with_time else key))
 
 
@@ -58,6 +66,11 @@ def _repeated(run: Run) -> int:
     scale = np.array([1.0 if link == "linear" else 1e-3 for link in _kinds(run)]) * SAME_PLACE
     cells = np.round(t.q / scale)
     return int(_later(np.column_stack([cells, np.round(t.point / NM), t.setup])).sum())
+
+
+def _coarse(run: Run) -> bool:
+    """Whether deviations are read in steps so large that equal ones mean nothing."""
+    return len(np.unique(run.deviation)) * COARSE < len(run)
 
 
 def _kinds(run: Run) -> list[str]:

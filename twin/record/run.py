@@ -6,13 +6,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from twin.display import Shown
 from twin.errors import ShapeMismatch
 from twin.frames import Array
 from twin.record.touches import IntArray, Labels, Touches
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
+@dataclass(frozen=True, eq=False, repr=False)
+class Run(Shown):
     """Measurements: touches with their deviations and standard uncertainties.
 
     Attributes:

@@ -69,6 +69,7 @@ class Touches:
         feature: Label of the touched feature, (N,).
         pose: Label of the table pose, (N,).
         instrument: What measured them all.
+        value: Columns of the user's own by name and unit (`coolant_l_min`), each (N,).
     """
 
     chain: Chain
@@ -87,6 +88,7 @@ class Touches:
     feature: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
     pose: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     instrument: Instrument = Instrument.TOUCH_PROBE
+    value: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = len(checked_readings(self.chain, self.q))
@@ -101,6 +103,9 @@ class Touches:
         for sensor, value in self.temperature.items():
             if len(value) != n:
                 raise ShapeMismatch(f"temperature {sensor} has {len(value)} rows, expected {n}")
+        for name, value in self.value.items():
+            if len(value) != n:
+                raise ShapeMismatch(f"column {name} has {len(value)} rows, expected {n}")
 
     def __len__(self) -> int:
         return len(self.q)
@@ -113,7 +118,8 @@ class Touches:
             if getattr(self, name) is not None
         }
         temperature = {sensor: value[rows] for sensor, value in self.temperature.items()}
-        return replace(self, temperature=temperature, **picked)
+        own = {name: value[rows] for name, value in self.value.items()}
+        return replace(self, temperature=temperature, value=own, **picked)
 
     def reading(self, axis: str) -> Array:
         """Readings of one axis, (N,), mm or rad; raises UnknownAxis."""
@@ -154,7 +160,8 @@ class Touches:
         return Signature(self.reach, self.normal_table)
 
 
-_COMMON = ("chain", "setups", "temperature", "instrument")
+_MAPS = ("temperature", "value")
+_COMMON = ("chain", "setups", "instrument", *_MAPS)
 _PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
 
 

@@ -7,9 +7,7 @@ from typing import Any
 
 from artefact.compare import Alternative, IdentifiabilityReport
 from information.identifiability import Degree
-from report.numbers import shown
-from report.words.artefact_words import alternative_words
-from report.words.identifiability_words import (
+from report.identifiability.identifiability_words import (
     combination_words,
     degree_words,
     freedom_words,
@@ -18,7 +16,9 @@ from report.words.identifiability_words import (
     reason_words,
     resolution_words,
 )
-from report.words.parameter_words import in_words, short
+from report.identifiability.parameter_words import in_words, short
+from report.numbers import shown
+from report.words import alternative_words
 from twin.files import write_whole
 from twin.machine import Chain, Link
 from twin.units import DEG
@@ -27,7 +27,7 @@ FORMAT = "identifiability/1"
 """Of the file."""
 
 
-def as_json(known: IdentifiabilityReport) -> dict[str, Any]:
+def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:
     """The record as plain data, units in the names of the keys."""
     g, chain = known.gauge, known.chain
     names = [short(name) for name in known.model.names]
@@ -109,4 +109,4 @@ def _rounded(value: float) -> float:
 
 def write_identifiability(path: Path, known: IdentifiabilityReport) -> None:
     """Write the record as a JSON file, whole or not at all."""
-    write_whole(path, json.dumps(as_json(known), indent=1, ensure_ascii=False) + "\n")
+    write_whole(path, json.dumps(identifiability_table(known), indent=1, ensure_ascii=False) + "\n")

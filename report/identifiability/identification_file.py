@@ -7,15 +7,17 @@ from typing import Any
 
 from diagnosis.answer import Proof
 from diagnosis.fit import Estimable, Fit, estimable
+from report.identifiability.identifiability_words import combination_words, freedom_words
 from report.numbers import shown
-from report.words.identifiability_words import combination_words, freedom_words
 from twin.files import write_whole
 from twin.units import UM
 
 FORMAT = "identification/1"
 
 
-def identification(fit: Fit, known: Estimable, proofs: Sequence[Proof] = ()) -> dict[str, Any]:
+def identification_table(
+    fit: Fit, known: Estimable, proofs: Sequence[Proof] = ()
+) -> dict[str, Any]:
     """Everything of `identification.json` in the units that stand in its names.
 
     Args:
@@ -68,6 +70,6 @@ def _value(name: str, value: float, u: float, unit: str) -> dict[str, Any]:
 def write_identification(path: str | Path, fit: Fit, proofs: Sequence[Proof] = ()) -> Estimable:
     """Write identification.json, whole or not at all; returns what the fit determines."""
     known = estimable(fit)
-    text = json.dumps(identification(fit, known, proofs), indent=1, ensure_ascii=False)
+    text = json.dumps(identification_table(fit, known, proofs), indent=1, ensure_ascii=False)
     write_whole(path, text + "\n")
     return known

@@ -18,8 +18,8 @@ from information.identifiability import (
     Resolution,
     Term,
 )
+from report.identifiability.parameter_words import in_words
 from report.numbers import shown
-from report.words.parameter_words import in_words
 from twin.frames import Array
 from twin.machine import Chain
 

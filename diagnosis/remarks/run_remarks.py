@@ -103,8 +103,49 @@ class SearchEnded:
     sets: float
 
 
+@dataclass(frozen=True, slots=True)
+class NoiseRemembers:
+    """Noise with memory, or a slow residual.
+
+    Attributes:
+        correlation: From one touch to the next, or over `step`.
+        step: Time over which it is stated, s; 0 for from touch to touch.
+        by_place: Whether touches remember the last one at the same place.
+        rows: Touches used.
+        independent: As many independent ones they count as.
+        is_noise: Whether it is a property of the noise, rather than something slow that is left.
+    """
+
+    correlation: float
+    step: float
+    by_place: bool
+    rows: int
+    independent: float
+    is_noise: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenByPrediction:
+    """Ways that were tried with their plain errors of blocks left out, mm, and the one chosen."""
+
+    chosen: str
+    blocks: int
+    ways: tuple[tuple[str, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FieldShares:
+    """What drives of a field of one axis explain, rms in mm, the largest first."""
+
+    axis: str
+    sizes: tuple[tuple[str, float], ...]
+
+
 Remark = (
     UnitMistake
+    | NoiseRemembers
+    | ChosenByPrediction
+    | FieldShares
     | ReaderRemark
     | FewTouches
     | FewDegreesOfFreedom
@@ -124,6 +165,7 @@ def remarks(fit: Fit) -> tuple[Remark, ...]:
     units = unit_mistake(fit)
     out: list[Remark] = [] if units is None else [units]
     out += [ReaderRemark(text) for text in fit.run.remarks]
+    out += _memory(fit)
     out += _touches(fit)
     out += ([] if units else _noise(fit)) + _outliers(fit)
     if fit.widened > 1.0:
@@ -139,7 +181,7 @@ def _touches(fit: Fit) -> list[Remark]:
         out.append(FewTouches(n, p))
     if fit.solution.dof < FEW_DOF:
         out.append(FewDegreesOfFreedom(fit.solution.dof))
-        ratio = fit.test_rms / float(np.sqrt(np.mean(fit.run.u**2)))
+        ratio = fit.freed_rms / float(np.sqrt(np.mean(fit.run.u**2)))
         if ratio > DOUBTFUL:
             out.append(HeldOutInDoubt(ratio))
     t = fit.run.touches
@@ -147,6 +189,24 @@ def _touches(fit: Fit) -> list[Remark]:
     if poses < MIN_POSES:
         out.append(FewPoses(poses))
     return out
+
+
+def _memory(fit: Fit) -> list[Remark]:
+    """Noise that remembers, or a residual that is slow."""
+    memory = fit.memory
+    if memory is None:
+        return []
+    rows = int(fit.used.sum())
+    return [
+        NoiseRemembers(
+            correlation=memory.correlation,
+            step=memory.step,
+            by_place=memory.by_place,
+            rows=rows,
+            independent=rows / memory.per_independent,
+            is_noise=memory.is_filtered,
+        )
+    ]
 
 
 def _noise(fit: Fit) -> list[Remark]:

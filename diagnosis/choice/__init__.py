@@ -1,0 +1,22 @@
+"""Choice by prediction: of several ways to explain a run, the one that predicts unseen rows best.
+
+In goes what the search found, with its task; out comes a `Choice` (the ways that were tried, each
+with its plain error of blocks left out, the choice made anew without each block) and the set that
+was chosen, which from here on is the set that is told, drawn and saved. Blocks follow how the data
+are correlated: poses, set-ups, stretches of time longer than the memory of what is left.
+"""
+
+from diagnosis.choice.following import field_shares, followed, ways_tried
+from diagnosis.choice.prediction import Choice, Way, chosen_by_prediction, offered
+from diagnosis.choice.remembering import remembered
+
+__all__ = [
+    "Choice",
+    "Way",
+    "chosen_by_prediction",
+    "field_shares",
+    "followed",
+    "offered",
+    "remembered",
+    "ways_tried",
+]

@@ -1,0 +1,59 @@
+"""What is left out together, so that what predicts it has not seen it."""
+
+import numpy as np
+
+from diagnosis.fit import MIN_POSES, Fit, Memory
+from twin.frames import Array
+from twin.record import IntArray
+
+MOST = 6
+"""Blocks of a choice by prediction: each is one more search."""
+
+LENGTHS = 3.0
+"""Times that a block is longer than the memory of the residual: 5 % are left at its middle."""
+
+
+def blocks(fit: Fit, memory: Memory | None) -> tuple[IntArray, ...]:
+    """Rows of a run that are left out together.
+
+    Poses of a set-up, or whatever the run calls a pose (a cycle, a day), several together where
+    there are many; stretches of time where they are fewer than `MIN_POSES` or shorter than the
+    residual remembers.
+
+    Args:
+        fit: Any fit of the run.
+        memory: Of what it leaves; None for none.
+    """
+    t = fit.run.touches
+    rows = np.flatnonzero(fit.used)
+    order = np.argsort(t.time[rows], kind="stable")
+    key = np.column_stack([t.setup, t.pose])[rows]
+    label = np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
+    count = int(label.max()) + 1
+    middle = [float(np.median(t.time[rows][label == k])) for k in range(count)]
+    label = np.argsort(np.argsort(middle, kind="stable"))[label]  # numbered as they came
+    remembered = _touches(fit, memory)
+    if count >= MIN_POSES and len(rows) / count >= LENGTHS * remembered:
+        merged = label * min(count, MOST) // count
+        return tuple(rows[merged == k] for k in range(int(merged.max()) + 1))
+    several = int(np.clip(len(rows) / max(LENGTHS * remembered, 1.0), MIN_POSES, MOST))
+    return tuple(np.sort(rows[part]) for part in np.array_split(order, several))
+
+
+def _touches(fit: Fit, memory: Memory | None) -> float:
+    """Rows of the fit over which a residual is remembered."""
+    if memory is None:
+        return 0.0
+    if memory.time is not None:
+        span = float(np.ptp(fit.run.touches.time[fit.used]))
+        return memory.time / max(span, 1e-9) * int(fit.used.sum())
+    places = 1
+    if memory.by_place:
+        t = fit.run.touches
+        places = len(np.unique(np.column_stack([t.point, t.normal])[fit.used], axis=0))
+    return memory.length * places
+
+
+def rms(errors: Array) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.asarray(errors) ** 2)))

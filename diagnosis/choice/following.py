@@ -1,0 +1,138 @@
+"""The way that predicts best, followed: the set that was weighed is the set told and saved."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import ttest_1samp
+
+from diagnosis.choice.prediction import Choice, Way
+from diagnosis.choice.remembering import LOUDEST
+from diagnosis.evidence import (
+    Grid,
+    Progress,
+    ResidualSpace,
+    ScaledEffect,
+    Signatures,
+    quiet,
+    signatures,
+)
+from diagnosis.fit import Fit, Memory
+from diagnosis.remarks import ChosenByPrediction, FieldShares
+from diagnosis.residual import find_structure
+from diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
+from twin.model import Effect, columns
+from twin.thermal import LETTERS, ThermalField
+
+LISTED = 6
+"""Drives of a field that are told."""
+
+FEWEST = 30.0
+"""Independent observations that a run with a slow residual is taken to hold at least: a memory as
+long as the run has no length that the run could tell."""
+
+
+def followed(
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    final: SearchState,
+    choice: Choice,
+    candidates: Sequence[Effect],
+    progress: Progress = quiet,
+) -> tuple[DiagnosisTask, SearchState]:
+    """The task with rows that count as independent observations, and the chosen set in it.
+
+    Args:
+        task: What is diagnosed.
+        added: Effects that the user added.
+        final: Result of the search.
+        choice: Which way predicts best.
+        candidates: Effects that may be found, for what cannot be told apart.
+        progress: Told of every stage.
+    """
+    gross, best = final.base.gross, choice.best
+    plain = task.fit((*added, *best.effects), gross)
+    task = replace(task, memory=_slow(choice.memory, int(plain.used.sum())))
+    base = task.fit(added, gross)
+    # rows count for less, so a prior that was chosen beside whole rows must be wider by as much
+    effects = tuple(_wider(s, base.weight) for s in best.effects)
+    library = Library.of(ResidualSpace.of(base), candidates, progress)
+    search = Search(_pool(library, effects), None, progress)
+    members = [Member(*_place(search.pool, s), s.effect, s.scale) for s in effects]
+    chosen = search.evaluate(members)
+    left = find_structure(chosen.effects, progress)
+    if not left and plain.noise.factor > LOUDEST:
+        left = list(final.left or final.nameless)
+    shrunk = {s.effect.name: _chance(choice) for s in effects if _is_shrunk(s)}
+    nothing = find_structure(search.evaluate(()).effects, progress)
+    return task, SearchState(
+        base,
+        library,
+        search,
+        chosen,
+        effects,
+        tuple(nothing) or final.at_start,
+        tuple(left),
+        (),
+        shrunk,
+        is_weighed=True,
+    )
+
+
+def _slow(memory: Memory | None, rows: int) -> Memory | None:
+    """A memory by which rows count, not by which they are filtered."""
+    if memory is None:
+        return None
+    most = max(rows / FEWEST, 1.0)
+    correlation = min(memory.correlation, (most - 1.0) / (most + 1.0))
+    return replace(memory, correlation=correlation, is_filtered=False) if correlation > 0 else None
+
+
+def _is_shrunk(sized: ScaledEffect) -> bool:
+    return bool(getattr(sized.effect, "is_shrunk", False))
+
+
+def _wider(sized: ScaledEffect, weight: float) -> ScaledEffect:
+    return replace(sized, scale=sized.scale * weight) if _is_shrunk(sized) else sized
+
+
+def _pool(library: Library, effects: Sequence[ScaledEffect]) -> Signatures:
+    """Signatures of the chosen effects as they are, and of all other candidates of a usual run."""
+    names = {s.effect.name for s in effects}
+    tries = {g.effect.name: g.tries for g in library.grids}
+    own = [Grid(s.effect, (s.effect,), tries.get(s.effect.name, 1)) for s in effects]
+    others = [g for g in library.grids if g.effect.name not in names] if library.is_whole else []
+    return signatures(library.complement, [*own, *others], len(library.grids))
+
+
+def _place(pool: Signatures, sized: ScaledEffect) -> tuple[int, int]:
+    """Variant and candidate of an effect in a pool."""
+    variant = next(i for i, e in enumerate(pool.variants) if e.name == sized.effect.name)
+    return variant, int(pool.owner[variant])
+
+
+def _chance(choice: Choice) -> float:
+    """Probability by chance that left-out blocks are predicted so much better than by nothing.
+
+    Student's test of the logarithms of the errors, block by block: of few blocks it can never be
+    small, and that is honest.
+    """
+    nothing: Way = choice.ways[0]
+    gain = np.log(nothing.errors / choice.best.errors)
+    return float(ttest_1samp(gain, 0.0, alternative="greater").pvalue)
+
+
+def field_shares(fit: Fit, effect: ThermalField) -> FieldShares:
+    """What every drive of a field explains of the deviations, the most first."""
+    theta = fit.theta[fit.of_effect(effect.name)]
+    C = columns([effect], fit.run.touches)[fit.used] * theta
+    places = [drive for _ in LETTERS for drive, _ in effect.places]
+    sizes = {d: float(np.std(C[:, [p == d for p in places]].sum(axis=1))) for d in effect.drives}
+    ranked = sorted(sizes.items(), key=lambda item: -item[1])
+    return FieldShares(effect.axis, tuple(ranked[:LISTED]))
+
+
+def ways_tried(choice: Choice) -> ChosenByPrediction:
+    """Every way of a choice with its plain error of blocks left out."""
+    ways = tuple((w.name, w.error) for w in choice.ways)
+    return ChosenByPrediction(choice.best.name, choice.blocks, ways)

@@ -1,0 +1,54 @@
+"""Which effects of a set are needed to predict what it has not seen."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, projected
+from twin.effects import Again
+from twin.record import IntArray
+
+
+def needed(
+    complement: ResidualSpace, effects: Sequence[ScaledEffect], groups: Sequence[IntArray]
+) -> tuple[ScaledEffect, ...]:
+    """The set without effects that do not lower the error of blocks left out, the worst first.
+
+    Args:
+        complement: What the model without them leaves.
+        effects: The set, at inner parameters found with all rows in use.
+        groups: Rows of the run in every block; those not in use are passed over.
+    """
+    place = np.full(len(complement.used), -1)
+    place[complement.used] = np.arange(int(complement.used.sum()))
+    inside = tuple(g for g in (place[rows][place[rows] >= 0] for rows in groups) if len(g))
+    by_block = replace(complement, groups=inside)
+    out = list(effects)
+    error = _error(by_block, out)
+    while out:
+        without = [_error(by_block, out[:i] + out[i + 1 :]) for i in range(len(out))]
+        i = int(np.argmin(without))
+        if without[i] > error:
+            break
+        error = without[i]
+        out.pop(i)
+    return _renumbered(out)
+
+
+def _error(complement: ResidualSpace, effects: Sequence[ScaledEffect]) -> float:
+    """Plain root mean square error of blocks left out, mm."""
+    left = EffectSet(complement, projected(complement, effects)).held_out
+    return float(np.sqrt(np.mean((left.error * complement.u) ** 2)))
+
+
+def _renumbered(effects: Sequence[ScaledEffect]) -> tuple[ScaledEffect, ...]:
+    """No effect is a second one without a first."""
+    names = {s.effect.name for s in effects}
+    out = []
+    for sized in effects:
+        effect = sized.effect
+        if isinstance(effect, Again) and effect.effect.name not in names:
+            sized = replace(sized, effect=effect.effect)
+        out.append(sized)
+    return tuple(out)

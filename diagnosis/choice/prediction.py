@@ -1,0 +1,213 @@
+"""Choice by prediction: of several ways to explain a run the one that predicts unseen rows best.
+
+A search finds what fits. Where sensors share what they know, or where something is left that no
+effect explains, what fits best need not predict best, and the error of held-out rows flatters a set
+that was chosen with all rows in sight. So every *way of choosing* is judged as a whole: block after
+block is left out, the choice is made anew on the rest, and the rows left out are predicted. The way
+with the smallest plain root mean square of those errors is then followed on all rows; and that
+figure, which has paid for the choice, is the error that is stated.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.choice.blocks import blocks, rms
+from diagnosis.choice.bodies import bodies
+from diagnosis.choice.field import sized_field
+from diagnosis.choice.needed import needed
+from diagnosis.choice.remembering import memory_of
+from diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
+from diagnosis.fit import CLEARLY, Fit, GrossErrors, Memory
+from diagnosis.search import Budget, DiagnosisTask, Library, SearchState, refined_set, searched
+from twin.effects import again
+from twin.frames import Array
+from twin.library import proposals
+from twin.model import Effect
+from twin.record import IntArray, Touches
+from twin.thermal import drives, field
+
+SLOW = 4.0
+"""Touches for one independent observation from which a residual is no longer nearly white."""
+
+SETS = 300.0
+"""Sets that the search of one block may try: a fifth of what a whole diagnosis may."""
+
+MOST_ROWS = 4000
+"""Rows by which ways of choosing are judged: the searches of all blocks go through them."""
+
+PLAINLY = 0.97
+"""Share of the error of the simpler way that another way must reach to be preferred: blocks are
+few, and 3 % are well inside their scatter."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Way:
+    """A way of choosing, judged.
+
+    Attributes:
+        name: `nothing`, `two time constants`, `single effects`, `thermal field`.
+        effects: What it chooses with all rows in sight.
+        errors: Plain root mean square error of every block left out, the choice made anew each
+            time, (B,), mm.
+        rows: Of every block, (B,).
+    """
+
+    name: str
+    effects: tuple[ScaledEffect, ...]
+    errors: Array
+    rows: Array
+
+    @property
+    def error(self) -> float:
+        """Of all rows together, mm."""
+        return float(np.sqrt(self.rows @ self.errors**2 / self.rows.sum()))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Choice:
+    """The result of a choice by prediction.
+
+    Attributes:
+        ways: All that were judged, the simplest first.
+        best: The one to follow.
+        blocks: Number of blocks that were left out, one after the other.
+        memory: Of what is left with it; None where it is white.
+    """
+
+    ways: tuple[Way, ...]
+    best: Way
+    blocks: int
+    memory: Memory | None
+
+
+Chooser = Callable[[DiagnosisTask, GrossErrors], tuple[ScaledEffect, ...]]
+
+
+def chosen_by_prediction(
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    final: SearchState,
+    candidates: Sequence[Effect],
+    progress: Progress = quiet,
+) -> Choice | None:
+    """The way that predicts best, or None where there is nothing to choose.
+
+    There is where structure is left, what is left is slow, and the run recorded something that may
+    drive it.
+
+    Args:
+        task: What is diagnosed.
+        added: Effects that the user added.
+        final: Result of the search.
+        candidates: Effects that may be found, fields among them.
+        progress: Told of every block.
+    """
+    if not (final.left or final.nameless) or not drives(task.run.touches):
+        return None
+    fit = task.fit((*added, *final.effects), final.base.gross)
+    memory, gain = memory_of(fit)
+    if gain < CLEARLY or memory.per_independent < SLOW:
+        return None
+    task = thinned(task, fit)
+    fit = task.fit((*added, *final.effects), final.base.gross)
+    groups = blocks(fit, memory_of(fit)[0])
+    choosers = _choosers(added, candidates, groups)
+    gross = final.base.gross
+    ways = []
+    for done, (name, chooser) in enumerate(choosers.items()):
+        progress(done / len(choosers), "choice by prediction")
+        errors = _errors(task, added, gross, groups, chooser)
+        ways.append(Way(name, chooser(task, gross), errors, np.array([len(g) for g in groups])))
+    best = ways[0]
+    for way in ways[1:]:
+        if way.error < PLAINLY * best.error:
+            best = way
+    left = memory_of(task.fit((*added, *best.effects), gross))
+    return Choice(tuple(ways), best, len(groups), left[0] if left[1] >= CLEARLY else None)
+
+
+def offered(touches: Touches) -> list[Effect]:
+    """All that a diagnosis may find in a run: proposals of the library and the field of drives."""
+    warm = field(touches)
+    return [*proposals(touches), *([warm] if warm is not None else [])]
+
+
+def _choosers(
+    added: tuple[ScaledEffect, ...], candidates: Sequence[Effect], groups: Sequence[IntArray]
+) -> dict[str, Chooser]:
+    """The ways that the candidates leave open, the simplest first."""
+    single = [e for e in candidates if not getattr(e, "is_shrunk", False)]
+    warm = next((e for e in candidates if getattr(e, "is_shrunk", False)), None)
+    out: dict[str, Chooser] = {"nothing": lambda task, gross: ()}
+    if {"thermal-lag", "thermal-static"} <= {e.kind for e in single}:
+        out["two time constants"] = lambda task, gross: bodies(task, added, gross)
+    if single:
+        out["single effects"] = lambda task, gross: named(task, added, gross, single, groups)
+    if warm is not None:
+        out["thermal field"] = lambda task, gross: (sized_field(task, added, gross, warm, groups),)
+    return out
+
+
+def _errors(
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    gross: GrossErrors,
+    groups: Sequence[IntArray],
+    chooser: Chooser,
+) -> Array:
+    """Error of every block, predicted by a choice made without it, (B,), mm."""
+    out = []
+    for group in groups:
+        part = without(task, group)
+        effects = chooser(part, gross)
+        out.append(rms(part.fit((*added, *effects), gross).residual[group]))
+    return np.array(out)
+
+
+def thinned(task: DiagnosisTask, fit: Fit) -> DiagnosisTask:
+    """The task, of a long run with an even choice of its instants alone; each is kept whole."""
+    rows = np.flatnonzero(fit.used)
+    time = task.run.touches.time
+    instants = np.unique(time[rows])
+    every = -(-len(rows) // MOST_ROWS)
+    if every == 1 or len(instants) < len(blocks(fit, None)) * every:
+        return task
+    return without(task, rows[~np.isin(time[rows], instants[::every])])
+
+
+def without(task: DiagnosisTask, rows: IntArray) -> DiagnosisTask:
+    """The task with some rows held out; effects still know what happened there."""
+    split = np.array(task.run.split, dtype="U5")
+    split[rows] = "test"
+    return replace(task, run=replace(task.run, split=split))
+
+
+def named(
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    gross: GrossErrors,
+    candidates: Sequence[Effect],
+    groups: Sequence[IntArray],
+) -> tuple[ScaledEffect, ...]:
+    """Single effects by search, then those with inner parameters once more beside themselves.
+
+    Args:
+        task: What is diagnosed.
+        added: Effects that the user added.
+        gross: Gross errors, as they were found.
+        candidates: Effects that may be found.
+        groups: Rows of the run in every block; each effect must lower the error of blocks left out.
+    """
+    complement = ResidualSpace.of(task.fit(added, gross))
+    found: list[ScaledEffect] = []
+    more: list[Effect] = []
+    for _ in range(2):
+        library = Library.of(complement, [*candidates, *more])
+        chosen = searched(library, [s.effect.name for s in found], Budget(SETS))
+        found = list(refined_set(complement, chosen))
+        more = [a for s in found if (a := again(s.effect)) is not None]
+        if not more:
+            break
+    return needed(complement, found, groups)

@@ -1,0 +1,82 @@
+"""Is what is left noise that remembers? Then the search is done again with that noise.
+
+A residual that wanders from touch to touch looks like structure in time to every test made for
+white noise. It is called noise with memory only where that explains the run better than effects and
+patterns in white noise do, where the run holds many times its memory, and where it is not much
+larger than what is stated; else it is a cause that nobody has named yet.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.evidence import Progress, ScaledEffect, quiet
+from diagnosis.fit import CLEARLY, Fit, Memory, likely_memory
+from diagnosis.search import DiagnosisTask, SearchState, search_until_stable
+from twin.model import Effect
+
+FEWEST = 15.0
+"""Independent observations that a run must hold for its memory to be known: the length of a memory
+is uncertain by about the root of two over their number, 37 % here."""
+
+LOUDEST = 3.0
+"""Noise over stated noise from which what wanders is no noise of the instrument."""
+
+TURNS = 2
+"""Searches in which effects and memory settle beside one another."""
+
+
+def memory_of(fit: Fit) -> tuple[Memory, float]:
+    """Memory of what a fit in white noise leaves, and its gain of log likelihood over none."""
+    return likely_memory(fit.run.touches, fit.u, fit.used, fit.X, fit.y)
+
+
+def is_noise(memory: Memory, rows: int) -> bool:
+    """Whether a run of so many rows holds enough of a memory to call it one of the noise."""
+    return rows >= FEWEST * memory.per_independent
+
+
+def remembered(
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    final: SearchState,
+    candidates: Sequence[Effect],
+    progress: Progress = quiet,
+) -> tuple[DiagnosisTask, SearchState]:
+    """The task and its result with memory in the noise, or as they were where there is none.
+
+    Args:
+        task: What is diagnosed, noise white.
+        added: Effects that the user added.
+        final: Its result.
+        candidates: Effects that may be found.
+        progress: Told of every stage.
+    """
+    if not (final.left or final.nameless):
+        return task, final
+    best = (_evidence(final), task, final)
+    effects: Sequence[ScaledEffect] = ()
+    for _ in range(TURNS):
+        fit = task.fit((*added, *effects))
+        memory, gain = memory_of(fit)
+        if gain < CLEARLY or not is_noise(memory, int(fit.used.sum())):
+            break
+        other = replace(task, memory=memory)
+        found = search_until_stable(other, added, candidates, progress)
+        if found.left or found.nameless or found.base.noise.factor > LOUDEST:
+            break
+        best = max(best, (_evidence(found), other, found), key=lambda b: b[0])
+        if {s.effect.name for s in found.effects} == {s.effect.name for s in effects}:
+            break
+        effects = found.effects
+    return best[1], best[2]
+
+
+def _evidence(final: SearchState) -> float:
+    """Log evidence of a run with everything that was put in, whatever its noise."""
+    base, chosen = final.base, final.chosen.effects
+    rows = int(base.used.sum())
+    whole = chosen.evidence - rows * float(np.log(base.noise.factor))
+    whole -= float(np.log(np.abs(np.diag(base.solution.R))).sum())
+    return whole + (0.0 if base.whitener is None else base.whitener.log_det)

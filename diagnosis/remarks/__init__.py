@@ -1,0 +1,43 @@
+"""What a user should know about a run besides the verdict: one record for each thing noticed.
+
+In: a `Fit`. Out: `Remark`s, which carry numbers; `report.words` makes the sentences. Something new
+to notice is a record here, and a function that makes it.
+"""
+
+from diagnosis.remarks.run_remarks import (
+    ChosenByPrediction,
+    FewDegreesOfFreedom,
+    FewPoses,
+    FewTouches,
+    FieldShares,
+    HeldOutInDoubt,
+    NoiseMisstated,
+    NoiseRemembers,
+    OutliersKept,
+    OutliersLeftOut,
+    PriorWidened,
+    ReaderRemark,
+    Remark,
+    SearchEnded,
+    WorseThanReplicates,
+    remarks,
+)
+
+__all__ = [
+    "ChosenByPrediction",
+    "FewDegreesOfFreedom",
+    "FewPoses",
+    "FewTouches",
+    "FieldShares",
+    "HeldOutInDoubt",
+    "NoiseMisstated",
+    "NoiseRemembers",
+    "OutliersKept",
+    "OutliersLeftOut",
+    "PriorWidened",
+    "ReaderRemark",
+    "Remark",
+    "SearchEnded",
+    "WorseThanReplicates",
+    "remarks",
+]

@@ -1,0 +1,127 @@
+"""Progress of a command on standard error: bars in a terminal, a line now and then elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TextIO
+
+from matstd.stop import raise_if_asked
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+PERIOD = 10.0
+"""Seconds between two lines where nobody watches a terminal."""
+
+Show = Callable[[str, int, int], None]
+"""Told the stage, what is done of it and how much there is."""
+
+
+@dataclass(slots=True)
+class _State:
+    """What the command is doing."""
+
+    stage: str = "begin"
+    done: int = 0
+    total: int = 0
+    since: float = 0.0
+
+    def words(self, now: float) -> str:
+        """The stage, how much of it is done, and how long the rest of it takes at that pace."""
+        if not 0 < self.done < self.total:
+            return self.stage
+        left = (now - self.since) * (self.total - self.done) / self.done
+        return f"{self.stage}: {100 * self.done // self.total} %, about {clock(left)} left"
+
+
+def clock(seconds: float) -> str:
+    """A duration as minutes and seconds.
+
+    Example:
+        >>> clock(7.2), clock(192.0)
+        ('7 s', '3:12 min')
+    """
+    whole = round(seconds)
+    return f"{whole} s" if whole < 60 else f"{whole // 60}:{whole % 60:02d} min"
+
+
+@contextmanager
+def stages() -> Iterator[Show]:
+    """A function (stage, done, total) that shows how far the work is and how long it still takes.
+
+    In a terminal every stage is a bar; elsewhere a line says every ten seconds what is being done,
+    also while a stage does not report, so that a log shows that the command lives.
+    """
+    from rich.console import Console
+
+    watched = Console(stderr=True)
+    with _bars(watched) if watched.is_terminal else _lines(sys.stderr, PERIOD) as show:
+        yield show
+
+
+@contextmanager
+def _bars(watched: Console) -> Iterator[Show]:
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TaskID,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(30),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+    )
+    with Progress(*columns, console=watched) as bars:
+        known: dict[str, TaskID] = {}
+
+        def finish(but: str | None = None) -> None:
+            for name, task in known.items():
+                if name != but and not bars.tasks[task].finished:
+                    bars.update(task, completed=bars.tasks[task].total)
+
+        def show(stage: str, done: int, total: int) -> None:
+            raise_if_asked()
+            finish(but=stage)
+            if stage not in known:
+                known[stage] = bars.add_task(f"{stage:<24}", total=max(total, 1))
+            bars.update(known[stage], completed=done, total=max(total, 1))
+
+        yield show
+        finish()
+
+
+@contextmanager
+def _lines(out: TextIO, period: float) -> Iterator[Show]:
+    """Lines such as `[ 70 s] placement: 50 %, about 60 s left`."""
+    begun = time.monotonic()
+    state, over = _State(since=begun), threading.Event()
+
+    def show(stage: str, done: int, total: int) -> None:
+        raise_if_asked()
+        if stage != state.stage:
+            state.stage, state.since = stage, time.monotonic()
+        state.done, state.total = done, total
+
+    def tell() -> None:
+        while not over.wait(period):
+            now = time.monotonic()
+            print(f"[{now - begun:3.0f} s] {state.words(now)}", file=out, flush=True)
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield show
+    finally:
+        over.set()
+        teller.join()

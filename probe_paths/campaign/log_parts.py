@@ -1,0 +1,150 @@
+"""Logs before they are evaluated: every touch once, and what they say that cannot be right."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime, timedelta
+from itertools import pairwise
+
+import numpy as np
+
+from artefact.body import Standard
+from probe_paths.control import UNDATED, LogPart
+from probe_paths.plan import stated_serial
+from twin.errors import BadFile
+from twin.record import IntArray
+from twin.units import NM
+
+LARGEST_OFFSET = 0.1
+"""Of a stylus that somebody has centred, mm: ten times what a dial gauge shows."""
+
+_PER_TOUCH = ("line", "number", "pose", "feature", "xyz", "time")
+
+
+def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
+    """Parts in the order of time, every touch of a run of a program once.
+
+    The same log may be given twice, whole and cut off: its parts have the same program and begin.
+
+    Raises:
+        BadFile: Two such parts with different numbers of the same touch.
+    """
+    found: list[LogPart] = []
+    for part in sorted(_dated(parts), key=lambda part: (part.begin, -len(part.number))):
+        twin = next((p for p in found if _is_same_run(p, part)), None)
+        if twin is None:
+            found.append(part)
+            continue
+        _check_alike(twin, part)
+        new = ~np.isin(part.number, twin.number)
+        remark = f"{int(np.sum(~new))} touches stand in {twin.path} too and count once"
+        if not np.any(new):
+            i = found.index(twin)
+            found[i] = replace(twin, remarks=(*twin.remarks, f"{part.path}: {remark}"))
+            continue
+        found.append(replace(_rows(part, np.flatnonzero(new)), remarks=(*part.remarks, remark)))
+    return found
+
+
+def _dated(parts: Sequence[LogPart]) -> list[LogPart]:
+    """Parts without a date on the day of the earliest of the others."""
+    days = [part.begin for part in parts if part.begin.year != UNDATED.year]
+    if not days:
+        return list(parts)
+    first = min(days)
+    remark = f"its date is taken from another log, {first.date()}"
+    return [
+        part
+        if part.begin.year != UNDATED.year
+        else replace(
+            part,
+            begin=datetime.combine(first.date(), part.begin.time()),
+            remarks=(*part.remarks, remark),
+        )
+        for part in parts
+    ]
+
+
+def _is_same_run(one: LogPart, other: LogPart) -> bool:
+    return one.program == other.program and one.begin == other.begin
+
+
+def _rows(part: LogPart, rows: IntArray) -> LogPart:
+    """Some touches of a part."""
+    return replace(
+        part,
+        rotary={a: v[rows] for a, v in part.rotary.items()},
+        side={a: v[rows] for a, v in part.side.items()},
+        **{name: getattr(part, name)[rows] for name in _PER_TOUCH},
+    )
+
+
+def _check_alike(one: LogPart, other: LogPart) -> None:
+    """Touches that both have are the same ones."""
+    numbers, i, k = np.intersect1d(one.number, other.number, return_indices=True)
+    differ = np.any(np.abs(one.xyz[i] - other.xyz[k]) > NM, axis=1)
+    if np.any(differ):
+        row = int(np.argmax(differ))
+        raise BadFile(
+            other.path,
+            f"line {other.line[k[row]]}",
+            f"touch {numbers[row]} of the run of {other.program} at {other.begin}",
+            f"the same numbers as in {one.path}, line {one.line[i[row]]}",
+        )
+
+
+def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[LogPart], list[str]]:
+    """Parts without touches of features that the standard lacks, and remarks on all of them.
+
+    Raises:
+        BadFile: A log of another standard, or nothing but such touches in a part.
+    """
+    kept: list[LogPart] = []
+    remarks = [f"{part.path}: {remark}" for part in parts for remark in part.remarks]
+    count = len(standard.features)
+    serial = stated_serial(standard.serial)
+    for part in parts:
+        if part.heading.standard != standard.name:
+            raise BadFile(part.path, "STANDARD", part.heading.standard, standard.name)
+        if part.heading.serial and part.heading.serial != serial:
+            raise BadFile(part.path, "SERIAL", part.heading.serial, serial or "no serial number")
+        good = (part.feature >= 1) & (part.feature <= count)
+        if len(good) and not np.any(good):
+            raise BadFile(
+                part.path, f"line {part.line[0]}", f"feature {part.feature[0]}",
+                f"1 to {count}, a feature of {standard.name}",
+            )  # fmt: skip
+        remarks += [
+            f"{part.path}: line {part.line[i]}: feature {part.feature[i]} is none of 1 to {count}; "
+            f"touch {part.number[i]} is left out"
+            for i in np.flatnonzero(~good)
+        ]
+        offset = float(np.hypot(*part.offset))
+        if offset > LARGEST_OFFSET:
+            remarks.append(
+                f"{part.path}: {part.program}: the ball is calibrated {offset:.3f} mm off the "
+                "spindle axis: centre the stylus, or calibrate the probe anew"
+            )
+        kept.append(_rows(part, np.flatnonzero(good)))
+    return kept, remarks + _overlaps(kept)
+
+
+def _overlaps(parts: Sequence[LogPart]) -> list[str]:
+    """Programs that ran at the same time by the clock: it was set in between."""
+    remarks = []
+    for one, other in pairwise(part for part in parts if len(part.number)):
+        end = one.begin + timedelta(seconds=float(one.time[-1]))
+        if other.begin < end:
+            remarks.append(
+                f"{other.path}: {other.program} begins at {other.begin}, before {one.program} ends "
+                f"at {end}: the clock was set between them, and times are not in order"
+            )
+    return remarks
+
+
+def without_rows(parts: Sequence[LogPart], good: np.ndarray) -> list[LogPart]:
+    """Parts without some touches; `good` (N,) counts through all of them."""
+    ends = np.cumsum([len(part.number) for part in parts])
+    return [
+        _rows(part, np.flatnonzero(good[end - len(part.number) : end]))
+        for part, end in zip(parts, ends, strict=True)
+    ]

@@ -1,0 +1,49 @@
+"""Times of a log from the time of day alone: over midnight, and over a clock that was set."""
+
+from twin.units import DAY, HOUR
+
+_BACK = 0.5 * DAY
+"""A time of day that seems to be later by more than this is an earlier one of the same day."""
+
+_PAUSE = 600.0
+"""A pause between two touches is rarely longer, s: an hour and less than this is a set clock."""
+
+
+class LogClock:
+    """Turns the times of day of a part into seconds since its begin.
+
+    Attributes:
+        start: Time of day of the head, s; that of the first touch where the head has none.
+        remarks: Where the clock was set.
+    """
+
+    def __init__(self, start: int | None) -> None:
+        self.start = start
+        self.remarks: list[str] = []
+        self._last = start
+        self._elapsed = 0.0
+
+    def elapsed(self, now: int, line: int) -> float:
+        """Seconds since the begin at a time of day, s, that stands at a line; never falling.
+
+        A clock that goes back by an hour (summer time ends) or on by one (it begins) has been set;
+        the time between the touches is then what is left of the hour.
+        """
+        if self._last is None or self.start is None:
+            self.start = self._last = now
+        step = (now - self._last) % DAY
+        if step > _BACK:
+            back = DAY - step
+            step = HOUR - back if 0.0 <= HOUR - back < _PAUSE else 0.0
+            self.remarks.append(
+                f"line {line}: the clock goes back by {back / 60.0:.0f} min; it was set, and times "
+                f"go on {step:.0f} s after the touch before"
+            )
+        elif HOUR <= step < HOUR + _PAUSE:
+            self.remarks.append(
+                f"line {line}: the clock goes on by {step / 60.0:.0f} min; a pause, or summer time "
+                "began and later times are an hour too late"
+            )
+        self._last = now
+        self._elapsed += step
+        return self._elapsed

@@ -1,0 +1,32 @@
+"""What touches can and cannot know of a machine, in words and in the files that carry them.
+
+Names of parameters in plain words, combinations that are known, freedoms with what makes and what
+would resolve them; `identifiability.json` and `identification.json`.
+"""
+
+from report.identifiability.identifiability_file import write_identifiability
+from report.identifiability.identifiability_words import (
+    combination_words,
+    family_words,
+    freedom_words,
+    gist,
+    pair_words,
+    reason_words,
+    resolution_words,
+)
+from report.identifiability.identification_file import write_identification
+from report.identifiability.parameter_words import in_words, short
+
+__all__ = [
+    "combination_words",
+    "family_words",
+    "freedom_words",
+    "gist",
+    "in_words",
+    "pair_words",
+    "reason_words",
+    "resolution_words",
+    "short",
+    "write_identifiability",
+    "write_identification",
+]

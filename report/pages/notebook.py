@@ -1,0 +1,124 @@
+"""Results as they show themselves: a short text, and in a notebook a table with a picture.
+
+`twin.display` calls this module by name. To teach it a result, register a text, and a picture if
+there is one that says most.
+"""
+
+from collections.abc import Callable
+from functools import singledispatch
+from html import escape
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from artefact.compare import IdentifiabilityReport
+from diagnosis.answer import Diagnosis
+from diagnosis.fit import Fit
+from diagnosis.residual import Comparison
+from report.identifiability import gist
+from report.maps import draw_regions
+from report.pages.page import picture
+from report.plots import draw_fall, draw_over_variables, ranked_variables
+from report.style import save
+from report.words import comparison_sentence, microns, study_words, verdict_sentence
+from sensitivity.shares import regions
+from sensitivity.study import Study
+from twin.display import Tabular
+from twin.record import Run
+
+_ROWS = 10  # of a table that are shown; the rest is told
+
+
+@singledispatch
+def text(result: object) -> str:
+    """A result in one or a few lines."""
+    return object.__repr__(result)
+
+
+@text.register
+def _run(run: Run) -> str:
+    size = float(np.sqrt(np.mean(run.deviation**2)))
+    poses = len(np.unique(run.touches.pose))
+    return (
+        f"{len(run)} touches at {poses} table poses of {run.touches.chain.name}, "
+        f"deviations {microns(size)} rms, stated uncertainty {microns(float(np.median(run.u)))}"
+    )
+
+
+@text.register
+def _fit(fit: Fit) -> str:
+    return (
+        f"{len(fit.model.effects)} effects fitted to {int(fit.used.sum())} touches: "
+        f"{microns(fit.rms)} rms left, {microns(fit.test_rms)} rms of touches held out"
+    )
+
+
+@text.register
+def _comparison(found: Comparison) -> str:
+    return comparison_sentence(found)
+
+
+@text.register
+def _diagnosis(found: Diagnosis) -> str:
+    return verdict_sentence(found)
+
+
+@text.register
+def _study(study: Study) -> str:
+    return "\n".join(study_words(study))
+
+
+@text.register
+def _identifiability(known: IdentifiabilityReport) -> str:
+    return f"{gist(known)}."
+
+
+@singledispatch
+def drawing(result: object) -> Callable[[Path], None] | None:
+    """What draws the picture of a result into a file; None where there is none."""
+    return None
+
+
+@drawing.register
+def _over_variables(found: Comparison) -> Callable[[Path], None]:
+    return lambda path: draw_over_variables(path, found.fit, ranked_variables(found.fit))
+
+
+@drawing.register
+def _fall(found: Diagnosis) -> Callable[[Path], None]:
+    return lambda path: draw_fall(path, found)
+
+
+@drawing.register
+def _regions(study: Study) -> Callable[[Path], None]:
+    found = regions(study.population, study.workspace)
+    return lambda path: save(draw_regions(study.chain, found), path)
+
+
+def html(result: object) -> str:
+    """The text, the first rows of the table and the picture of a result."""
+    parts = [f"<p>{escape(text(result)).replace(chr(10), '<br>')}</p>"]
+    if isinstance(result, Tabular):
+        parts.append(_table(result))
+    draw = drawing(result)
+    if draw is not None:
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "result.png"
+            draw(path)
+            parts.append(f'<img src="{picture(path)}" style="max-width: 100%">')
+    return "\n".join(parts)
+
+
+def _table(result: Tabular) -> str:
+    """The first rows, and how many there are."""
+    columns = result.columns()
+    head = "".join(f"<th>{escape(name)}</th>" for name in columns)
+    rows = [
+        "<tr>" + "".join(f"<td>{escape(result.cell(value))}</td>" for value in row) + "</tr>"
+        for row in islice(zip(*columns.values(), strict=True), _ROWS)
+    ]
+    count = len(next(iter(columns.values())))
+    more = f"<caption>{_ROWS} of {count} rows</caption>" if count > _ROWS else ""
+    return f"<table>{more}<tr>{head}</tr>{''.join(rows)}</table>"

@@ -1,0 +1,76 @@
+"""What is said of a design: what the standard leaves unknown of the machine, and what others leave.
+
+The user's workspace comes first, because that is where parts are made; the probed volume, the box
+that the ball reaches on the standard, comes second and is named as such.
+"""
+
+from artefact.compare import Rival
+from artefact.place import Placement
+from diagnosis.answer import Proof
+from report.numbers import digits
+from twin.units import UM
+
+EQUAL = 1.05
+"""Ratio of two predicted errors up to which they are called equal: no user would notice it."""
+
+
+def best_rival(placement: Placement) -> Rival | None:
+    """The other artefact that somebody could build and that leaves least in the workspace."""
+    others = [r for r in placement.rivals if r is not placement.own and r.body is not None]
+    return min(others, key=lambda r: r.rms_user, default=None)
+
+
+def verdict_of_design(placement: Placement) -> str:
+    """What the standard leaves in the user's workspace, and how the best rival compares."""
+    own, rival = placement.own, best_rival(placement)
+    text = (
+        f"After probing the {own.name}, {_um(own.rms_user)} rms of the volumetric error stay "
+        f"unknown in your workspace"
+    )
+    if rival is None:
+        return f"{text} (predicted)."
+    ratio = rival.rms_user / own.rms_user
+    if ratio >= EQUAL:
+        return (
+            f"{text}; the best other artefact, {rival.name}, would leave {_um(rival.rms_user)}, "
+            f"{digits(ratio, 2)} times as much (both predicted)."
+        )
+    if ratio > 1.0 / EQUAL:
+        return (
+            f"{text}, as much as after probing the best other artefact, {rival.name}: "
+            f"{_um(rival.rms_user)}."
+        )
+    return (
+        f"{text}. That is not the best there: {rival.name} would leave {_um(rival.rms_user)}, "
+        f"{digits(1.0 / ratio, 2)} times less."
+    )
+
+
+def design_lines(placement: Placement) -> list[str]:
+    """The verdict and, second, what is left in the probed volume."""
+    own = placement.own
+    others = [r for r in placement.rivals if r is not own and r.body is not None]
+    line = f"in the probed volume alone it leaves {_um(own.rms)}"
+    if others:
+        rival = min(others, key=lambda r: r.rms)
+        line += f", the best other artefact there, {rival.name}, {_um(rival.rms)}"
+    return [verdict_of_design(placement), line]
+
+
+def proof_line(number: int, in_workspace: Proof, in_volume: Proof) -> str:
+    """One simulated machine: what its model does not predict."""
+    return (
+        f"machine {number}: in your workspace {_after(in_workspace)}; "
+        f"in the probed volume {_after(in_volume)}"
+    )
+
+
+def _after(proof: Proof) -> str:
+    return (
+        f"{_um(proof.rms_before)} rms, not predicted {_um(proof.rms_after)} (stated uncertainty "
+        f"{_um(proof.rms_u)}), {digits(proof.factor, 2)} times smaller"
+    )
+
+
+def _um(value: float) -> str:
+    return f"{digits(value / UM)} µm"

@@ -1,0 +1,314 @@
+"""Choice by prediction, on records made by an integrator and against loops done the long way."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.answer.sizes import sizes
+from diagnosis.choice import prediction
+from diagnosis.choice.blocks import blocks
+from diagnosis.choice.bodies import bodies
+from diagnosis.choice.field import SIZES, sized_field
+from diagnosis.choice.following import followed
+from diagnosis.choice.needed import needed
+from diagnosis.choice.prediction import Choice, chosen_by_prediction, offered, without
+from diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
+from diagnosis.evidence.evidence import EffectSet
+from diagnosis.fit.identification import fit_run
+from diagnosis.fit.memory import Memory
+from diagnosis.fit.prior import Prior
+from diagnosis.residual.comparison import compare
+from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
+from matstd.inputs import candidates
+from report.words.diagnosis_words import named_value, promise_sentence
+from twin.errors import DesignError
+from twin.library.catalogue import parse_effect
+from twin.library.ordinary import ordinary_model
+from twin.machine.chain import Axis, make_chain
+from twin.model.model import columns
+from twin.record.run import Run
+from twin.record.touches import Setup, Touches
+from twin.thermal.thermal_field import field
+from twin.units import MINUTE, UM
+
+N = 240
+STATED = 1.0 * UM
+TAUS = (3.0 * MINUTE, 45.0 * MINUTE)
+
+
+def lag(time: np.ndarray, drive: np.ndarray, tau: float) -> np.ndarray:
+    """``tau dy/dt = d - y``, regridded at the start, by Runge and Kutta."""
+    found = solve_ivp(
+        lambda at, y: (np.interp(at, time, drive) - y) / tau,
+        (time[0], time[-1]),
+        [drive[0]],
+        t_eval=time,
+        max_step=20.0,
+        rtol=1e-7,
+        atol=1e-9,
+    )
+    return found.y[0]
+
+
+def record(seed: int = 3, wander: float = 0.0) -> Run:
+    """A nozzle on a pin over four hours: bed heated and cooled twice, frame slow, Z follows both.
+
+    Args:
+        seed: Of the noise.
+        wander: Size of a slow wandering that nothing recorded, µm.
+    """
+    rng = np.random.default_rng(seed)
+    time = 60.0 * np.arange(N)
+    wanted = np.where((time % 7200.0) < 4200.0, 100.0, 25.0)
+    bed = lag(time, wanted, 240.0)
+    frame = 22.0 + 0.15 * (lag(time, bed, 2400.0) - 25.0) + 0.3 * np.sin(time / 3100.0)
+    z = 12.0 * (frame - 20.0) - 0.9 * (lag(time, bed - 20.0, TAUS[0]))
+    z += 0.7 * lag(time, bed - 20.0, TAUS[1]) + rng.normal(size=N)
+    slow = rng.normal(size=N)
+    for i in range(1, N):
+        slow[i] = 0.97 * slow[i - 1] + np.sqrt(1.0 - 0.97**2) * slow[i]
+    z += wander * slow
+    touches = Touches(
+        chain=make_chain("gauge", "[w f Z t]", {"Z": Axis((0.0, 350.0))}),
+        q=np.zeros((N, 1)),
+        length=np.zeros(N),
+        radius=np.zeros(N),
+        point=np.zeros((N, 3)),
+        normal=np.tile([0.0, 0.0, 1.0], (N, 1)),
+        setups=(Setup("a"),),
+        setup=np.zeros(N, dtype=np.int64),
+        time=time,
+        approach=np.zeros((N, 1)),
+        temperature={"bed": bed, "frame": frame},
+    )
+    return Run(touches, z * UM, np.full(N, STATED))
+
+
+def task_of(run: Run) -> DiagnosisTask:
+    start = ordinary_model(run.touches.chain)
+    return DiagnosisTask(run, start, Prior.of_effects(start.effects))
+
+
+def test_both_time_constants_of_a_body_are_found_within_what_is_stated() -> None:
+    task = task_of(record())
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    found = bodies(task, (), gross)
+    names = {s.effect.name for s in found}
+    assert {"thermal-lag(EZZ,bed)", "thermal-lag(EZZ,bed)#2", "thermal-static(EZZ,frame)"} <= names
+    told = sizes(task, found, gross, ResidualSpace.of(task.fit((), gross)))
+    lags = sorted((r.value, r.u) for reported in told for r in reported if r.name == "tau_min")
+    for (value, u), tau in zip(lags, TAUS, strict=True):
+        assert abs(value - tau / MINUTE) < 3.0 * u
+        assert u < 0.5 * value
+
+
+def test_a_large_effect_does_not_hide_what_is_small_beside_it() -> None:
+    """Evidence by the size of what is left: half the residual over n rows is n log 2, whatever
+    the model to begin with leaves.
+    """
+    task = task_of(record())
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    base = task.fit((), gross)
+    assert base.noise.factor > 20.0
+    complement = ResidualSpace.of(base)
+    nothing = EffectSet(complement, np.zeros((len(complement.residual), 0)))
+    found = EffectSet(complement, projected(complement, bodies(task, (), gross)))
+    fall = 0.5 * N * np.log(nothing.objective / found.objective)
+    gained = found.evidence - nothing.evidence + 0.5 * found.log_det
+    assert gained == pytest.approx(fall, rel=0.1)
+
+
+def test_blocks_are_longer_than_what_is_remembered() -> None:
+    run = record()
+    fit = fit_run(run, ordinary_model(run.touches.chain))
+    memory = Memory(np.exp(-1.0 / 12.0), 60.0)  # twelve minutes
+    groups = blocks(fit, memory)
+    np.testing.assert_array_equal(np.sort(np.concatenate(groups)), np.flatnonzero(fit.used))
+    for rows in groups:
+        time = run.touches.time[rows]
+        assert np.ptp(time) >= 2.9 * 12.0 * 60.0
+        assert np.all(np.diff(rows) > 0)
+    cycles = replace(run.touches, pose=np.repeat(np.arange(4), N // 4))
+    fit = fit_run(replace(run, touches=cycles), ordinary_model(run.touches.chain))
+    assert [len(set(cycles.pose[rows])) for rows in blocks(fit, memory)] == [1, 1, 1, 1]
+
+
+def test_the_size_of_a_field_is_that_of_ridge_regression_by_blocks() -> None:
+    """Leave every block out, solve the augmented least squares, look at the plain errors."""
+    run = record(wander=3.0)
+    task = task_of(run)
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    warm = field(run.touches)
+    groups = np.array_split(np.arange(N), 5)
+    sized = sized_field(task, (), gross, warm, groups)
+    fit = task.fit((sized,), gross)
+    place = fit.of_effect(warm.name)
+    C = columns(fit.effects, run.touches)
+    sd = np.sqrt(np.diag(fit.prior.root @ fit.prior.root.T))
+
+    def error(factor: float) -> float:
+        scale = sd.copy()
+        scale[place] *= factor
+        X, y = C * scale / fit.u[:, None], run.deviation / fit.u
+        out = []
+        for rows in groups:
+            keep = np.setdiff1d(np.arange(N), rows)
+            A = np.vstack([X[keep], np.eye(X.shape[1])])
+            b = np.concatenate([y[keep], np.zeros(X.shape[1])])
+            phi = np.linalg.lstsq(A, b, rcond=None)[0]
+            out.append((y[rows] - X[rows] @ phi) * fit.u[rows])
+        return float(np.sqrt(np.mean(np.concatenate(out) ** 2)))
+
+    errors = {f: error(f) for f in (1.0 / 16.0, 1.0, 16.0)}
+    assert len(SIZES) == 13
+    assert errors[1.0] < 1.02 * min(errors.values())
+
+
+def test_a_long_run_is_judged_by_an_even_choice_of_its_instants(monkeypatch) -> None:
+    monkeypatch.setattr(prediction, "MOST_ROWS", N // 2)
+    run = record()
+    twice = run[np.repeat(np.arange(N), 2)]  # two gauges that read together
+    task = task_of(twice)
+    small = prediction.thinned(task, task.fit())
+    kept = small.run.touches.time[small.run.split != "test"]
+    assert len(kept) == N // 2
+    assert np.all(np.unique(kept, return_counts=True)[1] == 2)
+    assert np.ptp(np.diff(np.unique(kept))) == 0.0
+
+
+def test_an_effect_that_predicts_nothing_is_not_needed() -> None:
+    run = record()
+    task = task_of(run)
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    complement = ResidualSpace.of(task.fit((), gross))
+    frame = ScaledEffect(parse_effect("thermal-static(EZZ,frame)", run.touches.chain), 4.0)
+    idle = ScaledEffect(parse_effect("thermal-lag(EZZ,bed)#2", run.touches.chain).tuned(1e7), 16.0)
+    groups = np.array_split(np.arange(N), 5)
+    kept = needed(complement, [frame, idle], groups)
+    assert [s.effect.name for s in kept] == ["thermal-static(EZZ,frame)"]
+
+
+def test_a_second_effect_without_a_first_takes_its_name() -> None:
+    run = record()
+    task = task_of(run)
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    complement = ResidualSpace.of(task.fit((), gross))
+    alone = ScaledEffect(
+        parse_effect("thermal-lag(EZZ,frame)#2", run.touches.chain).tuned(120.0), 4.0
+    )
+    (kept,) = needed(complement, [alone], np.array_split(np.arange(N), 5))
+    assert kept.effect.name == "thermal-lag(EZZ,frame)"
+
+
+@pytest.fixture(scope="module")
+def chosen() -> tuple[DiagnosisTask, Choice]:
+    """A choice with a slow wandering that nothing recorded explains."""
+    task = task_of(record(wander=6.0))
+    single = single_of(task.run)
+    final = search_until_stable(task, (), single)
+    choice = chosen_by_prediction(task, (), final, [*single, field(task.run.touches)])
+    assert choice is not None
+    return task, choice
+
+
+def single_of(run: Run) -> list:
+    """Few candidates, so that every block is soon searched."""
+    kinds = ("thermal-lag", "thermal-static")
+    return [e for e in offered(run.touches) if e.kind in kinds and "EZZ" in e.name]
+
+
+def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
+    """Each block by hand: what is chosen without it predicts it with the error that is told."""
+    task, choice = chosen
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    way = next(w for w in choice.ways if w.name == "two time constants")
+    assert choice.blocks == len(way.errors)
+    assert way.rows.sum() == N
+    first = np.arange(way.rows[0])
+    part = without(task, first)
+    fit = part.fit(bodies(part, (), gross), gross)
+    predicted = columns(fit.effects, task.run.touches) @ fit.theta
+    error = np.sqrt(np.mean((task.run.deviation - predicted)[first] ** 2))
+    assert way.errors[0] == pytest.approx(error, rel=1e-6)
+    total = np.sqrt(np.sum(way.rows * way.errors**2) / N)
+    assert way.error == pytest.approx(total)
+    assert choice.best.error <= 1.05 * min(w.error for w in choice.ways)
+
+
+def test_the_set_that_was_weighed_is_the_set_that_is_told(chosen) -> None:
+    task, _ = chosen
+    result = diagnose(task.run, candidates=[*single_of(task.run), field(task.run.touches)])
+    assert result.choice is not None
+    told = [e.name for e in result.found]
+    assert sorted(told) == sorted(s.effect.name for s in result.choice.best.effects)
+    assert len(set(told)) == len(told)
+    assert result.remarks[0].chosen == result.choice.best.name
+    names = [e.name for e in result.fit.model.effects]
+    assert names[-len(told) :] == told
+
+
+def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
+    task, choice = chosen
+    single = single_of(task.run)
+    way = next(w for w in choice.ways if w.name == "two time constants")
+    other = Choice(choice.ways, way, choice.blocks, Memory(0.9))
+    slow, final = followed(task, (), search_until_stable(task, (), single), other, single)
+    assert slow.memory is not None
+    assert not slow.memory.is_filtered
+    complement = final.search.complement
+    assert complement.count < N / 7.0
+    assert complement.dof < complement.count
+
+
+def test_a_broken_promise_is_said() -> None:
+    run = record()
+    found = compare(run, ordinary_model(run.touches.chain))
+    assert "worse than was promised" in promise_sentence(found, 0.5 * found.rms)
+    assert "as good as was promised" in promise_sentence(found, found.rms)
+
+
+def test_candidates_are_narrowed_by_kind_and_by_name() -> None:
+    run = record()
+    assert candidates([], [], run) is None
+    names = {e.name for e in candidates(["thermal-static"], ["thermal-static(EZZ, bed)"], run)}
+    assert "thermal-static(EZZ,frame)" in names
+    assert "thermal-static(EZZ,bed)" not in names
+    assert {n.partition("(")[0] for n in names} == {"thermal-static"}
+    assert all(e.kind != "thermal-field" for e in candidates([], ["thermal-field"], run))
+    with pytest.raises(DesignError, match="--only thermal-statik: expected a kind"):
+        candidates(["thermal-statik"], [], run)
+    with pytest.raises(DesignError, match="nothing is left to look for"):
+        candidates(["drift"], ["drift"], run)
+
+
+def test_a_time_constant_at_the_end_of_its_scan_is_a_bound() -> None:
+    """A body that follows within seconds: all that the scan can say is `at most two minutes`."""
+    run = record()
+    quick = replace(run, deviation=12.0 * UM * (run.touches.temperature["frame"] - 20.0))
+    noise = np.random.default_rng(8).normal(size=N) * UM
+    task = task_of(replace(quick, deviation=quick.deviation + noise))
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    lag_frame = parse_effect("thermal-lag(EZZ,frame)", run.touches.chain).tuned(120.0)
+    (told,) = sizes(
+        task, [ScaledEffect(lag_frame, 4.0)], gross, ResidualSpace.of(task.fit((), gross))
+    )
+    tau = next(r for r in told if r.name == "tau_min")
+    assert (tau.bound, tau.u) == (-1, None)
+    assert named_value(tau) == ("time constant", "at most 2.00 min")
+
+
+def test_a_slip_is_as_large_as_the_direction_that_was_probed_says() -> None:
+    """Across the gauge nothing is seen: the prior of those directions is no uncertainty."""
+    run = record()
+    step = np.where(run.touches.time > 7000.0, 9.0 * UM, 0.0)
+    noise = np.random.default_rng(9).normal(size=N) * UM
+    task = task_of(replace(run, deviation=step + noise))
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    slip = parse_effect("artefact-slip", run.touches.chain).tuned(7000.0)
+    (told,) = sizes(task, [ScaledEffect(slip, 4.0)], gross, ResidualSpace.of(task.fit((), gross)))
+    size = next(r for r in told if r.name.startswith("amplitude"))
+    assert abs(size.value - 9.0) < 3.0 * size.u
+    assert size.u < 1.0

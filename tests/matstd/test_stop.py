@@ -1,0 +1,46 @@
+"""A command that is asked to stop stops within a second, and leaves nothing half-written."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+BEGIN = """
+import sys, time
+from concurrent.futures import ThreadPoolExecutor
+from matstd.folder import results_folder
+from matstd.stop import clean_stop
+import numpy as np
+with clean_stop("design"):
+    with results_folder(sys.argv[1]) as work:
+        (work / "half.txt").write_text("half")
+        matrix = np.random.default_rng(0).random((2500, 2500))
+        print("works", flush=True)
+"""
+WORK = {
+    "Python": "        while True: sum(range(1000))",
+    "a library": "        for _ in range(99): np.linalg.svd(matrix)",
+    "waits for a pool": "        with ThreadPoolExecutor() as pool: pool.submit(time.sleep, 30.0)",
+}
+
+
+@pytest.mark.skipif("sys.platform == 'win32'", reason="signals of the terminal are sent otherwise")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("work", WORK)
+def test_it_ends_and_tidies_up(tmp_path: Path, work: str, number: int) -> None:
+    code = [sys.executable, "-c", BEGIN + WORK[work], str(tmp_path / "out")]
+    process = subprocess.Popen(code, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert process.stdout is not None
+    assert process.stdout.readline().strip() == b"works"
+    time.sleep(0.3)
+    process.send_signal(number)
+    try:
+        _, told = process.communicate(timeout=20.0)  # work goes on for 30 s and more
+    finally:
+        process.kill()
+    assert process.returncode != 0
+    assert b"stopped" in told or b"KeyboardInterrupt" in told
+    assert list(tmp_path.iterdir()) == []

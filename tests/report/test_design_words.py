@@ -1,0 +1,54 @@
+"""The verdict of a design speaks of the user's workspace, and of rivals that can be built."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from report.words.design_words import best_rival, design_lines, verdict_of_design
+from twin.units import UM
+
+
+def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0.1):
+    """Errors left in the workspace, µm; in the probed volume the order is the other way round."""
+    names = ("standard A", "four spheres", "block", "ideal scatter")
+    rivals = tuple(
+        SimpleNamespace(
+            name=name,
+            rms_user=left * UM,
+            rms=10.0 * UM / left,
+            body=None if name.startswith("ideal") else object(),
+        )
+        for name, left in zip(names, (own, spheres, block, scatter), strict=True)
+    )
+    return SimpleNamespace(own=rivals[0], rivals=rivals)
+
+
+@pytest.mark.parametrize(
+    ("own", "spheres", "said"),
+    [
+        (1.0, 2.0, "would leave 2.00 µm, 2.0 times as much"),
+        (1.0, 1.01, "as much as after probing the best other artefact, four spheres: 1.01 µm"),
+        (2.0, 1.0, "That is not the best there: four spheres would leave 1.00 µm, 2.0 times less"),
+    ],
+)
+def test_the_verdict_is_on_the_workspace(own: float, spheres: float, said: str) -> None:
+    made = placement(own, spheres)
+    words = verdict_of_design(made)
+    assert words.startswith(f"After probing the standard A, {own:.2f} µm rms")
+    assert "in your workspace" in words
+    assert said in words
+
+
+def test_scatter_that_nobody_can_build_is_no_rival() -> None:
+    assert best_rival(placement(1.0, 2.0)).name == "four spheres"
+    alone = placement(1.0, 2.0)
+    alone.rivals = (alone.own, alone.rivals[-1])
+    assert best_rival(alone) is None
+    assert verdict_of_design(alone).endswith("in your workspace (predicted).")
+
+
+def test_the_probed_volume_comes_second_and_by_name() -> None:
+    first, second = design_lines(placement(1.0, 2.0))
+    assert "probed volume" not in first
+    assert "probed volume" in second
+    assert "block, 1.11 µm" in second

@@ -1,0 +1,118 @@
+"""Results by themselves: short texts, tables with a picture, CSV and data frames of the same."""
+
+import base64
+import csv
+import io
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.residual.comparison import compare
+from report.words.diagnosis_words import comparison_sentence, verdict_sentence
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from sensitivity.study.machine_study import run_study
+from sensitivity.study.study_file import write_study
+from twin import display
+from twin.errors import MissingLibrary
+from twin.files.run_file import read_run
+from twin.library.ordinary import ordinary_model
+from twin.units import UM
+
+RUN = Path(__file__).parents[2] / "examples" / "hidden_effect" / "warm_up.csv"
+
+
+@pytest.fixture(scope="module")
+def run():
+    return read_run(RUN)
+
+
+@pytest.fixture(scope="module")
+def comparison(run):
+    return compare(run)
+
+
+@pytest.fixture(scope="module")
+def diagnosis(run):
+    return diagnose(run)
+
+
+@pytest.fixture(scope="module")
+def study(chain_of_example):
+    workspace = Workspace(chain_of_example, {}, 160.0)
+    return run_study(Population(chain_of_example), workspace, 40, 200, np.random.default_rng(1))
+
+
+@pytest.fixture(scope="module")
+def chain_of_example(run):
+    return run.touches.chain
+
+
+def test_compare_without_a_model_is_with_the_ordinary_one(run, comparison):
+    named = compare(run, ordinary_model(run.touches.chain))
+    np.testing.assert_array_equal(comparison.residual, named.residual)
+
+
+def test_texts_are_those_of_the_commands(run, comparison, diagnosis, study):
+    assert repr(comparison) == comparison_sentence(comparison)
+    assert repr(diagnosis) == verdict_sentence(diagnosis)
+    assert repr(study).startswith("200 random machines, seed 1/")
+    rms = np.sqrt(np.mean(run.deviation**2)) / UM
+    assert repr(run).startswith(f"{len(run)} touches at ")
+    assert f"{rms:.1f}" in repr(run)
+    assert repr(comparison.fit).endswith("rms of touches held out")
+    assert all(len(repr(thing)) < 700 for thing in (run, comparison, diagnosis, study))
+
+
+@pytest.mark.parametrize("name", ["comparison", "diagnosis", "study"])
+def test_a_notebook_shows_text_table_and_picture(name, request):
+    result = request.getfixturevalue(name)
+    shown = result._repr_html_()
+    first = repr(result).splitlines()[0]
+    assert first.replace("<", "&lt;").replace(">", "&gt;").replace("'", "&#x27;") in shown
+    assert [name for name in result.columns() if f"<th>{name}</th>" not in shown] == []
+    (image,) = re.findall(r'src="data:image/png;base64,([^"]+)"', shown)
+    assert base64.b64decode(image).startswith(b"\x89PNG")
+    rows = len(next(iter(result.columns().values())))
+    assert shown.count("<tr>") == 1 + min(rows, 10)
+
+
+def test_a_run_shows_its_text_alone(run):
+    assert run._repr_html_() == f"<p>{run!r}</p>"
+
+
+def test_the_table_of_a_comparison_is_the_file_of_residuals(comparison, tmp_path):
+    path = tmp_path / "residuals.csv"
+    text = comparison.to_csv(path)
+    assert path.read_bytes().decode("utf-8") == text
+    rows = list(csv.DictReader(io.StringIO(text)))
+    assert len(rows) == len(comparison.run)
+    measured = [float(row["measured_um"]) for row in rows]
+    np.testing.assert_allclose(measured, comparison.run.deviation / UM, atol=5.1e-5)
+    total = np.array([float(r["predicted_um"]) + float(r["residual_um"]) for r in rows])
+    np.testing.assert_allclose(total, measured, atol=1.6e-4)
+
+
+def test_the_table_of_a_study_is_its_file_of_poses(study, tmp_path):
+    write_study(study, tmp_path, "sampled")
+    assert study.to_csv() == (tmp_path / "poses.csv").read_text(encoding="utf-8")
+
+
+def test_steps_of_a_diagnosis_as_a_data_frame(diagnosis):
+    frame = diagnosis.to_dataframe()
+    assert frame["effect"].tolist() == ["", *(e.name for e in diagnosis.found)]
+    assert frame["rms_um"].iloc[-1] == pytest.approx(diagnosis.fit.rms / UM)
+    assert frame["rms_um"].is_monotonic_decreasing
+
+
+def test_without_pandas_the_table_is_still_to_be_had(comparison, monkeypatch):
+    def missing(name):
+        raise ModuleNotFoundError(name)
+
+    monkeypatch.setattr(display, "import_module", missing)
+    with pytest.raises(MissingLibrary, match=r"to_csv\(\)"):
+        comparison.to_dataframe()
+    assert comparison.to_csv().startswith("line,feature,")

@@ -1,0 +1,29 @@
+"""One style: colours that do not repeat, labels, scales."""
+
+import re
+
+import numpy as np
+
+from report.style.colours import series
+from report.style.labels import robust_limit, tidy
+
+
+def test_no_colour_comes_twice() -> None:
+    """More things than the palette has still differ, and by more than rounding."""
+    found = [tuple(int(series(k)[i : i + 2], 16) for i in (1, 3, 5)) for k in range(60)]
+    assert all(re.fullmatch("#[0-9a-f]{6}", series(k)) for k in range(60))
+    apart = min(max(abs(np.subtract(a, b))) for i, a in enumerate(found) for b in found[:i])
+    assert apart >= 4
+    first = min(max(abs(np.subtract(a, b))) for i, a in enumerate(found[:12]) for b in found[:i])
+    assert first > 40
+
+
+def test_a_scale_that_few_values_do_not_decide() -> None:
+    values = np.concatenate([np.linspace(-1.0, 1.0, 999), [500.0]])
+    assert robust_limit(values) < 1.01
+    assert robust_limit(np.zeros(3)) == 1.0
+
+
+def test_long_names_take_two_lines() -> None:
+    assert tidy("drift") == "drift"
+    assert tidy("thermal-lag(EZZ,spindle)") == "thermal-lag\n(EZZ,spindle)"

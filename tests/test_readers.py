@@ -1,0 +1,92 @@
+"""Damaged files over every reader: one line of refusal, or what stands in the file; no traceback.
+
+`benchmarks/fuzz_readers.py` does the same thousands of times.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from reader_cases import NUMBERS, damage, machine_said, poses_said, readers, run_said
+
+from twin.errors import DesignError
+
+EACH = 60
+"""Inputs of a reader: a few seconds in all."""
+LONGEST = 600
+"""Longest line of a refusal, characters."""
+NAMES = (
+    "machine", "errors", "run", "pose", "sensors", "project", "standard", "model", "log", "program"
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def cases(tmp_path_factory):
+    """Every reader with its valid text."""
+    made = readers(tmp_path_factory.mktemp("files"))
+    return {reader.name: (reader, reader.path.read_text(encoding="utf-8")) for reader in made}
+
+
+def check(reader, data: bytes) -> None:
+    """The file is refused in one line, or says what was read."""
+    reader.path.write_bytes(data)
+    refusal = ""
+    try:
+        result = reader.read(reader.path)
+    except DesignError as error:
+        refusal = str(error).replace(str(reader.path), "FILE")
+    assert "\n" not in refusal
+    assert len(refusal) < LONGEST
+    if not refusal and reader.said is not None:
+        text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        assert reader.said(text, result)
+
+
+def test_every_reader_has_its_file(cases) -> None:
+    assert set(cases) == set(NAMES)
+    for reader, valid in cases.values():
+        result = reader.read(reader.path)
+        assert reader.said is None or reader.said(valid, result)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=EACH, deadline=None, suppress_health_check=list(HealthCheck))
+@given(seed=st.integers(0, 2**32 - 1))
+def test_damaged_files(cases, name, seed) -> None:
+    """One to three things wrong: a number, a key, a line, a cell, bytes, the end."""
+    reader, valid = cases[name]
+    check(reader, damage(np.random.default_rng(seed), valid))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=EACH // 2, deadline=None, suppress_health_check=list(HealthCheck))
+@given(text=st.text(max_size=200), at=st.floats(0.0, 1.0))
+def test_any_text_anywhere(cases, name, text, at) -> None:
+    reader, valid = cases[name]
+    place = int(at * len(valid))
+    check(reader, (valid[:place] + text + valid[place:]).encode("utf-8", "surrogatepass"))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=EACH // 2, deadline=None, suppress_health_check=list(HealthCheck))
+@given(data=st.binary(max_size=300))
+def test_any_bytes(cases, name, data) -> None:
+    check(cases[name][0], data)
+
+
+def test_the_naive_reading_notices_a_wrong_number(cases) -> None:
+    """The comparison can fail: results that are off by a thousandth are not what the files say."""
+    reader, text = cases["pose"]
+    reader.path.write_text(text, encoding="utf-8")
+    q, length = reader.read(reader.path)
+    assert poses_said(text, (q, length))
+    assert not poses_said(text, (q * 1.001, length))
+    reader, text = cases["run"]
+    reader.path.write_text(text, encoding="utf-8")
+    run = reader.read(reader.path)
+    assert run_said(text, run)
+    assert not run_said(text.replace("u_um = 0.6", "u_um = 0.61"), run)
+    reader, text = cases["machine"]
+    reader.path.write_text(text, encoding="utf-8")
+    assert not machine_said(text.replace("-420.0", "-421.0"), reader.read(reader.path))
+    assert len(set(NUMBERS)) == len(NUMBERS)

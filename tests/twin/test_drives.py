@@ -1,0 +1,175 @@
+"""Effects after recorded drives, against the differential equation solved by another library."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from twin.effects.second_time import Again
+from twin.errors import UnknownEffect
+from twin.files.run_file import read_run
+from twin.files.run_writer import write_run
+from twin.library.catalogue import parse_effect, proposals
+from twin.machine.chain import Axis, make_chain
+from twin.model.model import columns
+from twin.record.copies import without_copies
+from twin.record.run import Run
+from twin.record.touches import Setup, Touches
+from twin.thermal.thermal_field import LAGS, ThermalField, field
+from twin.units import UM
+
+N = 60
+INTEGRATED = 1e-6
+"""Relative accuracy asked of the integrator."""
+
+
+@pytest.fixture
+def touches() -> Touches:
+    """One linear axis that stands still under a dial gauge along +Z, with two sensors."""
+    chain = make_chain("gauge", "[w f Z t]", {"Z": Axis((0.0, 350.0))})
+    rng = np.random.default_rng(4)
+    time = np.cumsum(rng.uniform(30.0, 90.0, N))
+    bed = 25.0 + 60.0 * (1.0 - np.exp(-time / 500.0))
+    frame = 22.0 + 4.0 * np.sin(time / 900.0)
+    return Touches(
+        chain=chain,
+        q=np.zeros((N, 1)),
+        length=np.zeros(N),
+        radius=np.zeros(N),
+        point=np.zeros((N, 3)),
+        normal=np.tile([0.0, 0.0, 1.0], (N, 1)),
+        setups=(Setup("a"),),
+        setup=np.zeros(N, dtype=np.int64),
+        time=time,
+        approach=np.zeros((N, 1)),
+        temperature={"bed": bed, "frame": frame},
+        spindle_rpm=np.where(time > 1000.0, 4000.0, 0.0),
+        value={"flow_l_min": 5.0 + 3.0 * np.cos(time / 700.0)},
+    )
+
+
+def solved(touches: Touches, drive: np.ndarray, tau: float, begin: float) -> np.ndarray:
+    """``tau dy/dt = d - y`` with the drive straight between records, by Runge and Kutta."""
+    t = touches.time
+    found = solve_ivp(
+        lambda at, y: (np.interp(at, t, drive) - y) / tau,
+        (t[0], t[-1]),
+        [begin],
+        t_eval=t,
+        max_step=5.0,
+        rtol=INTEGRATED,
+        atol=1e-9,
+    )
+    return found.y[0]
+
+
+def test_at_once_is_the_temperature_against_the_normal(touches) -> None:
+    """Z longer by a (T - 20) on the tool side: a surface that looks up seems to stand lower."""
+    column = columns([parse_effect("thermal-static(EZZ,frame)", touches.chain)], touches)[:, 0]
+    np.testing.assert_allclose(column, -(touches.temperature["frame"] - 20.0), atol=1e-12)
+
+
+def test_a_column_of_the_users_own_is_followed_in_steps_of_its_own(touches) -> None:
+    (effect,) = [e for e in proposals(touches, ["follows"]) if e.name.startswith("follows(EZZ")]
+    assert effect.name == "follows(EZZ,flow_l_min)"
+    column = columns([effect], touches)[:, 0]
+    values = touches.value["flow_l_min"]
+    np.testing.assert_allclose(column, -values / 1.0, atol=1e-12)
+    assert parse_effect("follows(EZZ,V_flow_l_min)", touches.chain).name == effect.name
+    with pytest.raises(UnknownEffect, match=r"no column 'V_flaw_l_min'.*flow_l_min"):
+        columns([parse_effect("follows(EZZ,flaw_l_min)", touches.chain)], touches)
+
+
+def test_a_field_is_the_sum_of_lags_that_an_integrator_finds(touches) -> None:
+    warm = field(touches)
+    assert isinstance(warm, ThermalField)
+    assert warm.name == "thermal-field(Z,bed,frame,spindle_rpm)"
+    assert parse_effect(warm.name, touches.chain) == warm
+    C = columns([warm], touches)
+    names = [p.name for p in warm.parameters]
+    for drive in ("bed", "frame"):
+        warmth = touches.temperature[drive] - 20.0
+        at_once = C[:, names.index(f"EZ {drive} at once")]
+        np.testing.assert_allclose(at_once, -warmth, atol=1e-12)
+        for tau in LAGS:
+            first_order_lag = C[:, names.index(f"EZ {drive} {tau / 60:g} min")]
+            expected = -solved(touches, warmth, tau, warmth[0])
+            np.testing.assert_allclose(first_order_lag, expected, atol=1e-3)
+    assert not any(n.startswith("EZ spindle_rpm at once") for n in names)
+    assert C.shape[1] == 6 * (2 * (1 + len(LAGS)) + len(LAGS))
+
+
+def test_an_effect_stands_twice_with_inner_parameters_of_its_own(touches) -> None:
+    first = parse_effect("thermal-lag(EZZ,bed)", touches.chain).tuned(300.0)
+    second = parse_effect("thermal-lag(EZZ,bed)#2", touches.chain).tuned(3000.0)
+    assert isinstance(second, Again)
+    assert (second.name, second.kind) == ("thermal-lag(EZZ,bed)#2", "thermal-lag")
+    C = columns([first, second], touches)
+    warmth = touches.temperature["bed"] - 20.0
+    for column, tau in zip(C.T, (300.0, 3000.0), strict=True):
+        np.testing.assert_allclose(column, -solved(touches, warmth, tau, warmth[0]), atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "fault"),
+    [
+        ("thermal-lag(EZZ,bed)#1", "a number from 2"),
+        ("thermal-lag(EZZ,bed)#two", "a number from 2"),
+        ("thermal-static(EZZ,bed)#2", "no inner parameter"),
+        ("thermal-field(Z)", "an axis, then sensors"),
+        ("thermal-field(Q,bed)", "an axis of Z"),
+        ("thermal-field(Z,bed,bed)", "every drive once"),
+    ],
+)
+def test_names_that_mean_nothing(touches, name, fault) -> None:
+    with pytest.raises(UnknownEffect, match=fault):
+        parse_effect(name, touches.chain)
+
+
+def gauge_run(touches: Touches, deviation: np.ndarray) -> Run:
+    return Run(touches, deviation, np.full(len(touches), 0.5 * UM))
+
+
+def test_columns_of_the_users_own_go_through_a_file(touches, tmp_path) -> None:
+    (tmp_path / "m.toml").write_text(
+        'format = "machine/1"\nname = "gauge"\nchain = "[w f Z t]"\n'
+        "[axis.Z]\nrange = [0.0, 350.0]\n"
+    )
+    deviation = np.random.default_rng(1).normal(size=N) * UM
+    write_run(tmp_path / "run.csv", gauge_run(touches, deviation), "m.toml")
+    again = read_run(tmp_path / "run.csv")
+    np.testing.assert_allclose(
+        again.touches.value["flow_l_min"], touches.value["flow_l_min"], rtol=1e-8
+    )
+    text = (tmp_path / "run.csv").read_text().splitlines()
+    head = next(i for i, line in enumerate(text) if line.startswith("feature"))
+    cells = text[head + 3].split(",")
+    cells[text[head].split(",").index("V_flow_l_min")] = ""
+    text[head + 3] = ",".join(cells)
+    (tmp_path / "gap.csv").write_text("\n".join(text) + "\n")
+    gap = read_run(tmp_path / "gap.csv")
+    assert gap.touches.value == {}
+    assert any("V_flow_l_min has no number in 1 row; the column" in r for r in gap.remarks)
+
+
+def test_a_drift_test_read_coarsely_is_no_pile_of_copies(touches) -> None:
+    """One place, readings to 1 µm: most rows agree with an earlier one, and all are measured."""
+    warmth = 3.0 * (1.0 - np.exp(-np.arange(N) / 20.0))
+    coarse = np.round(4.0 * warmth) * UM
+    still = replace(touches, temperature={"room": 20.0 + warmth}, value={}, spindle_rpm=np.zeros(N))
+    run = gauge_run(still, coarse)
+    assert len(np.unique(coarse)) < N / 3
+    assert without_copies(run) is run
+
+
+def test_rows_that_differ_in_a_temperature_are_no_copies(touches) -> None:
+    fine = np.random.default_rng(2).normal(size=N) * UM
+    run = gauge_run(touches, fine)
+    pasted = run[np.tile(np.arange(N), 3)]
+    later = np.concatenate([touches.time, touches.time + 1e5, touches.time + 2e5])
+    moved = replace(pasted.touches, time=later)
+    assert len(without_copies(replace(pasted, touches=moved))) == N
+    warmer = {k: np.r_[v, v + 0.25, v - 0.25] for k, v in touches.temperature.items()}
+    honest = replace(pasted, touches=replace(moved, temperature=warmer))
+    assert len(without_copies(honest)) == 3 * N

@@ -1,0 +1,62 @@
+"""An effect a second time: two time constants after one sensor, two periods of one screw."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from twin.model import Effect, Inner, Parameter, Term, Tunable
+from twin.record import Touches
+
+MARK = "#"
+"""Between the name of an effect and which time it stands in the model."""
+
+
+@dataclass(frozen=True)
+class Again:
+    """An effect with inner parameters of its own, beside one of the same name.
+
+    Only an effect with inner parameters can stand in a model twice: without them both would be one.
+
+    Attributes:
+        effect: As if it stood there alone.
+        number: 2 for the second.
+    """
+
+    effect: Tunable
+    number: int = 2
+
+    @property
+    def kind(self) -> str:
+        """The kind of the effect."""
+        return self.effect.kind
+
+    @property
+    def name(self) -> str:
+        """`thermal-lag(EZZ,bed)#2`."""
+        return f"{self.effect.name}{MARK}{self.number}"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Those of the effect."""
+        return self.effect.parameters
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Those of the effect."""
+        return self.effect.terms(touches)
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """Those of the effect."""
+        return self.effect.inner(touches)
+
+    def tuned(self, *values: float) -> "Again":
+        """With these values of the inner parameters."""
+        return replace(self, effect=self.effect.tuned(*values))
+
+    @property
+    def tuning(self) -> Mapping[str, float]:
+        """Values of the inner parameters."""
+        return self.effect.tuning
+
+
+def again(effect: Effect, number: int = 2) -> Again | None:
+    """An effect another time, or None where it has no inner parameters to differ in."""
+    return Again(effect, number) if isinstance(effect, Tunable) else None
