@@ -27,7 +27,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say
     from matstd.folder import results_folder
     from matstd.workers import connected
-    from report.words import design_lines, identification_sentence, proof_line
+    from report.words import design_lines, proof_line
 
     project, printed_by = read_project(args.project), asked_printer(args)
     with (
@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
         say(f"- {remark}")
     verdict, *others = design_lines(made.placement)
     say(verdict, style="bold")
-    for line in filter(None, [*others, identification_sentence(made.placement)]):
+    for line in others:
         say(f"- {line}")
     for machine in made.machines:
         say(f"- {proof_line(machine.seed + 1, machine.in_workspace, machine.proof)}")

@@ -25,7 +25,7 @@ from report.words import (
     best_rival,
     comparison_remarks,
     criterion_words,
-    identification_sentence,
+    design_lines,
     verdict_of_design,
 )
 from twin.errors import DesignError
@@ -124,7 +124,7 @@ def _standard(design: Design) -> dict[str, Any]:
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
         "certificate": design.placement.certificate,
         "criterion": criterion_words(design.project.standard),
-        "identification": identification_sentence(design.placement),
+        "identification": " ".join(design_lines(design.placement)[2:]),
         "comparison": [_rival(r, design, on_machine) for r in design.placement.rivals],
         "rival": _rival(best, design, on_machine) if best is not None else None,
         "step_deviation": _at_most(faces),

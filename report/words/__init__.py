@@ -4,12 +4,7 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
-from report.words.artefact_words import (
-    alternative_words,
-    comparison_remarks,
-    criterion_words,
-    identification_sentence,
-)
+from report.words.artefact_words import alternative_words, comparison_remarks, criterion_words
 from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
@@ -42,7 +37,6 @@ __all__ = [
     "criterion_words",
     "design_lines",
     "dominant_words",
-    "identification_sentence",
     "microns",
     "ordering_words",
     "place_words",
