@@ -158,8 +158,7 @@ def _prove(
     machine = VirtualMachine(
         project.chain, lambda touches: contribution(errors, touches), noise=project.noise
     )
-    table = project.limits.table_radius_mm
-    campaign = simulate(programs, placement.standard, machine, rng_noise, table_radius=table)
+    campaign = simulate(programs, placement.standard, machine, rng_noise)
     fit = fit_run(campaign.run, population.expected())
     in_volume = probed_volume(campaign.run, PROOF_POSES, rng_volume)
     q = latin_hypercube(workspace, PROOF_POSES, rng_workspace)

@@ -19,7 +19,15 @@ _ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
 
 def probe(project: Project) -> Probe:
     """The probe in the spindle."""
-    return Probe(project.probe_radius, project.probe_length)
+    stated = project.probe
+    return Probe(
+        radius=project.probe_radius,
+        length=project.probe_length,
+        stylus_length=stated.stylus_length_mm or 0.0,
+        stylus_radius=0.5 * (stated.stylus_diameter_mm or 0.0),
+        body_radius=0.5 * stated.body_diameter_mm,
+        nose_radius=0.5 * stated.nose_diameter_mm,
+    )
 
 
 def plan_options(project: Project) -> PlanOptions:

@@ -36,10 +36,18 @@ FARTHEST = 1e6
 
 
 class ProbeTable(Table):
-    """`[probe]`: ball radius and length from the gauge point to the ball centre, mm."""
+    """`[probe]`: the ball, its distance from the gauge point, and what stands above it.
+
+    The stylus reaches from the ball centre to the body, the body to the gauge line, the nose of the
+    spindle above it.
+    """
 
     radius_mm: float = Field(gt=0.0, le=25.0)
     length_mm: float = Field(gt=0.0)
+    stylus_length_mm: float | None = Field(default=None, gt=0.0)
+    stylus_diameter_mm: float | None = Field(default=None, gt=0.0)
+    body_diameter_mm: float = Field(default=50.0, gt=0.0)
+    nose_diameter_mm: float = Field(default=90.0, gt=0.0)
 
 
 class MonteCarloTable(Table):
@@ -94,6 +102,7 @@ class Project:
         seed: Of all random numbers.
         probe_radius: mm.
         probe_length: Gauge point to ball centre, mm.
+        probe: The same, and what stands above the ball.
         workspace: Smallest and largest reading of every programmed axis, mm or rad.
         poses: Number of poses for the maps.
         draws: Number of random machines for the maps; at most so many where digits are asked for.
@@ -116,6 +125,7 @@ class Project:
     seed: int
     probe_radius: float
     probe_length: float
+    probe: ProbeTable
     workspace: dict[str, tuple[float, float]]
     poses: int
     draws: int
@@ -175,6 +185,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         seed=table.seed,
         probe_radius=table.probe.radius_mm,
         probe_length=table.probe.length_mm,
+        probe=_checked_probe(table.probe, path),
         workspace=workspace,
         poses=poses,
         draws=table.montecarlo.draws,
@@ -226,3 +237,15 @@ def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
     if not low <= high:
         raise BadFile(path, key, [low, high], "the smaller number first")
     return low, high
+
+
+def _checked_probe(probe: ProbeTable, path: Path) -> ProbeTable:
+    """A stylus that is thinner than the ball and ends between ball and gauge point."""
+    length, diameter = probe.stylus_length_mm, probe.stylus_diameter_mm
+    if length is not None and not probe.radius_mm < length < probe.length_mm:
+        expected = f"between radius_mm = {probe.radius_mm:g} and length_mm = {probe.length_mm:g}"
+        raise BadFile(path, "probe.stylus_length_mm", f"{length:g}", expected)
+    if diameter is not None and diameter >= 2.0 * probe.radius_mm:
+        expected = f"less than the ball, {2.0 * probe.radius_mm:g}"
+        raise BadFile(path, "probe.stylus_diameter_mm", f"{diameter:g}", expected)
+    return probe
