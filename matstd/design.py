@@ -78,7 +78,12 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     maps = draw_maps(study, folder / "sensitivity", rng.maps)
     maps += draw_path(study, folder / "sensitivity")
     progress("STEP and STL", 0, 1)
-    conformity = export_standard(placement.standard, folder)
+    conformity = export_standard(
+        placement.standard,
+        folder,
+        author=project.standard.author,
+        organisation=project.standard.organisation,
+    )
     progress("probing programs", 0, 1)
     programs = make_programs(plan)
     paths = programs.write(folder / "programs")

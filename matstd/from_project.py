@@ -5,9 +5,9 @@ from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, Project
 from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
 from artefact.reach import ProbeReach
-from artefact.worth import CriterionOptions, TouchOptions
+from artefact.worth import Calibration, CriterionOptions, TouchOptions
 from probe_paths.plan import PlanOptions, Probe
-from twin.units import DEG, KG_M3
+from twin.units import DEG, KG_M3, UM, URAD
 
 _LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
 """Of the sphere centres above the seat, mm and as a share of the blank's height: as far apart as
@@ -81,7 +81,7 @@ def blank(project: Project) -> Blank:
 
 def placement_options(project: Project) -> PlacementOptions:
     """How much is tried and measured, and what for."""
-    wanted = project.standard
+    wanted, known = project.standard, project.calibration
     return PlacementOptions(
         name=wanted.name,
         serial=wanted.serial,
@@ -92,6 +92,11 @@ def placement_options(project: Project) -> PlacementOptions:
             potential=wanted.potential,
             drawn_machines=wanted.drawn_machines,
             worst_share=wanted.worst_share,
+            calibration=Calibration(
+                patch=known.patch_um * UM,
+                patch_tilt=known.patch_urad * URAD,
+                ball=known.ball_um * UM,
+            ),
         ),
         choice=TouchOptions(touches=wanted.touches, poses=wanted.poses),
     )

@@ -58,6 +58,14 @@ class MonteCarloTable(Table):
     tolerance_um: float = Field(default=float("inf"), gt=0.0)
 
 
+class CalibrationTable(Table):
+    """`[calibration]`: standard uncertainties: place and rotations of a patch, centre of a ball."""
+
+    patch_um: float = Field(default=1.0, ge=0.0)
+    patch_urad: float = Field(default=10.0, ge=0.0)
+    ball_um: float = Field(default=0.3, ge=0.0)
+
+
 class SimulationTable(Table):
     """`[simulation]`: the proof on the twin."""
 
@@ -79,6 +87,7 @@ class ProjectTable(Table):
     blank: BlankTable = BlankTable()
     limits: LimitsTable = LimitsTable()
     setup: dict[str, SetupTable] = Field(default_factory=lambda: {"a": SetupTable()})
+    calibration: CalibrationTable = CalibrationTable()
     simulation: SimulationTable = SimulationTable()
 
 
@@ -105,6 +114,7 @@ class Project:
         blank: What it is made from.
         limits: What workshop, probe and table allow.
         setup: Where the standard stands on the table.
+        calibration: How well the features of the standard will be known.
         noise: Standard deviation of one simulated touch, mm.
         machines: Number of random machines of the proof.
     """
@@ -126,6 +136,7 @@ class Project:
     blank: BlankTable
     limits: LimitsTable
     setup: Setup
+    calibration: CalibrationTable
     noise: float
     machines: int
 
@@ -185,6 +196,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         blank=table.blank,
         limits=table.limits,
         setup=setup.setup(name),
+        calibration=table.calibration,
         noise=table.simulation.noise_um * UM,
         machines=table.simulation.machines,
     )
