@@ -11,6 +11,7 @@ from twin.library.ordinary import ordinary_model
 from twin.machine.contribution import Contribution
 from twin.model.effect import Effect, Tunable, contribution
 from twin.model.model import Model, columns
+from twin.thermal.thermal_field import field
 from twin.thermal.thermal_lag import first_order_lag
 from twin.units import NM
 
@@ -20,7 +21,11 @@ RELATIVE_ROUNDING = 1e-9
 
 
 RUNS = {label: made_up(label) for label in MACHINES}
-ALL = [(label, e) for label, touches in RUNS.items() for e in proposals(touches)]
+ALL = [
+    (label, e)
+    for label, touches in RUNS.items()
+    for e in (*proposals(touches), field(touches))  # a field is weighed against what is proposed
+]
 # thirty of a kind on a machine are the same code: every one that differs in kind and in axis
 SOME = list(
     {
