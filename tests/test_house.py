@@ -60,11 +60,7 @@ EXCUSED = {
     "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
-<<<<<<< HEAD
-    "artefact/compare/alternatives.py": "names of other set-ups by which files and pages list them",
-=======
     "artefact/compare/alternatives.py": "names of other set-ups, under which files list them",
->>>>>>> main
     "artefact/place/placement.py": "what a refusal appends to the limit that binds",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
