@@ -128,6 +128,8 @@ def test_inner_parameters_have_ascending_grids_and_can_be_set(label: str) -> Non
         tuned = effect.tuned(*values)
         assert list(tuned.tuning.values()) == values
         assert tuned.name == effect.name
+        if all(len(i.grid) == 1 for i in inner):
+            continue
         # another tuning is another signature
         other = effect.tuned(*(float(i.grid[0]) for i in inner))
         assert not np.allclose(columns([tuned], touches), columns([other], touches))
