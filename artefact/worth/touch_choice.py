@@ -14,7 +14,15 @@ import numpy as np
 from artefact.body import Standard, Surface
 from artefact.reach import Mask, ProbeReach, Requests, joined
 from artefact.worth.touch_criterion import Criterion
-from information.selection import Certificate, Quota, best_groups, heaviest, relaxed, rounded
+from information.selection import (
+    ROUNDS,
+    Certificate,
+    Quota,
+    best_groups,
+    heaviest,
+    relaxed,
+    rounded,
+)
 from twin.compute import blocks
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
@@ -240,17 +248,28 @@ def shares(standard: Standard, tried: Requests, options: TouchOptions) -> tuple[
 
 
 def chosen_touches_on(
-    criterion: Criterion, standard: Standard, tried: Requests, options: TouchOptions
+    criterion: Criterion,
+    standard: Standard,
+    tried: Requests,
+    options: TouchOptions,
+    rounds: int = ROUNDS,
 ) -> tuple[Mask, Certificate]:
     """Single touches, and how near they are to the best that keep the same shares.
 
     The relaxed optimum comes first; its heaviest touches are exchanged until nothing is gained.
+
+    Args:
+        criterion: What they are chosen for.
+        standard: The body that they lie on.
+        tried: Touches that can be made.
+        options: How many of them, in which shares.
+        rounds: Most looks at all candidates on the way to the relaxed optimum; exchanges follow.
 
     Returns:
         The choice, (N,), and its certificate.
     """
     quotas, W, n = shares(standard, tried, options), criterion.rows(tried), options.touches
     start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
-    best = relaxed(criterion.objective, W, n, start, _NEAR, quotas)
+    best = relaxed(criterion.objective, W, n, start, _NEAR, quotas, rounds)
     choice = rounded(criterion.objective, W, best.weight, n, most=n // 2, quotas=quotas)
     return choice.chosen, Certificate(len(W), n, choice.value, best.bound, shares=True)

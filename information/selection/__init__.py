@@ -12,6 +12,7 @@ from information.selection.shares import heaviest
 from information.selection.touch_selection import Mask, Quota, Selection, exchange, fill
 
 __all__ = [
+    "ROUNDS",
     "Certificate",
     "Mask",
     "Quota",

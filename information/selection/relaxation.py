@@ -26,7 +26,7 @@ from twin.record import IntArray
 
 _STEPS = 400  # vertex exchanges between two looks at all candidates
 _CURVED = 40  # the same along one tangent of a criterion that is curved
-_ROUNDS = 100
+ROUNDS = 100
 _REFRESH = 50
 _HALVINGS = 8
 _PATIENCE = 3  # looks without progress before the mean is sharpened, or the search given up
@@ -62,6 +62,7 @@ def relaxed(
     start: Mask,
     tolerance: float = 2e-3,
     quotas: tuple[Quota, ...] = (),
+    rounds: int = ROUNDS,
 ) -> Relaxed:
     """Nearly the best fractions of touches, by vertex exchange on the candidates that matter.
 
@@ -75,6 +76,7 @@ def relaxed(
         start: A choice of as many rows to start from, (N,).
         tolerance: Relative gap between value and bound that is close enough.
         quotas: Shares that fractions and whole choices have to keep.
+        rounds: Most looks at all candidates.
 
     Raises:
         DesignError: Fewer candidates than touches, a start of another number, or one that does not
@@ -87,7 +89,7 @@ def relaxed(
     x = start.astype(np.float64)
     cell, lowest = cells(quotas, len(W)), np.inf
     bound, steps, stalled = 0.0, 0, 0
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         there = np.flatnonzero(x > 0.0)
         information = (W[there] * x[there, None]).T @ W[there]
         here = slope(criterion, information)

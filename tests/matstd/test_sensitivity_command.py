@@ -89,4 +89,4 @@ def test_random_machines_need_a_project(tmp_path, capsys):
     assert main(["sensitivity", machine, "-o", out]) == 2
     assert "followed by poses" in capsys.readouterr().err
     assert main(["sensitivity", machine, "poses.csv", "-o", out, "--draws", "9"]) == 2
-    assert "--draws is for random machines" in capsys.readouterr().err
+    assert "--draws is for the random machines" in capsys.readouterr().err
