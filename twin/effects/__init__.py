@@ -6,6 +6,7 @@ the search and the reports know it from then on.
 
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
+from twin.effects.periodic import usual_distance
 from twin.effects.probe import normal_in_tool
 from twin.effects.second_time import MARK, Again, again
 from twin.effects.setup_error import setup_errors
@@ -20,4 +21,5 @@ __all__ = [
     "component",
     "normal_in_tool",
     "setup_errors",
+    "usual_distance",
 ]
