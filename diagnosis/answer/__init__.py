@@ -5,6 +5,7 @@ look-alikes, `sizes` numbers that rest on the touches alone, `detectable` what t
 shown, `next_measurement` touches that tell look-alikes apart, `proof` compares with a known truth.
 """
 
+from diagnosis.answer.alike import Alike
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.next_measurement import Plan
@@ -14,6 +15,7 @@ from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
     "CONFUSED",
+    "Alike",
     "Candidate",
     "ConfusionClass",
     "Detectable",
