@@ -13,7 +13,7 @@ from twin.errors import DesignError
 
 EACH = 60
 """Inputs of a reader: a few seconds in all."""
-LONGEST = 600
+LONGEST = 900
 """Longest line of a refusal, characters."""
 NAMES = (
     "machine", "errors", "run", "pose", "sensors", "project", "standard", "model", "log", "program"

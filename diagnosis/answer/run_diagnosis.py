@@ -8,6 +8,8 @@ import numpy as np
 from diagnosis.answer.alike import period_value, periods_alike
 from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
 from diagnosis.answer.detectable import detectable
+from diagnosis.answer.fault_trial import description_faults
+from diagnosis.answer.learnt_geometry import learnt_geometry
 from diagnosis.answer.next_measurement import (
     Plan,
     candidate_targets,
@@ -145,6 +147,12 @@ def _result(
         where=_where(steps, verdict),
         detectable=detectable(effects, seen, len(final.library.complement.u)),
         plans=_plans(task, added, classes, gross, rng),
+        geometry=learnt_geometry(
+            steps[-1].fit,
+            task.prior if task.is_known else None,
+            steps[0].fit if len(steps) > 1 else None,
+        ),
+        faults=description_faults(steps[0].fit, progress),
         remarks=_remarks(steps[-1].fit, final),
     )
 

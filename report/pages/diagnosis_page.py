@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import file_unit
 from report.numbers import digits
+from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
     Picture,
@@ -31,6 +32,7 @@ from report.plots import (
 )
 from report.style import series
 from report.words import (
+    fault_sentences,
     remark_sentence,
     sizes,
     structure_words,
@@ -80,6 +82,7 @@ def write_diagnosis_page(
         title=title,
         result=result,
         sentence=verdict_sentence(result),
+        faults=fault_sentences(result.faults),
         remarks=[remark_sentence(r) for r in result.remarks],
         where=region_rows(result.where),
         depends_on=[
@@ -94,6 +97,7 @@ def write_diagnosis_page(
         before=residual_pictures(place, "before", result.start),
         after=residual_pictures(place, "after", result.fit) if len(result.steps) > 1 else [],
         on_standard=_on_standard(result, place),
+        geometry=geometry_section(result.geometry),
         detectable=_detectable(result.detectable),
         plans=[_plan(p.tells_apart, p.touches, p.separation) for p in result.plans],
         gross=gross_rows(result.fit),

@@ -142,7 +142,7 @@ def test_periods_are_scanned_down_to_what_readings_resolve() -> None:
     near = near + np.random.default_rng(0).normal(0.0, 1e-3, len(near))
     assert scanned_periods(near)[0] == pytest.approx(1.0)
     # no wave longer than half the record
-    assert scanned_periods(np.arange(0.0, 10.0, 0.01))[-1] == pytest.approx(5.0)
+    assert scanned_periods(np.arange(0.0, 10.0, 0.01))[-1] == pytest.approx(5.0, rel=1e-2)
     assert np.all(np.diff(fine) > 0.0)
 
 
