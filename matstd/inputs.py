@@ -8,7 +8,7 @@ from diagnosis.answer import faults_of_refused
 from diagnosis.choice import offered
 from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
-from report.words import fault_sentences
+from report.geometry import fault_sentences
 from twin.errors import BadFile, DesignError, NotEnoughData
 from twin.files import read_run
 from twin.library import (

@@ -15,9 +15,7 @@ from diagnosis.answer.learnt_geometry import (
     Correction,
     Estimate,
     GeometryRow,
-    LadderStep,
     LearntGeometry,
-    Rung,
 )
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
@@ -39,12 +37,10 @@ __all__ = [
     "Fault",
     "GeometryRow",
     "GroupResidual",
-    "LadderStep",
     "LearntGeometry",
     "Plan",
     "Proof",
     "Quantity",
-    "Rung",
     "Step",
     "Verdict",
     "compare",

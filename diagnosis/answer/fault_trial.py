@@ -24,7 +24,7 @@ from diagnosis.answer.suspects import (
     suspects,
 )
 from diagnosis.evidence import Progress, quiet
-from diagnosis.fit import PRIOR_DOF, Fit, Solution, fit_run, solve, unit_mistake
+from diagnosis.fit import PRIOR_DOF, Fit, fit_run, solve, unit_mistake
 from twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array, apply, inverse
@@ -243,15 +243,15 @@ def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array
     if count:  # what was moved before is part of the departure from what is stated
         phi = solution.phi[-count:]
         objective += float(((phi + at / sd_free) ** 2 - phi**2).sum())
-    evidence = _log_evidence(solution, objective, n)
+    log_det = 2.0 * float(np.log(np.abs(np.diag(solution.R))).sum())
+    evidence = _log_evidence(objective, log_det, n)
     u = sd_free * np.sqrt((solution.root[-count:] ** 2).sum(axis=1)) if count else np.zeros(0)
     theta = sd_free * solution.phi[-count:] if count else np.zeros(0)
     return evidence, theta, u
 
 
-def _log_evidence(solution: Solution, objective: float, n: int) -> float:
+def _log_evidence(objective: float, log_det: float, n: int) -> float:
     """As `evidence.log_evidence`: normal linear model, the size of the noise integrated out."""
-    log_det = 2.0 * float(np.log(np.abs(np.diag(solution.R))).sum())
     return -0.5 * (n + PRIOR_DOF) * float(np.log(max(objective, 1e-9) + PRIOR_DOF)) - 0.5 * log_det
 
 

@@ -10,7 +10,7 @@ from diagnosis.fit.estimability import Estimable, estimable
 from diagnosis.fit.gross import GrossErrors
 from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
 from diagnosis.fit.inner import continuous_inner, shifted, spacing
-from diagnosis.fit.linear import BoolArray, LeftOut, Solution, left_out, solve
+from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
 from diagnosis.fit.memory import CLEARLY, Memory, Whitener, likely_memory
 from diagnosis.fit.noise import PRIOR_DOF
 from diagnosis.fit.prior import Prior
@@ -32,7 +32,6 @@ __all__ = [
     "Prior",
     "Reported",
     "Role",
-    "Solution",
     "UnitMistake",
     "Whitener",
     "continuous_inner",

@@ -78,16 +78,9 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
     """The comparison in words, and beside what the model promised (mm, 0 for nothing)."""
     from matstd.console import say
+    from report.geometry import fault_sentences, ladder_sentence, noted_lines
     from report.numbers import signed
-    from report.words import (
-        comparison_sentence,
-        fault_sentences,
-        ladder_sentence,
-        noted_lines,
-        promise_sentence,
-        region_words,
-        remark_sentence,
-    )
+    from report.words import comparison_sentence, promise_sentence, region_words, remark_sentence
     from twin.units import UM
 
     say(comparison_sentence(found), style="bold")

@@ -152,14 +152,8 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     from rich.table import Column, Table
 
     from matstd.console import console, say
-    from report.words import (
-        fault_sentences,
-        ladder_sentence,
-        noted_lines,
-        remark_sentence,
-        rivals_words,
-        verdict_sentence,
-    )
+    from report.geometry import fault_sentences, ladder_sentence, noted_lines
+    from report.words import remark_sentence, rivals_words, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = [

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.answer import Comparison
+from report.geometry import fault_sentences
 from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
@@ -16,12 +17,7 @@ from report.pages.residual_section import (
     setting,
 )
 from report.plots import draw_on_standard, is_spread
-from report.words import (
-    comparison_sentence,
-    fault_sentences,
-    remark_sentence,
-    structure_words,
-)
+from report.words import comparison_sentence, remark_sentence, structure_words
 from twin.units import UM
 
 PAGE = "report.html"

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import file_unit
+from report.geometry import fault_sentences
 from report.numbers import digits
 from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
@@ -32,7 +33,6 @@ from report.plots import (
 )
 from report.style import series
 from report.words import (
-    fault_sentences,
     remark_sentence,
     sizes,
     structure_words,

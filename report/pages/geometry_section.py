@@ -3,7 +3,7 @@
 from typing import Any
 
 from diagnosis.answer import LearntGeometry
-from report.words import correction_line, geometry_lines
+from report.geometry import correction_line, geometry_lines
 from twin.units import UM
 
 

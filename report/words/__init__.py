@@ -19,15 +19,6 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.fault_words import (
-    fault_sentences,
-)
-from report.words.geometry_words import (
-    correction_line,
-    geometry_lines,
-    ladder_sentence,
-    noted_lines,
-)
 from report.words.probe_words import ordering_words
 from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (
@@ -43,15 +34,10 @@ __all__ = [
     "best_rival",
     "comparison_remarks",
     "comparison_sentence",
-    "correction_line",
     "criterion_words",
     "design_lines",
     "dominant_words",
-    "fault_sentences",
-    "geometry_lines",
-    "ladder_sentence",
     "microns",
-    "noted_lines",
     "ordering_words",
     "place_words",
     "promise_sentence",

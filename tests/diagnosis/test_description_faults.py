@@ -10,7 +10,7 @@ from diagnosis.answer.fault_trial import description_faults, faults_of_refused
 from diagnosis.answer.suspects import Fault
 from diagnosis.fit.identification import fit_run
 from matstd.cli import main
-from report.words.fault_words import fault_sentences
+from report.geometry.fault_words import fault_sentences
 from twin.errors import BadFile
 from twin.library.ordinary import ordinary_model
 

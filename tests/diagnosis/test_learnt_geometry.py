@@ -9,7 +9,7 @@ from diagnosis.answer.geometry_functionals import Quantity
 from diagnosis.answer.learnt_geometry import Rung, geometry_rows, learnt_geometry
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.prior import Prior
-from report.words.geometry_words import correction_line, noted_lines
+from report.geometry.geometry_words import correction_line, noted_lines
 from twin.frames import apply, inverse
 from twin.library.ordinary import ordinary_model
 from twin.machine.kinematics import tip

@@ -264,7 +264,7 @@ def test_the_page_stands_alone(page):
     assert addresses == []
     sources = re.findall(r'(?:src|href)="([^"]{0,30})', page)
     assert sources
-    assert all(s.startswith("data:image/png;base64,") for s in sources)
+    assert all(s.startswith(("data:image/png;base64,", "#")) for s in sources)
     assert "<script" not in page
     assert "url(" not in page
 
@@ -295,7 +295,7 @@ def test_verdict_opens_the_page(page, warm):
 
 
 def test_gross_errors_and_rivals_are_listed(page, warm):
-    tail = text_of(page.split("Touches that stand out")[1])
+    tail = text_of(page.split("Touches that stand out")[-1])
     fit = warm.fit
     rows = np.flatnonzero(fit.gross.rows)
     assert len(rows) > 2
@@ -303,7 +303,7 @@ def test_gross_errors_and_rivals_are_listed(page, warm):
         t = fit.run.touches
         place = f"{fit.run.line[i]} {t.feature[i]} {t.setups[t.setup[i]].name} {t.pose[i]}"
         assert f"{place} {fit.residual[i] / UM:+.1f} " in tail
-    apart = text_of(page.split("What cannot be told apart")[1].split("<h2>")[0])
+    apart = text_of(page.split("What cannot be told apart")[-1].split("<h2")[0])
     for rival in warm.steps[1].confusion.rivals[:8]:
         assert rival.effect.name in apart
 

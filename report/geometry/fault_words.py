@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from diagnosis.answer import DescriptionFault, Fault
 from report.numbers import digits, with_uncertainty
-from report.words.diagnosis_words import microns
+from report.words import microns
 from twin.units import DEG
 from twin.words import listed
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from diagnosis.answer import Correction, GeometryRow, LearntGeometry, Quantity
 from report.numbers import digits, with_uncertainty
-from report.words.diagnosis_words import microns
+from report.words import microns
 from twin.units import UM, URAD
 from twin.words import listed
 
