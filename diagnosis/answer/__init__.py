@@ -5,7 +5,6 @@ look-alikes, `sizes` numbers that rest on the touches alone, `detectable` what t
 shown, `next_measurement` touches that tell look-alikes apart, `proof` compares with a known truth.
 """
 
-from diagnosis.answer.alike import Alike
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.comparison import Comparison, GroupResidual, compare
 from diagnosis.answer.detectable import Detectable
@@ -25,7 +24,6 @@ from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
     "CONFUSED",
-    "Alike",
     "Candidate",
     "Comparison",
     "ConfusionClass",

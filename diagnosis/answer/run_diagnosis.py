@@ -326,7 +326,7 @@ def _plans(
             fits = [instead(other) for other in alike.others[:PERIODS_PLANNED]]
             periods = [f"{p:.4g}" for p in alike.periods[:PERIODS_PLANNED]]
             own = period_value(heads[i].effect)
-            names = (f"{name} {own:.4g} mm", f"{name} {', '.join(periods)} mm")
+            names = (f"{name}@{own:.4g}", f"{name}@{','.join(periods)}")
             offers = candidate_targets(task.run, alike.axis, rng)
             found = plan(instead(heads[i]), fits, names, offers)
             out += [replace(found, periods_of=name)] if found is not None else []

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from diagnosis.answer import Alike, Comparison, Diagnosis, Step, Verdict
+from diagnosis.answer import Comparison, Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Condition, Shape, Side, Structure
 from report.numbers import condition, digits, noun, span, with_uncertainty
@@ -157,13 +157,16 @@ def _fall(diagnosis: Diagnosis) -> str:
     )
 
 
-def alike_words(alike: Alike, places: Sequence[float] = ()) -> str:
+def _alike(step: Step, places: Sequence[float]) -> str:
     """What a period cannot be told from, and where to measure to tell them apart.
 
     Args:
-        alike: The periods.
+        step: With an effect whose period others look like; others have nothing said.
         places: Readings of the axis that would tell them apart, mm; empty for none on offer.
     """
+    alike = step.confusion.alike if step.confusion else None
+    if alike is None:
+        return ""
     longest = [f"{p:.4g}" for p in alike.periods[:PERIODS_TOLD]]
     more = len(alike.periods) - len(longest)
     shorter = f" or one of {more} shorter ones" if more > 0 else ""
@@ -195,9 +198,7 @@ def _added(diagnosis: Diagnosis, step: Step, most: int) -> str:
         told.append(f"or {rivals[0].effect.name}")
     elif rivals:
         told.append(f"or one of {len(rivals)} effects that look the same")
-    clauses = [", ".join(told)] if told else []
-    if step.confusion is not None and step.confusion.alike is not None:
-        clauses.append(alike_words(step.confusion.alike, _places(diagnosis, step)))
+    clauses = [c for c in (", ".join(told), _alike(step, _places(diagnosis, step))) if c]
     return f"{name} ({'; '.join(clauses)})" if clauses else name
 
 
