@@ -23,6 +23,7 @@ from diagnosis.evidence import (
     ResidualSpace,
     ScaledEffect,
     Signatures,
+    period_of,
     quiet,
     scanned_grids,
     signatures,
@@ -34,12 +35,16 @@ from diagnosis.search.refine import refined_set
 from diagnosis.search.regrid import regridded
 from diagnosis.search.screening import Library, joined_shortlists
 from diagnosis.search.selection import Budget, EffectSubset, Search
+from twin.effects import Again, again
 from twin.frames import Array
 from twin.model import Effect, Model
 from twin.record import Run
 
 ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
+
+PERIODS = 4
+"""Most periods of one component error of one axis."""
 
 NAMELESS = 3
 """Most patterns without a name that are put beside the effects of an unexplained run."""
@@ -166,6 +171,40 @@ def refined_named(
 
 
 def search_until_stable(
+    task: DiagnosisTask,
+    added: Sequence[ScaledEffect],
+    candidates: Sequence[Effect],
+    progress: Progress = quiet,
+) -> SearchState:
+    """Search, and again with further periods of what repeats where structure is left.
+
+    A screw and its encoder repeat with two periods. A second one is offered only beside a first,
+    and only where something is left.
+
+    Args:
+        task: What is diagnosed.
+        added: Effects that the user added.
+        candidates: Effects that may be found.
+        progress: Told of every stage.
+    """
+    offered = list(candidates)
+    state = _until_gross_errors_stay(task, added, offered, progress)
+    for number in range(2, PERIODS + 1):
+        before = {s.effect.name for s in state.effects}
+        repeat = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
+        first = [e for e in repeat if not isinstance(e, Again)]
+        further = [a for e in first if (a := again(e, number)) is not None]
+        if not further or not (state.left or state.nameless):
+            break
+        offered += further
+        other = _until_gross_errors_stay(task, added, offered, progress)
+        if not {a.name for a in further} & {s.effect.name for s in other.effects}:
+            break
+        state = other
+    return state
+
+
+def _until_gross_errors_stay(
     task: DiagnosisTask,
     added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
