@@ -15,9 +15,8 @@ VISIBLE = 0.25
 """Squared signature per unit of prior, over the noise, below which a direction of an effect's
 parameters could not be seen even at its expected size; it is not counted as a degree of freedom."""
 
-SCALES = (1.0, 4.0, 16.0, 64.0, 256.0)
-"""How many times larger than usual an effect may be; the likeliest factor is taken. The prior counts
-in units of the noise found so far, which an effect of thirty times its size has swollen as much."""
+SCALES = (1.0, 4.0, 16.0)
+"""How many times larger than usual an effect may be; the likeliest factor is taken."""
 
 SMALLEST = 1e-300
 """Probabilities are not told smaller than this."""

@@ -73,18 +73,6 @@ def test_a_fine_log_shows_a_short_period(period: float) -> None:
     assert confusion.alike is None
 
 
-def test_a_large_sine_is_no_wave_in_time() -> None:
-    """Forty times the noise, while the axis moves evenly: the prior must not hold the sine back."""
-    rng = np.random.default_rng(3)
-    x = np.arange(5.0, 15.0, 0.01)
-    error = 20.0 * UM * np.sin(2.0 * np.pi * x / 0.25)
-    run = run_of(x, -error + rng.normal(0.0, 0.5 * UM, len(x)))
-    run = replace(run, touches=replace(run.touches, time=np.arange(len(x), dtype=float)))
-    found = diagnose(run)
-    assert found.verdict is Verdict.MISSING
-    assert [e.name for e in found.found] == ["periodic(EXX)"]
-
-
 def test_a_fine_log_of_many_rows_shows_two_periods() -> None:
     """A screw of 2 mm and an encoder of 0.25 mm, written down while the axis moves evenly."""
     rng = np.random.default_rng(4)
