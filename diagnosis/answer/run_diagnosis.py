@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
+from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import detectable
 from diagnosis.answer.next_measurement import Plan, plan
+from diagnosis.answer.one_set import TestedSet, tested_set
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from diagnosis.choice import (
@@ -36,7 +37,6 @@ from diagnosis.search import (
     DiagnosisTask,
     Search,
     SearchState,
-    Verified,
     most_evident,
     refined_named,
     search_until_stable,
@@ -96,7 +96,7 @@ def diagnose(
     if choice is None:
         return result
     fields = [e for e in result.found if isinstance(e, ThermalField)]
-    told: tuple[Remark, ...] = (ways_tried(choice), *(field_shares(result.fit, e) for e in fields))
+    told: tuple[Remark, ...] = (*ways_tried(choice), *(field_shares(result.fit, e) for e in fields))
     return replace(result, choice=choice, remarks=(*told, *result.remarks))
 
 
@@ -108,10 +108,10 @@ def _result(
     rng: np.random.Generator | None,
 ) -> Diagnosis:
     """Everything that is told of the last round."""
-    classes, verified = _classes(final), {v.member.effect.name: v for v in final_tests(final)}
-    gross = final.base.gross
     progress(0.5, "what cannot be told apart")
-    steps = _steps(task, added, final, classes, verified, gross)
+    tested = tested_set(final)
+    final, classes, gross = tested.state, tested.classes, final.base.gross
+    steps = _steps(task, added, tested, gross)
     unexplained = bool(final.nameless or final.left)
     verdict = (
         Verdict.UNEXPLAINED
@@ -143,7 +143,7 @@ def _result(
 def _remarks(fit: Fit, final: SearchState) -> tuple[Remark, ...]:
     """What else a user should know, the search's own limit included."""
     out = remarks(fit)
-    if not final.search.budget.is_spent:
+    if not final.is_ended:
         return out
     return (*out, SearchEnded(MOST_SETS))
 
@@ -156,38 +156,18 @@ def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
     return regions(first, last if len(steps) > 1 else None)
 
 
-def final_tests(final: SearchState) -> list[Verified]:
-    """Tests of the chosen members with one another in place."""
-    return final.search.verify(final.chosen)
-
-
-def _classes(final: SearchState) -> list[ConfusionClass]:
-    """Confusion class of every found effect, in the order found."""
-    out = []
-    for i, effect in enumerate(final.effects):
-        others = final.effects[:i] + final.effects[i + 1 :]
-        if effect.effect.name in final.chances:
-            out.append(ConfusionClass(effect, (), ()))
-            continue
-        found = confusion_class(final.pool, effect, others, final.fixed)
-        out.append(found.headed(effect) if final.is_weighed else found)
-    return out
-
-
 def _steps(
     task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
-    final: SearchState,
-    classes: Sequence[ConfusionClass],
-    verified: dict[str, Verified],
+    tested: TestedSet,
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""
-    names = [m.effect.name for m in final.chosen.members]
-    p_values = [final.chances.get(n, verified[n].p_value) for n in names]
+    final, classes = tested.state, tested.classes
+    names = [s.effect.name for s in final.effects]
+    p_values = [final.chances.get(n, tested.tests[n].p_value) for n in names]
     order = _by_worth(final)
-    heads = [classes[i].sized for i in order]
-    effects = [*added, *heads]
+    effects = [*added, *(final.effects[i] for i in order)]
     last = task.fit(effects, gross, free_inner=True)
     first = task.fit((), gross)
     told = sizes(task, effects, gross, ResidualSpace.of(first))

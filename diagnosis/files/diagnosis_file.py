@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Plan, Step
+from diagnosis.choice import Choice
 from diagnosis.fit import file_unit
 from diagnosis.residual import Comparison, Condition, GroupResidual, Region, Side
 from twin.files import reading_columns, write_whole
@@ -26,6 +27,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         result: The diagnosis.
         remarks: Its remarks as sentences.
     """
+    choice = {} if result.choice is None else {"choice": _choice(result.choice)}
     return {
         "format": FORMAT,
         "touches": len(result.run),
@@ -47,6 +49,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         "detectable": [_detectable(d) for d in result.detectable],
         "next_measurement": [_plan(p) for p in result.plans],
         "remarks": list(remarks),
+        **choice,
     }
 
 
@@ -143,6 +146,22 @@ def _step(step: Step) -> dict[str, Any]:
         "p_value": step.p_value,
         **errors,
         "cannot_be_told_from": list(dict.fromkeys(r.effect.name for r in rivals)),
+    }
+
+
+def _choice(choice: Choice) -> dict[str, Any]:
+    """Ways of choosing that were tried, each with its plain error of blocks left out."""
+    return {
+        "chosen": choice.best.name,
+        "blocks": choice.blocks,
+        "ways": [
+            {
+                "way": way.name,
+                "held_out_um": _um(way.error),
+                "effects": [s.effect.name for s in way.effects],
+            }
+            for way in choice.ways
+        ],
     }
 
 

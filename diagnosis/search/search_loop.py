@@ -118,6 +118,7 @@ class SearchState:
         nameless: Patterns without a name that had to be put beside them.
         chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
         is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
+        is_ended: Whether the search was ended by its limit of sets.
     """
 
     base: Fit
@@ -130,6 +131,7 @@ class SearchState:
     nameless: tuple[Structure, ...]
     chances: Mapping[str, float] = field(default_factory=dict)
     is_weighed: bool = False
+    is_ended: bool = False
 
     @property
     def pool(self) -> Signatures:
@@ -232,6 +234,7 @@ def _with_structure(
         at_start=tuple(at_start),
         left=tuple(left),
         nameless=tuple(nameless),
+        is_ended=search.budget.is_spent,
     )
 
 
