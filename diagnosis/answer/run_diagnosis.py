@@ -167,13 +167,13 @@ def _steps(
     names = [s.effect.name for s in final.effects]
     p_values = [final.chances.get(n, tested.tests[n].p_value) for n in names]
     order = _by_worth(final)
-    effects = [*added, *(final.effects[i] for i in order)]
-    last = task.fit(effects, gross, free_inner=True)
+    effects: Sequence[ScaledEffect] = [*added, *(final.effects[i] for i in order)]
     first = task.fit((), gross)
-    told = sizes(task, effects, gross, ResidualSpace.of(first))
+    # the inner parameters that are told are those that are drawn and saved
+    told, effects = sizes(task, effects, gross, ResidualSpace.of(first))
     out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
     for k, sized in enumerate(effects):
-        fit = last if k + 1 == len(effects) else task.fit(effects[: k + 1], gross)
+        fit = task.fit(effects[: k + 1], gross)
         i = order[k - len(added)] if k >= len(added) else -1
         p = p_values[i] if i >= 0 else _named_probability(out[-1].fit, fit)
         confusion = classes[i] if i >= 0 else None

@@ -49,8 +49,8 @@ def sizes(
     effects: Sequence[ScaledEffect],
     gross: GrossErrors,
     complement: ResidualSpace,
-) -> tuple[tuple[Reported, ...], ...]:
-    """Parameters of every effect as a user reads them, with their uncertainties.
+) -> tuple[tuple[tuple[Reported, ...], ...], tuple[ScaledEffect, ...]]:
+    """Parameters of every effect as a user reads them, and the effects at their inner parameters.
 
     Args:
         task: What is diagnosed.
@@ -59,16 +59,16 @@ def sizes(
         complement: What the model to begin with leaves.
     """
     if not effects:
-        return ()
+        return (), ()
     fit, at = _settled(task, effects, gross)
     dof = fit.solution.dof + PRIOR_DOF
     # the scale of the noise is itself found: Student's distribution is a little wider
     wider = float(np.sqrt(dof / max(dof - 2.0, 0.5)))
+    moved = tuple(ScaledEffect(e, s.scale) for e, s in zip(at, effects, strict=True))
     out = []
     for i, effect in enumerate(at):
-        moved = [ScaledEffect(e, s.scale) for e, s in zip(at, effects, strict=True)]
         out.append(reported(fit, effect, wider, _instants(complement, moved, i)))
-    return tuple(out)
+    return tuple(out), moved
 
 
 def _settled(

@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Plan, Step
 from diagnosis.choice import Choice
-from diagnosis.fit import file_unit
+from diagnosis.fit import Fit, file_unit
 from diagnosis.residual import Comparison, Condition, GroupResidual, Region, Side
 from twin.files import reading_columns, write_whole
 from twin.record import Touches
@@ -70,6 +70,7 @@ def comparison_table(
     """
     worst = found.worst
     noise = found.fit.noise
+    learnt = {} if found.learnt is None else {"learnt": _errors(found.learnt)}
     return {
         "format": COMPARISON,
         "touches": len(found.run),
@@ -97,6 +98,7 @@ def comparison_table(
         "poses": [_group(g) for g in found.poses],
         "features": [_group(g) for g in found.features],
         "remarks": list(remarks),
+        **learnt,
     }
 
 
@@ -128,13 +130,18 @@ def _um(value: float) -> float:
     return _digits(value / UM)
 
 
+def _errors(fit: Fit) -> dict[str, float]:
+    """Figures by which a fit is judged."""
+    return {
+        "rms_um": _um(fit.rms),
+        "test_rms_um": _um(fit.test_rms),
+        "chi2_ratio": _digits(fit.noise.chi2_ratio),
+    }
+
+
 def _step(step: Step) -> dict[str, Any]:
     """One step in which the error falls."""
-    errors = {
-        "rms_um": _um(step.fit.rms),
-        "test_rms_um": _um(step.fit.test_rms),
-        "chi2_ratio": _digits(step.fit.noise.chi2_ratio),
-    }
+    errors = _errors(step.fit)
     if step.effect is None:
         return {"effect": None, **errors}
     rivals = step.confusion.rivals if step.confusion else ()

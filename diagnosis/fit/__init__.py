@@ -14,6 +14,7 @@ from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
 from diagnosis.fit.memory import CLEARLY, Memory, Whitener, likely_memory
 from diagnosis.fit.noise import PRIOR_DOF
 from diagnosis.fit.prior import Prior
+from diagnosis.fit.remade import Learnt, inner_root, remade
 from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "Fit",
     "GrossErrors",
     "InstantEstimate",
+    "Learnt",
     "LeftOut",
     "Memory",
     "MistakenUnit",
@@ -38,9 +40,11 @@ __all__ = [
     "estimable",
     "file_unit",
     "fit_run",
+    "inner_root",
     "inner_unit",
     "left_out",
     "likely_memory",
+    "remade",
     "reported",
     "shifted",
     "solve",

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
+from diagnosis.fit import BoolArray, Fit, Learnt, Prior, fit_run, remade, solve
 from diagnosis.remarks import Remark, remarks
 from diagnosis.residual.failing_regions import Region, regions
 from diagnosis.residual.structure import Structure, find_structure
@@ -52,6 +52,8 @@ class Comparison(Tabular):
         structure: What the residual varies with, the most certain first.
         where: Regions where the model fails.
         remarks: What else a user should know.
+        learnt: The fit that the model was learnt by, where that was from this very run: its
+            figures are those that were told then.
     """
 
     fit: Fit
@@ -60,6 +62,7 @@ class Comparison(Tabular):
     structure: tuple[Structure, ...]
     where: tuple[Region, ...]
     remarks: tuple[Remark, ...]
+    learnt: Fit | None = None
 
     number_format = ".4f"  # a tenth of a nanometre
 
@@ -161,6 +164,7 @@ def compare(
     model: Model | None = None,
     estimates: Prior | None = None,
     progress: Progress = quiet,
+    learnt: Learnt | None = None,
 ) -> Comparison:
     """Measured against predicted deviations.
 
@@ -170,6 +174,7 @@ def compare(
         estimates: Of the model's parameters, from an earlier run; then nothing but where the
             standard stands is learnt from this one. None fits the whole model to this run.
         progress: Told of the tests.
+        learnt: What a model file kept of the fit to this very run; None where it was another run.
 
     Raises:
         NotEnoughData: So few touches that nothing can be said.
@@ -191,6 +196,7 @@ def compare(
         structure=found,
         where=regions(fit),
         remarks=remarks(fit),
+        learnt=None if learnt is None else remade(run, model, learnt),
     )
 
 

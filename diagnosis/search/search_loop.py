@@ -85,18 +85,13 @@ class DiagnosisTask:
         self,
         effects: Sequence[ScaledEffect] = (),
         gross: GrossErrors | None = None,
-        free_inner: bool = False,
     ) -> Fit:
-        """The model with further effects, fitted; twice where inner parameters are set free."""
+        """The model with further effects, fitted."""
         model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
         prior = self.prior
         for sized in effects:
             prior = prior.joined(self.found_prior(sized))
-        fit = fit_run(self.run, model, prior, gross=gross, memory=self.memory)
-        if not free_inner or not effects:
-            return fit
-        theta = fit.theta[: len(model.parameters)]
-        return fit_run(self.run, model, prior, theta, fit.gross, self.memory)
+        return fit_run(self.run, model, prior, gross=gross, memory=self.memory)
 
     def found_prior(self, sized: ScaledEffect) -> Prior:
         """Of the parameters of an effect that was added."""

@@ -9,6 +9,10 @@ from typing import TYPE_CHECKING
 from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from diagnosis.files import SavedModel
+    from diagnosis.fit import Reported
     from diagnosis.residual import Comparison
 
 OURS = ("pictures/*.png", *REPORT_FILES)
@@ -43,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.progress import stages
     from report.words import remark_sentence, structure_words
     from twin.library import ordinary_model
-    from twin.units import UM
+    from twin.record import without_copies
 
     run, saved = read_inputs(
         args.run_file, args.model, args.effects, "so the agreement is optimistic"
@@ -56,6 +60,7 @@ def run(args: argparse.Namespace) -> int:
             model,
             saved.estimates if saved else None,
             lambda share, doing: show(doing, int(100 * share), 100),
+            saved.learnt(without_copies(run)) if saved else None,
         )
         write_comparison(
             folder / "comparison.json",
@@ -71,16 +76,17 @@ def run(args: argparse.Namespace) -> int:
             title = Path(args.run_file).name
             write_compare_page(found, folder, title, np.random.default_rng(0))
             print_report(folder, printed_by)
-    _tell(args, found, saved.source.held_out_um * UM if saved else 0.0)
+    _tell(args, found, saved)
     return 0
 
 
-def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
-    """The comparison in words, and beside what the model promised (mm, 0 for nothing)."""
+def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None) -> None:
+    """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
     from report.numbers import signed
     from report.words import (
         comparison_sentence,
+        learnt_sentence,
         promise_sentence,
         region_words,
         remark_sentence,
@@ -88,8 +94,12 @@ def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
     from twin.units import UM
 
     say(comparison_sentence(found), style="bold")
-    if promised > 0.0 and found.is_prediction:
-        say(promise_sentence(found, promised))
+    if found.learnt is not None and saved is not None:
+        say(learnt_sentence(found.learnt))
+        for name, numbers in saved.told.items():
+            _tell_numbers(name, numbers)
+    elif saved is not None and saved.source.held_out_um > 0.0:
+        say(promise_sentence(found, saved.source.held_out_um * UM))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
@@ -97,3 +107,13 @@ def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
         say(f"- {remark_sentence(remark)}")
     first = "" if args.no_report else "report.html, "
     say(f"{args.output}: look at {first}comparison.json, residuals.csv")
+
+
+def _tell_numbers(name: str, numbers: Sequence[Reported]) -> None:
+    """Numbers of one effect as they were told when the model was learnt."""
+    from matstd.console import say
+    from report.words import number_words
+
+    told = ", ".join(" ".join(value) for value in number_words(numbers))
+    if told:
+        say(f"- {name}: {told}")

@@ -132,7 +132,8 @@ def _write(
     made_with = f"material-standard {versions()['material-standard']}"
     promised = result.choice.best.error if fit is result.fit and result.choice else None
     name = Path(args.run_file).name
-    write_model(folder / "model.toml", fit, name, before, made_with, promised)
+    told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
+    write_model(folder / "model.toml", fit, name, before, made_with, promised, told)
     for i, plan in enumerate(result.plans, start=1):
         write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
 
@@ -171,15 +172,11 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
 def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
-    from report.numbers import digits
-    from report.words import values
-    from twin.units import UM
+    from report.words import figures, values
 
     return (
         step.effect.name if step.effect is not None else "starting model",
         ", ".join(value for _, value in values(step)[:2]),
         f"{step.p_value:.0e}" if step.effect is not None else "",
-        f"{step.fit.rms / UM:.3f}",
-        f"{step.fit.test_rms / UM:.3f}",
-        digits(step.fit.noise.chi2_ratio),
+        *figures(step.fit),
     )

@@ -15,7 +15,7 @@ from report.pages.residual_section import (
     setting,
 )
 from report.plots import draw_on_standard, is_spread
-from report.words import comparison_sentence, remark_sentence, structure_words
+from report.words import comparison_sentence, learnt_sentence, remark_sentence, structure_words
 from twin.units import UM
 
 PAGE = "report.html"
@@ -52,6 +52,7 @@ def write_compare_page(
         remarks=[remark_sentence(r) for r in found.remarks],
         where=region_rows(found.where),
         structure=[{"words": structure_words(s), "p": s.p_value} for s in found.structure],
+        learnt=learnt_sentence(found.learnt) if found.learnt else "",
         um=UM,
         on_standard=on_standard,
         pictures=residual_pictures(place, "residual", found.fit, z),

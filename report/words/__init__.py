@@ -8,7 +8,10 @@ from report.words.artefact_words import alternative_words, comparison_remarks, c
 from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
+    figures,
+    learnt_sentence,
     microns,
+    number_words,
     promise_sentence,
     region_words,
     rivals_words,
@@ -37,7 +40,10 @@ __all__ = [
     "criterion_words",
     "design_lines",
     "dominant_words",
+    "figures",
+    "learnt_sentence",
     "microns",
+    "number_words",
     "ordering_words",
     "place_words",
     "promise_sentence",

@@ -68,7 +68,12 @@ def values(step: Step) -> list[tuple[str, str]]:
 
     Of an effect with many coefficients only what sums them up and its inner parameters are told.
     """
-    told = sorted(step.reported, key=lambda r: _ORDER.index(r.role))
+    return number_words(step.reported)
+
+
+def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
+    """The same of the numbers themselves, as a model file keeps them."""
+    told = sorted(reported, key=lambda r: _ORDER.index(r.role))
     if len(told) > ALL_TOLD:
         told = [r for r in told if r.role is not Role.COEFFICIENT]
     return [named_value(r) for r in told]
@@ -233,6 +238,20 @@ def promise_sentence(found: Comparison, promised: float) -> str:
     return (
         f"That is {word} was promised: {microns(found.rms)} beside {microns(promised)}, the error "
         "of rows that the model had not seen when it was made."
+    )
+
+
+def figures(fit: Fit) -> tuple[str, str, str]:
+    """Fitted and held-out error, µm, and chi-square per degree of freedom, as in all tables."""
+    return f"{fit.rms / UM:.3f}", f"{fit.test_rms / UM:.3f}", digits(fit.noise.chi2_ratio)
+
+
+def learnt_sentence(fit: Fit) -> str:
+    """Figures of the fit that a model was learnt by, made again from the model."""
+    rms, held_out, chi2 = figures(fit)
+    return (
+        f"As it was learnt from these very rows: fitted {rms} µm, held out {held_out} µm, "
+        f"chi-square per degree of freedom {chi2}."
     )
 
 
