@@ -13,7 +13,7 @@ from types import FrameType
 STOPPED = 130
 """Exit code of a command that was asked to stop."""
 
-PATIENCE = 0.7
+PATIENCE = 0.4
 """Seconds that the command has to come to an end by itself: with what follows, less than one."""
 
 

@@ -17,6 +17,7 @@ from artefact.brief.project_file import read_project
 from diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
 from diagnosis.files.model_file import read_model
 from probe_paths.control.log import read_log
+from twin.errors import BadFile
 from twin.files import run_columns, run_file
 from twin.files.error_file import read_errors
 from twin.files.machine_file import read_machine
@@ -142,8 +143,21 @@ def test_every_key_is_described_with_its_default(name):
 
 def test_every_column_of_a_run_is_described(folder):
     columns = {*run_columns.POINT, *run_columns.NORMAL, *run_columns.FORCE, *run_file._OPTIONAL}
-    placeholders = {"X_mm", "B_deg", "dirX", "dirB", "T_<sensor>_degC"}
+    placeholders = {"X_mm", "B_deg", "dirX", "dirB", "T_<sensor>_degC", "V_<name>_<unit>"}
     assert set(tables()["columns of runs"]) == columns | placeholders
+
+
+def test_other_columns_are_those_of_their_readers(folder):
+    """What the pages on poses and sensors name is read, and the readers name nothing else."""
+    chain = read_machine(folder / "machine.toml")
+    assert set(tables()["columns of poses"]) == {"X_mm", "B_deg", "tool_length_mm"}
+    (folder / "odd.csv").write_text("what\n1\n", encoding="utf-8")
+    with pytest.raises(BadFile, match=r"X_mm.*, tool_length_mm$"):
+        read_poses(folder / "odd.csv", chain)
+    assert set(tables()["columns of sensors"]) == {"clock", "T_<sensor>_degC", "spindle_rpm"}
+    text = examples()["sensors.csv"].replace("T_ambient_degC", "spindle_rpm")
+    (folder / "speed.csv").write_text(text, encoding="utf-8")
+    assert read_sensors(folder / "speed.csv").spindle_rpm is not None
 
 
 def test_classes_of_errors_are_described_with_their_amplitudes():

@@ -43,8 +43,10 @@ KERNEL = {"cad_out/build/solid.py", "cad_out/build/faces.py", "cad_out/build/exc
 MAX_FILES = 16
 MAX_LINES = 400
 MAX_CODE = 60
-FACE = range(3, 31)
+FACE = range(3, 26)
 """Names of a face."""
+WIDE = {"diagnosis.fit": 29}
+"""Faces that are wider than they should be, with their number of names: it may only fall."""
 
 UNIT = re.compile(r"µm|µrad|°|\b(?:mm|min|degC)\b")
 CARDS = {"formula", "units", "typical", "source", "summary"}
@@ -57,17 +59,14 @@ EXCUSED = {
     "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
+    "artefact/compare/alternatives.py": "names of other set-ups, by which files and pages list them",
     "artefact/place/placement.py": "what a refusal appends to the limit that binds",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
     "diagnosis/fit/unit_mistakes.py": "refusal, and the same where it is only suspected",
 }
 """Files below `report` with units in prose outside a `raise` all the same, and why."""
-UNSAID = {
-    "artefact/compare/alternatives.py",
-    "diagnosis/residual/partial_residuals.py",
-    "diagnosis/residual/run_remarks.py",
-}
+UNSAID = {"diagnosis/residual/partial_residuals.py"}
 """Files whose sentences belong into `report/words`."""
 
 FILES = [f for room in ALLOWED for f in sorted((ROOT / room).rglob("*.py"))]
@@ -158,7 +157,7 @@ FACES = sorted(
     module_of(f)
     for f in FILES
     if f.name == "__init__.py"
-    and module_of(f).count(".") == 1
+    and module_of(f).count(".") <= 1
     and not module_of(f).startswith("matstd")
 )
 
@@ -166,7 +165,8 @@ FACES = sorted(
 @pytest.mark.parametrize("name", FACES)
 def test_faces_are_short_and_true(name: str) -> None:
     face = importlib.import_module(name)
-    assert len(face.__all__) in FACE, len(face.__all__)
+    assert ast.get_docstring(ast.parse(Path(str(face.__file__)).read_text(encoding="utf-8")))
+    assert len(face.__all__) in FACE or len(face.__all__) <= WIDE.get(name, 0), len(face.__all__)
     assert len(set(face.__all__)) == len(face.__all__)
     for listed in face.__all__:
         assert getattr(face, listed) is not None, listed

@@ -24,7 +24,7 @@ from diagnosis.search import (
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TestedSet:
+class ToldSet:
     """A set of effects with its tests.
 
     Attributes:
@@ -33,14 +33,12 @@ class TestedSet:
         tests: Of every member with the others in place, by the name of the effect.
     """
 
-    __test__ = False  # no test case, whatever pytest makes of the name
-
     state: SearchState
     classes: tuple[ConfusionClass, ...]
     tests: Mapping[str, Verified]
 
 
-def tested_set(final: SearchState) -> TestedSet:
+def told_set(final: SearchState) -> ToldSet:
     """The set of a search as it is told, tested.
 
     Inner parameters are the refined ones and names those of the likeliest members of every class,
@@ -50,7 +48,7 @@ def tested_set(final: SearchState) -> TestedSet:
         final: Result of the search; of a set that was chosen by prediction nothing is exchanged.
     """
     if final.is_weighed:
-        return TestedSet(final, _as_weighed(final), _by_name(final))
+        return ToldSet(final, _as_weighed(final), _by_name(final))
     grid = tuple(ScaledEffect(m.effect, m.scale) for m in final.chosen.members)
     state = placed(final, final.effects)
     tests = _by_name(state)
@@ -69,7 +67,7 @@ def tested_set(final: SearchState) -> TestedSet:
                 state = placed(other, state.effects)
         classes.append(found.headed(state.effects[i]))
     names = {s.effect.name for s in state.effects}
-    return TestedSet(state, tuple(c.beside(names) for c in classes), tests)
+    return ToldSet(state, tuple(c.beside(names) for c in classes), tests)
 
 
 def placed(state: SearchState, effects: Sequence[ScaledEffect]) -> SearchState:

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.answer.ambiguity import ConfusionClass
+from diagnosis.answer.collinear import check_distinct, not_significant
 from diagnosis.answer.detectable import detectable
 from diagnosis.answer.next_measurement import Plan, plan
-from diagnosis.answer.one_set import TestedSet, tested_set
+from diagnosis.answer.one_set import ToldSet, told_set
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from diagnosis.choice import (
@@ -74,6 +75,7 @@ def diagnose(
 
     Raises:
         NotEnoughData: So few touches that nothing can be said.
+        DesignError: Named effects that these touches cannot tell from one another.
 
     Example:
         ``diagnose(read_run("run.csv")).verdict`` is one of three phrases.
@@ -84,6 +86,8 @@ def diagnose(
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
     library = offered(run.touches) if candidates is None else list(candidates)
     added = refined_named(task, named, progress)
+    if len(added) > 1:
+        check_distinct(ResidualSpace.of(task.fit()), added)
     known = {e.name for e in (*start.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
@@ -109,7 +113,7 @@ def _result(
 ) -> Diagnosis:
     """Everything that is told of the last round."""
     progress(0.5, "what cannot be told apart")
-    tested = tested_set(final)
+    tested = told_set(final)
     final, classes, gross = tested.state, tested.classes, final.base.gross
     steps = _steps(task, added, tested, gross)
     unexplained = bool(final.nameless or final.left)
@@ -136,7 +140,7 @@ def _result(
         where=_where(steps, verdict),
         detectable=detectable(effects, seen, len(final.library.complement.u)),
         plans=_plans(task, added, classes, gross, rng),
-        remarks=_remarks(steps[-1].fit, final),
+        remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
     )
 
 
@@ -159,7 +163,7 @@ def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
 def _steps(
     task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
-    tested: TestedSet,
+    tested: ToldSet,
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""

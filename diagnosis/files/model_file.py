@@ -132,9 +132,12 @@ class SavedModel:
         m = source.memory
         return Learnt(
             estimates=Prior.of_estimates(self.estimates.mean, held),
+            from_inner=self.from_inner,
             factor=source.noise_um * UM / float(np.median(run.u)),
             gross=np.isin(run.line, lines),
-            memory=m and Memory(m.correlation, m.step_s, m.by_place, m.is_filtered),
+            memory=None
+            if m is None
+            else Memory(m.correlation, m.step_s, m.by_place, m.is_filtered),
         )
 
 

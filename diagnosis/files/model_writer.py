@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys
-from diagnosis.fit import Fit, Memory, Reported, inner_root, inner_unit
+from diagnosis.fit import Fit, Learnt, Memory, Reported, inner_unit
 from twin.files import write_whole
 from twin.frames import Array
 from twin.machine import Chain
@@ -49,9 +49,8 @@ def model_text(
     """Text of a model file; arguments as of `write_model`."""
     import tomli_w
 
-    theta, count = fit.theta, len(fit.model.parameters)
-    inner_part = inner_root(fit)
-    covariance = fit.covariance[:count, :count] + inner_part @ inner_part.T
+    learnt = Learnt.of(fit)
+    theta = learnt.estimates.mean
     factors: list[float] = []
     entries = []
     for effect in fit.model.effects:
@@ -69,14 +68,14 @@ def model_text(
         factors += [factor for _, factor in keys]
         entries.append(entry)
     scale = np.array(factors)
-    shown = covariance / np.outer(scale, scale)
+    shown = learnt.covariance / np.outer(scale, scale)
     tables = {
         "machine": _machine(fit.model.chain),
         "source": _source(fit, run_name, before, made_with, held_out),
         "effect": entries,
     }
     # top-level keys stand before tables in TOML, so the covariance goes before what it is about
-    head = f'format = "{FORMAT}"\n' + _triangle(shown) + _root(inner_part / scale[:, None])
+    head = f'format = "{FORMAT}"\n' + _triangle(shown) + _root(learnt.from_inner / scale[:, None])
     return head + tomli_w.dumps(tables)
 
 

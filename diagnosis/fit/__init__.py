@@ -5,16 +5,16 @@ set aside, the size of the noise, and errors of poses that were left out. `estim
 combinations the run determines; `reported` gives parameters as a user reads them.
 """
 
-from diagnosis.fit.describe import InstantEstimate, Reported, Role, file_unit, inner_unit, reported
+from diagnosis.fit.describe import Reported, Role, file_unit, inner_unit, reported
 from diagnosis.fit.estimability import Estimable, estimable
 from diagnosis.fit.gross import GrossErrors
 from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
 from diagnosis.fit.inner import continuous_inner, shifted, spacing
+from diagnosis.fit.learnt_fit import Learnt
 from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
 from diagnosis.fit.memory import CLEARLY, Memory, Whitener, likely_memory
 from diagnosis.fit.noise import PRIOR_DOF
 from diagnosis.fit.prior import Prior
-from diagnosis.fit.remade import Learnt, inner_root, remade
 from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 
 __all__ = [
@@ -26,7 +26,6 @@ __all__ = [
     "Estimable",
     "Fit",
     "GrossErrors",
-    "InstantEstimate",
     "Learnt",
     "LeftOut",
     "Memory",
@@ -40,11 +39,9 @@ __all__ = [
     "estimable",
     "file_unit",
     "fit_run",
-    "inner_root",
     "inner_unit",
     "left_out",
     "likely_memory",
-    "remade",
     "reported",
     "shifted",
     "solve",

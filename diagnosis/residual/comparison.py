@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from diagnosis.fit import BoolArray, Fit, Learnt, Prior, fit_run, remade, solve
+from diagnosis.fit import BoolArray, Fit, Learnt, Prior, fit_run, solve
 from diagnosis.remarks import Remark, remarks
 from diagnosis.residual.failing_regions import Region, regions
 from diagnosis.residual.structure import Structure, find_structure
@@ -196,7 +196,7 @@ def compare(
         structure=found,
         where=regions(fit),
         remarks=remarks(fit),
-        learnt=None if learnt is None else remade(run, model, learnt),
+        learnt=None if learnt is None else learnt.again(run, model),
     )
 
 

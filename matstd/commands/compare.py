@@ -9,10 +9,7 @@ from typing import TYPE_CHECKING
 from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from diagnosis.files import SavedModel
-    from diagnosis.fit import Reported
     from diagnosis.residual import Comparison
 
 OURS = ("pictures/*.png", *REPORT_FILES)
@@ -74,7 +71,8 @@ def run(args: argparse.Namespace) -> int:
 
             show("report", 0, 1)
             title = Path(args.run_file).name
-            write_compare_page(found, folder, title, np.random.default_rng(0))
+            told = saved.told if saved else None
+            write_compare_page(found, folder, title, np.random.default_rng(0), told)
             print_report(folder, printed_by)
     _tell(args, found, saved)
     return 0
@@ -86,7 +84,7 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
     from report.numbers import signed
     from report.words import (
         comparison_sentence,
-        learnt_sentence,
+        learnt_lines,
         promise_sentence,
         region_words,
         remark_sentence,
@@ -95,9 +93,8 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
 
     say(comparison_sentence(found), style="bold")
     if found.learnt is not None and saved is not None:
-        say(learnt_sentence(found.learnt))
-        for name, numbers in saved.told.items():
-            _tell_numbers(name, numbers)
+        for line in learnt_lines(found.learnt, saved.told):
+            say(line)
     elif saved is not None and saved.source.held_out_um > 0.0:
         say(promise_sentence(found, saved.source.held_out_um * UM))
     for region in found.where:
@@ -107,13 +104,3 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
         say(f"- {remark_sentence(remark)}")
     first = "" if args.no_report else "report.html, "
     say(f"{args.output}: look at {first}comparison.json, residuals.csv")
-
-
-def _tell_numbers(name: str, numbers: Sequence[Reported]) -> None:
-    """Numbers of one effect as they were told when the model was learnt."""
-    from matstd.console import say
-    from report.words import number_words
-
-    told = ", ".join(" ".join(value) for value in number_words(numbers))
-    if told:
-        say(f"- {name}: {told}")

@@ -172,11 +172,15 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
 def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
-    from report.words import figures, values
+    from report.numbers import digits
+    from report.words import values
+    from twin.units import UM
 
     return (
         step.effect.name if step.effect is not None else "starting model",
         ", ".join(value for _, value in values(step)[:2]),
         f"{step.p_value:.0e}" if step.effect is not None else "",
-        *figures(step.fit),
+        f"{step.fit.rms / UM:.3f}",
+        f"{step.fit.test_rms / UM:.3f}",
+        digits(step.fit.noise.chi2_ratio),
     )

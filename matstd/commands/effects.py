@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "kind", metavar="KIND", nargs="?", help="tell all about one kind, such as thermal-lag"
+        "kind",
+        metavar="KIND",
+        nargs="*",
+        help="one kind, such as thermal-lag, or any words for it: spindle growth",
     )
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
@@ -23,29 +26,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the table, or the whole story of one kind."""
+    """Print the table, the kinds that words may mean, or the whole story of one kind."""
     from pathlib import Path
 
     from matstd import console as words
     from twin.errors import UnknownEffect
-    from twin.library import kinds, load_installed_effects, load_user_effects
+    from twin.library import find_kinds, kinds, load_installed_effects, load_user_effects
 
     load_installed_effects()
     for path in args.effects:
         load_user_effects(Path(path))
     console = words.console()
-    if args.kind is None:
-        for kind in kinds():
-            _show(console, kind)
-        return 0
-    word = args.kind.partition("(")[0]
-    chosen = next((kind for kind in kinds() if kind.word == word), None)
-    if chosen is None:
+    query = " ".join(args.kind)
+    found = find_kinds(query) if query else kinds()
+    if not found:
         known = ", ".join(kind.word for kind in kinds())
-        raise UnknownEffect(f"unknown kind '{word}'; available: {known}")
-    _show(console, chosen)
-    for cls in chosen.classes:
-        console.print(_story(cls), markup=False)
+        raise UnknownEffect(f"unknown kind '{query}'; available: {known}")
+    for kind in found:
+        _show(console, kind)
+    if len(found) == 1:
+        several = len(found[0].classes) > 1 or bool(found[0].about)
+        for cls in found[0].classes:
+            console.print(_story(cls, with_head=several), markup=False)
     return 0
 
 
@@ -53,7 +55,8 @@ def _show(console: Console, kind: Kind) -> None:
     """How an effect is written, its formula, units, typical size and source, one below another."""
     from rich.markup import escape
 
-    console.print(f"[bold]{escape(kind.usage)}[/bold]  {escape(kind.summary)}")
+    title = f"{kind.title}: " if kind.title else ""
+    console.print(f"[bold]{escape(kind.usage)}[/bold]  {escape(title)}{escape(kind.summary)}")
     console.print(_card(kind))
 
 
@@ -71,14 +74,18 @@ def _card(kind: Kind) -> Table:
     return table
 
 
-def _story(cls: type) -> str:
-    """What the docstring of a class of effects tells a user: all but its attributes, reflowed."""
+def _story(cls: type, with_head: bool) -> str:
+    """What the docstring of a class of effects tells a user: all but its attributes, reflowed.
+
+    Its first line stands beside the name of the kind already where the kind has one class.
+    """
     import inspect
 
     text = inspect.getdoc(cls) or cls.__name__
     before, _, after = text.partition("\nAttributes:")
     _, reference, source = (after or before).partition("\nReference:")
     paragraphs = [" ".join(p.split()) for p in before.partition("\nReference:")[0].split("\n\n")]
+    paragraphs = paragraphs if with_head else paragraphs[1:]
     if reference:
         paragraphs.append("Reference: " + " ".join(source.split()))
     return "\n\n".join(paragraphs) + "\n"

@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import file_unit
-from report.numbers import digits
+from report.numbers import digits, unit_words
 from report.pages.page import write_page
 from report.pages.residual_section import (
     Picture,
@@ -34,7 +34,6 @@ from report.words import (
     remark_sentence,
     sizes,
     structure_words,
-    unit_words,
     values,
     verdict_sentence,
 )

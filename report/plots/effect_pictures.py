@@ -89,7 +89,7 @@ def _held_words(diagnosis: Diagnosis) -> str:
 
 
 def _step_words(step: Step) -> str:
-    return "model to\nbegin with" if step.effect is None else "+ " + tidy(step.effect.name)
+    return "starting\nmodel" if step.effect is None else "+ " + tidy(step.effect.name)
 
 
 def _value(ax: Any, x: float, y: float, above: bool, colour: str) -> None:

@@ -8,12 +8,14 @@ import pytest
 from simulator_case import simulate_case
 
 from diagnosis.answer import one_set
-from diagnosis.answer.one_set import placed, tested_set
-from diagnosis.fit.identification import fit_run
-from diagnosis.fit.memory import Memory
-from diagnosis.fit.remade import Learnt, inner_root, remade
+from diagnosis.answer.ambiguity import ConfusionClass, Rival
+from diagnosis.answer.collinear import left_by
+from diagnosis.answer.one_set import placed, told_set
 from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
+from diagnosis.fit.identification import fit_run
+from diagnosis.fit.learnt_fit import Learnt
+from diagnosis.fit.memory import Memory
 from diagnosis.fit.prior import Prior
 from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
 from matstd.cli import main
@@ -24,6 +26,7 @@ from twin.model.model import Model
 from twin.record.copies import without_copies
 
 LAG = (5, "hsm600u", ("thermal-lag(EXC)",))
+COLLINEAR = ("thermal-static(EXX,ambient)", "thermal-static(EXB,ambient)")
 TWO = (12, "hmc1995", ("backlash(Y)", "stylus-bending"))
 
 
@@ -41,7 +44,7 @@ def searched(case, key, names):
 
 def test_refined_effects_are_tested_as_they_are_told(case) -> None:
     _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
-    tested = tested_set(final)
+    tested = told_set(final)
     (told,) = tested.state.effects
     (member,) = tested.state.chosen.members
     assert member.effect is told.effect
@@ -60,11 +63,10 @@ def test_a_name_that_does_not_stand_is_not_told(case, monkeypatch) -> None:
     other = replace(final.effects[0], effect=parse_effect("backlash(X)", final.base.model.chain))
 
     def headed(pool, found, others, fixed=None):
-        rival = one_set.ConfusionClass(other, (), ())
-        return rival
+        return ConfusionClass(other, (), ())
 
     monkeypatch.setattr(one_set, "confusion_class", headed)
-    tested = tested_set(final)
+    tested = told_set(final)
     assert [s.effect.name for s in tested.state.effects] == ["thermal-lag(EXC)"]
     assert [c.effect.name for c in tested.classes] == ["thermal-lag(EXC)"]
     assert [r.effect.name for r in tested.classes[0].rivals] == ["backlash(X)"]
@@ -79,13 +81,10 @@ def test_no_effect_stands_twice_when_two_classes_want_one_head(case, monkeypatch
 
     def headed(pool, found, others, fixed=None):
         assert found.effect.name not in {o.effect.name for o in others}
-        rival = one_set.ConfusionClass(found, (), ())
-        if wanted.effect.name in {o.effect.name for o in others}:
-            return replace(rival, rivals=(one_set.Rival(wanted, 0.0, 1.0),))
-        return rival
+        return ConfusionClass(found, (Rival(wanted, 0.0, 1.0),), ())
 
     monkeypatch.setattr(one_set, "confusion_class", headed)
-    tested = tested_set(final)
+    tested = told_set(final)
     told = [s.effect.name for s in tested.state.effects]
     assert sorted(told) == sorted(set(told)) == ["backlash(Y)", "stylus-bending"]
     rivals = {r.effect.name for c in tested.classes for r in c.rivals}
@@ -95,23 +94,17 @@ def test_no_effect_stands_twice_when_two_classes_want_one_head(case, monkeypatch
 def test_a_set_put_back_is_what_it_was(case) -> None:
     _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
     before = final.search.pool.C.copy()
-    grid = tuple(replace(s, effect=m.effect) for s, m in zip(final.effects, final.chosen.members))
+    grid = tuple(
+        replace(s, effect=m.effect)
+        for s, m in zip(final.effects, final.chosen.members, strict=True)
+    )
     moved = placed(final, final.effects)
     assert np.abs(moved.search.pool.C - before).max() > 0.0
     again = placed(moved, grid)
-    assert again.search.pool.C == pytest.approx(before)
+    assert pytest.approx(before) == again.search.pool.C
 
 
 # --- figures made again from what is kept -----------------------------------------------------
-
-
-def kept(fit, root=None):
-    """What a model file keeps of a fit, without the file."""
-    count = len(fit.model.parameters)
-    covariance = fit.covariance[:count, :count]
-    gross = fit.gross.rows | fit.gross_test_rows
-    estimates = Prior.of_estimates(fit.theta[:count], covariance)
-    return Learnt(estimates, fit.noise.factor, gross, fit.memory)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +122,7 @@ def test_a_fit_is_made_again(case, memory, held_out) -> None:
     start = ordinary_model(run.touches.chain)
     model = Model(start.chain, (*start.effects, effect.tuned(1800.0)))
     fit = fit_run(run, model, memory=memory)
-    again = remade(run, model, kept(fit))
+    again = Learnt.of(fit).again(run, model)
     assert again.residual == pytest.approx(fit.residual, abs=1e-9)
     assert again.solution.leverage == pytest.approx(fit.solution.leverage, abs=1e-6)
     assert again.rms == pytest.approx(fit.rms, rel=1e-7)
@@ -144,11 +137,9 @@ def test_uncertain_inner_parameters_widen_what_is_saved(case, tmp_path) -> None:
     start = ordinary_model(run.touches.chain)
     model = Model(start.chain, (*start.effects, effect.tuned(1800.0)))
     fit = fit_run(run, model)
-    root = inner_root(fit)
+    root = Learnt.of(fit).from_inner
     count = len(model.parameters)
     assert root.shape == (count, 1)
-    free = fit_run(run, model, theta=None, free_inner=fit.theta[:count]) if False else None
-    assert free is None
     write_model(tmp_path / "model.toml", fit, "run.csv")
     saved = read_model(tmp_path / "model.toml")
     whole = saved.estimates.root @ saved.estimates.root.T
@@ -157,5 +148,82 @@ def test_uncertain_inner_parameters_widen_what_is_saved(case, tmp_path) -> None:
     assert np.diag(whole)[-1] > np.diag(held)[-1]
     learnt = saved.learnt(run)
     assert learnt is not None
-    assert figures(remade(run, saved.model, learnt)) == figures(fit)
+    assert figures(learnt.again(run, saved.model)) == figures(fit)
     assert saved.learnt(replace(run, deviation=run.deviation + 1e-3)) is None
+
+
+# --- the console and the page, and the model file -----------------------------------------------
+
+
+def flat(text):
+    return " ".join(text.split())
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A run with a hidden warming of the column, and its machine."""
+    place = tmp_path_factory.mktemp("run")
+    run, machine, _ = simulate_case(np.random.default_rng(5), LAG[1], LAG[2], with_alike=False)
+    (place / "run.csv").write_text(run, encoding="utf-8")
+    (place / "machine.toml").write_text(machine, encoding="utf-8")
+    return place
+
+
+@pytest.mark.parametrize("option", [["--auto"], ["--add", "backlash(X)"]], ids=["auto", "added"])
+def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, option) -> None:
+    run = str(folder / "run.csv")
+    narrow = ["--only", "thermal-lag(EXC)", "backlash"]
+    told = [run, *option, *narrow, "--no-report", "-o", str(tmp_path / "d")]
+    assert main(["diagnose", *told]) == 0
+    capsys.readouterr()
+    model = str(tmp_path / "d" / "model.toml")
+    assert main(["compare", run, "--model", model, "-o", str(tmp_path / "c")]) == 0
+    shown = flat(capsys.readouterr().out)
+    diagnosis = json.loads((tmp_path / "d" / "diagnosis.json").read_text())
+    comparison = json.loads((tmp_path / "c" / "comparison.json").read_text())
+    step = diagnosis["steps"][-1 if option == ["--auto"] else 1]
+    assert step["effect"] == (option[1] if option[1:] else "thermal-lag(EXC)")
+    keys = ("rms_um", "test_rms_um", "chi2_ratio")
+    assert comparison["learnt"] == {key: step[key] for key in keys}
+    page = flat((tmp_path / "c" / "report.html").read_text())
+    for text in (shown, page.replace("\u00a0", " ").replace("&nbsp;", " ")):
+        assert f"fitted {step['rms_um']:.3f} µm, held out {step['test_rms_um']:.3f} µm" in text
+    saved = read_model(model)
+    numbers = saved.told[step["effect"]]
+    assert {n.name: n.value for n in numbers} == pytest.approx(step["parameters"], rel=1e-5)
+    for words in number_words(numbers):
+        assert " ".join(words) in shown
+
+
+# --- additions that these touches cannot tell apart ---------------------------------------------
+
+
+def test_additions_that_are_one_to_these_touches_are_refused_by_name(
+    folder, tmp_path, capsys
+) -> None:
+    """A shift of either axis with the air: nothing here moves between them."""
+    run = str(folder / "run.csv")
+    asked = ["--add", *COLLINEAR, "--no-report", "-o", str(tmp_path / "d")]
+    assert main(["diagnose", run, *asked]) == 2
+    said = flat(capsys.readouterr().err)
+    assert all(name in said for name in COLLINEAR)
+    assert "only a sum of their sizes is known" in said
+    assert not (tmp_path / "d").exists()
+
+
+def test_left_by_is_the_share_that_others_cannot_imitate() -> None:
+    x, y = np.array([[1.0], [0.0], [0.0]]), np.array([[3.0], [4.0], [0.0]])
+    assert left_by(x, y) == pytest.approx(16.0 / 25.0)
+    assert left_by(y, np.hstack([x, np.array([[0.0], [1.0], [0.0]])])) == pytest.approx(0.0)
+    assert left_by(x, np.zeros((3, 0))) == 1.0
+
+
+def test_an_addition_that_is_not_significant_is_commented(folder, tmp_path, capsys) -> None:
+    run = str(folder / "run.csv")
+    narrow = ["--only", "thermal-lag(EXC)", "--add", "backlash(Y)"]
+    assert main(["diagnose", run, *narrow, "--no-report", "-o", str(tmp_path / "d")]) == 0
+    said = flat(capsys.readouterr().out)
+    assert "backlash(Y) was added by name, but its size is not significant: amplitude" in said
+    strong = ["--only", "backlash", "--add", "thermal-lag(EXC)"]
+    assert main(["diagnose", run, *strong, "--no-report", "-o", str(tmp_path / "e")]) == 0
+    assert "not significant" not in flat(capsys.readouterr().out)

@@ -38,11 +38,25 @@ def test_one_kind_tells_its_whole_story(capsys) -> None:
     assert "Attributes" not in out
 
 
+def test_kinds_are_found_by_any_word_for_them(capsys) -> None:
+    assert main(["effects", "spindle", "growth"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("thermal-lag(symbol[,sensor or spindle_rpm])  spindle growth and other")
+    assert "cold at time zero" in " ".join(out.split())
+    assert main(["effects", "growth"]) == 0
+    out = capsys.readouterr().out
+    assert "thermal-lag(" in out
+    assert "thermal-expansion(" in out
+    assert "backlash" not in out
+
+
 def test_unknown_kind_is_one_line(capsys) -> None:
-    assert main(["effects", "wobble"]) == 2
+    assert main(["effects", "flux", "capacitor"]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
-    assert error.startswith("matstd effects: unknown kind 'wobble'; available: geometric, location")
+    assert error.startswith(
+        "matstd effects: unknown kind 'flux capacitor'; available: geometric, location"
+    )
 
 
 def test_own_effects_stand_in_the_table(capsys, tmp_path: Path) -> None:

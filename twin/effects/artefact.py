@@ -14,6 +14,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     sensor_record,
@@ -52,6 +53,11 @@ class ArtefactExpansion:
         return f"artefact-expansion({self.sensor})"
 
     @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"expansion of the standard with {self.sensor}", "standard")
+
+    @property
     def parameters(self) -> Sequence[Parameter]:
         """Coefficient of expansion."""
         return (Parameter("amplitude", "1/K", 20e-6),)
@@ -79,6 +85,7 @@ class ArtefactSlip:
 
     kind = "artefact-slip"
     name = "artefact-slip"
+    title = Title("slip of the standard on the table", "standard")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -137,6 +144,7 @@ class Drift:
 
     kind = "drift"
     name = "drift"
+    title = Title("drift of the set-up", "standard")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -172,6 +180,8 @@ def _propose_drift(touches: Touches) -> Iterable[Effect]:
 EXPANSION = Kind(
     word="artefact-expansion",
     arguments="sensor",
+    title="thermal expansion of the standard",
+    synonyms="growth of the artefact, temperature of the part, artefact expansion",
     formula="shift = alpha (T - 20 degC) p",
     units="alpha: µm/(m K)",
     typical="steel 10 to 12, aluminium 23, Invar 0.6 to 1.6 µm/(m K)",
@@ -182,6 +192,8 @@ EXPANSION = Kind(
 )
 SLIP = Kind.of(
     ArtefactSlip,
+    title="slip of the standard on the table",
+    synonyms="clamping, moved artefact, shifted fixture, knocked",
     formula="shift = e + r x (p - c) after an unknown instant, to the end of the set-up",
     units="e: µm; r: µrad; instant: s",
     typical="2 to 20 µm, some tens of µrad",
@@ -190,6 +202,8 @@ SLIP = Kind.of(
 )
 DRIFT = Kind.of(
     Drift,
+    title="drift of the set-up",
+    synonyms="creep, environmental drift, room temperature, thermal drift, ETVE",
     formula="shift = v t",
     units="v: µm/h",
     typical="1 to 5 µm/h",

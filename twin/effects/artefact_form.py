@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.frames import Array
 from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Where, check_count
+from twin.model import Kind, Parameter, Term, Title, Where, check_count
 from twin.record import Touches
 from twin.units import UM
 
@@ -44,6 +44,11 @@ class ArtefactForm:
     def _degrees(self) -> list[tuple[int, int]]:
         n = FORM_DEGREE
         return [(i, total - i) for total in range(n + 1) for i in range(total, -1, -1)]
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"form of {self.patch}", "standard")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -106,6 +111,8 @@ def propose(touches: Touches) -> Iterable[ArtefactForm]:
 KIND = Kind(
     word="artefact-form",
     arguments="patch",
+    title="form error of the standard",
+    synonyms="calibration error of the standard, waviness, surface form, artefact form",
     formula="bias = sum a_ij p_i(v) p_j(w)/2, i + j <= 5, Legendre over the touched rectangle",
     units="a_ij: µm",
     typical="0.5 to 2 µm, correlated over 20 to 50 mm",

@@ -11,6 +11,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     checked_axis,
@@ -42,6 +43,11 @@ class Backlash:
     def name(self) -> str:
         """`backlash(X)`."""
         return f"backlash({self.axis})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"reversal of {self.axis}", self.axis)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -77,6 +83,8 @@ def _both_sides(last_move: Array) -> bool:
 KIND = Kind(
     word="backlash",
     arguments="axis",
+    title="backlash / reversal",
+    synonyms="reversal error, lost motion, play, hysteresis, dead band, reversal spike",
     formula="E = (B/2) sgn(last motion), along a linear axis or about a rotary one",
     units="B: µm; µrad of a rotary axis",
     typical="0.5 to 2 µm (direct scale), 3 to 15 µm (motor encoder); rotary 5 to 100 µrad",

@@ -11,6 +11,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     checked_axis,
@@ -51,6 +52,11 @@ class Coupling:
         own, other = (_factor_names(axis) for axis in (self.symbol.link, self.other))
         words = [" ".join(w for w in (f, g) if w) for f in own for g in other]
         return ["amplitude"] if len(words) == 1 else words
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"{self.symbol.title}, which changes with {self.other}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -105,6 +111,8 @@ def propose(touches: Touches) -> Iterable[Coupling]:
 KIND = Kind(
     word="coupling",
     arguments="symbol,axis",
+    title="bending of a guide with another axis",
+    synonyms="cross-coupling, non-rigid, quasi-rigid, guideway bending, foundation bending",
     formula="E = a f(q_own) g(q_other); f, g = u (linear axis), cos q and sin q (rotary axis)",
     units="a: µrad or µm",
     typical="10 to 60 µrad over the travel, on slender machines more",

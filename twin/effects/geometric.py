@@ -12,6 +12,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     component_symbol,
@@ -57,6 +58,11 @@ class ComponentError:
         extra = f",{self.periods:.10g}" if self.periods != 1.0 else ""
         extra += f"@{self.phase / DEG:.10g}" if self.phase else ""
         return f"geometric({self.symbol.name},{self.shape}{extra})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(self.symbol.title, self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -107,6 +113,11 @@ class HigherOrder:
     def name(self) -> str:
         """`geometric(EYX,4)`."""
         return f"geometric({self.symbol.name},{self.degree})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(self.symbol.title, self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -168,6 +179,9 @@ def propose(touches: Touches) -> Iterable[HigherOrder]:
 KIND = Kind(
     word="geometric",
     arguments="symbol,degree or shape",
+    title="component error of an axis",
+    synonyms="positioning, straightness, roll, pitch, yaw, scale error, linear error, "
+    "guideway error, run-out, wobble of an axis",
     formula="E = sum a_k T_k(u), k <= n (linear axis); sum s_k sin kq + c_k cos kq (rotary)",
     units="a_k, s_k, c_k: µm or µrad",
     typical="3 to 10 µm, 10 to 40 µrad; old machines ten times that",

@@ -11,6 +11,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     checked_axis,
@@ -41,6 +42,11 @@ class RamSag:
     def name(self) -> str:
         """`gravity(EYZ)`."""
         return f"gravity({self.symbol.name})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"sag of {self.symbol.link} {self.symbol.motion}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -78,6 +84,11 @@ class TiltSag:
         return f"gravity({self.symbol.name})"
 
     @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"sag of {self.symbol.link} under its own weight", self.symbol.link)
+
+    @property
     def parameters(self) -> Sequence[Parameter]:
         """Peak of the second harmonic."""
         sd = 100 * URAD if self.symbol.is_angular else 20 * UM
@@ -109,6 +120,11 @@ class OffCentreLoad:
     def name(self) -> str:
         """`gravity(EBB,C)`."""
         return f"gravity({self.symbol.name},{self.table})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"tilt under a load off the centre of {self.table}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -167,6 +183,8 @@ def _carried_tables(chain: Chain, axis: str) -> list[str]:
 KIND = Kind(
     word="gravity",
     arguments="symbol[,axis]",
+    title="sag under weight",
+    synonyms="droop, overhang, ram sag, deflection, weight, table load, unbalanced load",
     formula="E = a s^3, s = (q_max - q)/travel (ram); a sin 2q (head, cradle); "
     "sin B (a cos C + b sin C) (load off centre)",
     units="a, b: µm or µrad",

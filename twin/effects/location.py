@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.machine import Chain, Family, Ranges, Symbol
-from twin.model import Kind, Parameter, Term, Where, check_count, refusal
+from twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
 from twin.record import Touches
 
 
@@ -32,6 +32,11 @@ class LocationError:
     def name(self) -> str:
         """`location(EC0Y)`."""
         return f"location({self.symbol.name})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(self.symbol.title, self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -64,6 +69,9 @@ def propose(touches: Touches) -> Iterable[LocationError]:
 KIND = Kind(
     word="location",
     arguments="symbol",
+    title="squareness and place of axes",
+    synonyms="perpendicularity, parallelism, pivot point, centre of rotation, rotary "
+    "axis centre, RTCP offset, kinematic offset, axis alignment",
     formula="E = a, constant: squareness, line of a rotary axis, zero position, set-up",
     units="a: µm or µrad",
     typical="20 to 100 µm, 20 to 100 µrad when neglected; 2 to 10 µm, 10 to 30 µrad after care",

@@ -11,6 +11,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     component_symbol,
@@ -47,6 +48,11 @@ class Periodic:
     def name(self) -> str:
         """`periodic(EXX)`."""
         return f"periodic({self.symbol.name})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"{self.symbol.title}, which repeats", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -97,6 +103,11 @@ class Harmonic:
     def name(self) -> str:
         """`periodic(EXC)`."""
         return f"periodic({self.symbol.name})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"{self.symbol.title}, which repeats", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -157,6 +168,9 @@ def propose(touches: Touches) -> Iterable[Periodic | Harmonic]:
 KIND = Kind(
     word="periodic",
     arguments="symbol",
+    title="screw pitch and other periodic errors",
+    synonyms="pitch error, ball screw, lead error, cyclic error, encoder, interpolation "
+    "error, graduation, wobble",
     formula="E = s sin(2 pi q/p) + c cos(2 pi q/p), p unknown (linear); k q, k >= 2 (rotary)",
     units="s, c: µm or µrad; p: mm; k: 1",
     typical="0.5 to 3 µm at the pitch of a ground ball screw, up to 10 µm of others; rotary 0.1 to "

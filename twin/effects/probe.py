@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from twin.frames import Array
-from twin.model import Effect, Inner, Kind, Parameter, Term, Where
+from twin.model import Effect, Inner, Kind, Parameter, Term, Title, Where
 from twin.record import Touches
 from twin.units import UM
 
@@ -33,6 +33,7 @@ class ProbeLobing:
 
     kind = "probe-lobing"
     name = "probe-lobing"
+    title = Title("lobes of the probe", "probe")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -71,6 +72,7 @@ class ProbeRadius:
 
     kind = "probe-radius"
     name = "probe-radius"
+    title = Title("effective radius of the ball", "probe")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -92,6 +94,7 @@ class StylusBending:
 
     kind = "stylus-bending"
     name = "stylus-bending"
+    title = Title("bending of the stylus", "probe")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -111,6 +114,8 @@ def _if_touching(effect: Callable[[], Effect], touches: Touches) -> Iterable[Eff
 
 LOBING = Kind.of(
     ProbeLobing,
+    title="lobes of the probe",
+    synonyms="pre-travel variation, triggering, kinematic probe, tri-lobing",
     formula="bias = sin(theta) (a cos(k phi) + b sin(k phi)), k = 2 to 6 lobes, tool frame",
     units="a, b: µm; k: 1",
     typical="3 to 8 µm with three lobes (kinematic), below 1 µm (strain gauge)",
@@ -119,6 +124,8 @@ LOBING = Kind.of(
 )
 RADIUS = Kind.of(
     ProbeRadius,
+    title="effective radius of the ball",
+    synonyms="probe calibration, ball diameter, stylus tip size, pre-travel",
     formula="bias = a, effective minus stated radius",
     units="a: µm",
     typical="1 to 5 µm",
@@ -127,6 +134,8 @@ RADIUS = Kind.of(
 )
 BENDING = Kind.of(
     StylusBending,
+    title="bending of the stylus",
+    synonyms="stylus deflection, probe bending",
     formula="bias = a sin^2(theta), theta between normal and tool axis",
     units="a: µm",
     typical="0.5 to 3 µm",

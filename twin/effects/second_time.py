@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from twin.model import Effect, Inner, Parameter, Term, Tunable
+from twin.model import Effect, Inner, Parameter, Term, Title, Titled, Tunable
 from twin.record import Touches
 
 MARK = "#"
@@ -33,6 +33,11 @@ class Again:
     def name(self) -> str:
         """`thermal-lag(EZZ,bed)#2`."""
         return f"{self.effect.name}{MARK}{self.number}"
+
+    @property
+    def title(self) -> Title:
+        """That of the effect."""
+        return self.effect.title if isinstance(self.effect, Titled) else Title(self.effect.name)
 
     @property
     def parameters(self) -> Sequence[Parameter]:

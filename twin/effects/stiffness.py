@@ -8,7 +8,7 @@ import numpy as np
 from twin.errors import UnknownEffect
 from twin.frames import Array
 from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Where, check_count, refusal
+from twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
 from twin.record import Touches
 from twin.units import UM
 
@@ -35,6 +35,11 @@ class Stiffness:
     def name(self) -> str:
         """`stiffness(Z)`."""
         return f"stiffness({self.link})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"compliance of {'the tool' if self.link == 't' else self.link}", self.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -88,6 +93,8 @@ def propose(touches: Touches) -> Iterable[Stiffness]:
 KIND = Kind(
     word="stiffness",
     arguments="axis or t",
+    title="compliance under load",
+    synonyms="flexibility, deflection under load, cutting force, loaded, stiffness",
     formula="E = c F.d (linear axis, tool); E = c M.d (rotary axis); F, M the load on the tool",
     units="c: µm/N; µrad/(N mm)",
     typical="0.02 to 0.1 µm/N (10 to 50 N/µm) at the tool; the rotary table is the weakest",

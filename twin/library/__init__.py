@@ -6,6 +6,7 @@ that make sense for some touches.
 
 from twin.library.catalogue import (
     Kind,
+    find_kinds,
     is_visible,
     kinds,
     load_installed_effects,
@@ -13,6 +14,7 @@ from twin.library.catalogue import (
     parse_effect,
     proposals,
     register,
+    title_of,
     users_files,
 )
 from twin.library.ordinary import ordinary_model
@@ -22,6 +24,7 @@ from twin.library.trial import try_effect, try_kind, users_fault, users_lines
 __all__ = [
     "Kind",
     "SizedEffect",
+    "find_kinds",
     "is_visible",
     "kinds",
     "load_installed_effects",
@@ -32,6 +35,7 @@ __all__ = [
     "parse_sizes",
     "proposals",
     "register",
+    "title_of",
     "try_effect",
     "try_kind",
     "users_fault",

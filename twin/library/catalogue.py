@@ -30,7 +30,7 @@ from twin.effects import (
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.library.trial import users_fault
 from twin.machine import Chain
-from twin.model import Effect, Kind, Tunable, columns
+from twin.model import Effect, Kind, Title, Titled, Tunable, columns
 from twin.record import Touches
 from twin.thermal import (
     column_bending,
@@ -46,12 +46,14 @@ from twin.words import listed, nearest
 __all__ = [
     "ENTRY_POINT_GROUP",
     "Kind",
+    "find_kinds",
     "kinds",
     "load_installed_effects",
     "load_user_effects",
     "parse_effect",
     "proposals",
     "register",
+    "title_of",
     "users_files",
 ]
 
@@ -106,6 +108,27 @@ def _register_from(kind: Kind, path: Path) -> Kind:
 def kinds() -> tuple[Kind, ...]:
     """Every kind of the library, in the order of registration."""
     return tuple(_REGISTER.values())
+
+
+def find_kinds(query: str) -> tuple[Kind, ...]:
+    """Kinds that a user may mean: by word, title, synonym, formula; in the order of the library.
+
+    Example:
+        >>> [kind.word for kind in find_kinds("spindle growth")]
+        ['thermal-lag']
+    """
+    word = query.partition("(")[0].strip()
+    if word in _REGISTER:
+        return (_REGISTER[word],)
+    return tuple(kind for kind in kinds() if kind.matches(query))
+
+
+def title_of(effect: Effect) -> Title:
+    """What an effect is called by those who run machines; its kind's title, or its name at last."""
+    if isinstance(effect, Titled):
+        return effect.title
+    kind = _REGISTER.get(effect.kind)
+    return Title(kind.title if kind is not None and kind.title else effect.name)
 
 
 def parse_effect(text: str, chain: Chain) -> Effect:
@@ -224,7 +247,17 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
 
 def _check_card(kind: Kind, path: Path) -> None:
     """What a user wrote into a `Kind` is text, or can be called, where it has to be."""
-    for name in ("word", "arguments", "formula", "units", "typical", "source", "about"):
+    for name in (
+        "word",
+        "arguments",
+        "formula",
+        "units",
+        "typical",
+        "source",
+        "about",
+        "title",
+        "synonyms",
+    ):
         if not isinstance(getattr(kind, name), str):
             raise BadFile(path, f"Kind '{kind.word}'", f"{name} = {getattr(kind, name)!r}", "text")
     for name in ("make", "propose"):

@@ -10,14 +10,10 @@ import numpy as np
 
 from twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from twin.frames import Array
-from twin.machine.symbols import Family, Symbol, parse_symbol
+from twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
 from twin.units import DEG
 
 Kind = Literal["linear", "rotary", "fixed"]
-
-_ALONG = {**{k: k for k in "XYZ"}, **dict(zip("ABCUVW", "XYZXYZ", strict=True)), "S": "Z"}
-"""Letter of an axis -> direction of the machine frame that it moves along or turns about (ISO 841).
-"""
 
 _TOKEN = re.compile(r"([XYZUVWABCS]\d?)('?)\Z")
 
@@ -61,7 +57,7 @@ class Link:
     @property
     def own(self) -> int:
         """Index in X Y Z of the letter's own direction, whatever the direction of the axis."""
-        return "XYZ".index(_ALONG[self.name[0]])
+        return "XYZ".index(ALONG[self.name[0]])
 
     @property
     def points_along_letter(self) -> bool:
@@ -312,7 +308,7 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
         unit = 1.0 if kind == "linear" else DEG
         found = [float(f"{end / unit:.12g}") for end in reach]
         raise BadValue(f"axis.{name}.range", found, "the smaller reading first")
-    own = np.eye(3)["XYZ".index(_ALONG[name[0]])]
+    own = np.eye(3)["XYZ".index(ALONG[name[0]])]
     direction = own if axis.direction is None else np.array(axis.direction, dtype=float)
     length = float(np.linalg.norm(direction))
     if not length > SHORTEST:

@@ -13,6 +13,10 @@ from enum import Enum
 LETTERS = "XYZABC"
 """Second letter of a name -> index of the component."""
 
+ALONG = {**{k: k for k in "XYZ"}, **dict(zip("ABCUVW", "XYZXYZ", strict=True)), "S": "Z"}
+"""Letter of an axis -> direction of the machine frame that it moves along or turns about (ISO 841).
+"""
+
 _PATTERN = re.compile(r"E([XYZABC])(0?)([XYZUVWABCS]\d?|w|t)\Z")
 
 
@@ -53,6 +57,32 @@ class Symbol:
     def unit(self) -> str:
         """Base unit: "rad" or "mm"."""
         return "rad" if self.is_angular else "mm"
+
+    @property
+    def motion(self) -> str:
+        """Where it moves the tool, whichever body carries it: `along Z`, `about X`."""
+        return f"{'about' if self.is_angular else 'along'} {'XYZ'[self.component % 3]}"
+
+    @property
+    def title(self) -> str:
+        """In words: `straightness of X along Y`, `squareness of Y about Z`."""
+        axis, letter = self.link, self.link[0]
+        is_linear = letter in "XYZUVW"
+        is_own = "XYZ"[self.component % 3] == ALONG.get(letter)
+        if self.family is Family.SETUP:
+            what = "rotation" if self.is_angular else "displacement"
+            return f"{what} of the {'workpiece' if axis == 'w' else 'tool'} {self.motion}"
+        if self.family is Family.LOCATION:
+            if is_own and self.is_angular != is_linear:
+                return f"zero position of {axis}"
+            what = "tilt" if self.is_angular else "displacement"
+            return f"{'squareness' if is_linear else f'{what} of the line'} of {axis} {self.motion}"
+        if is_own and self.is_angular != is_linear:
+            return f"positioning error of {axis}"
+        if is_own:
+            return f"{'roll' if is_linear else 'axial motion'} of {axis}"
+        across = "straightness" if is_linear else "radial motion"
+        return f"{'tilt' if self.is_angular else across} of {axis} {self.motion}"
 
 
 def parse_symbol(name: str) -> Symbol | None:

@@ -41,6 +41,18 @@ class Parameter(NamedTuple):
     sd: float
 
 
+class Title(NamedTuple):
+    """What an effect is called by those who run machines.
+
+    Attributes:
+        text: Without the body that carries it where another could as well: `growth along Z`.
+        carrier: Axis, `t`, `w`, or "standard", "probe" ...; empty where the text says it.
+    """
+
+    text: str
+    carrier: str = ""
+
+
 @runtime_checkable
 class Effect(Protocol):
     """A physical cause of deviations: thirty lines, one closed formula.
@@ -100,6 +112,16 @@ class Inner(NamedTuple):
     grid: Array
     continuous: bool = True
     acts: Acts = "smoothly"
+
+
+@runtime_checkable
+class Titled(Effect, Protocol):
+    """An effect with a title of its own."""
+
+    @property
+    def title(self) -> Title:
+        """What it is called, and what carries it."""
+        ...
 
 
 @runtime_checkable

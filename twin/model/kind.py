@@ -29,6 +29,8 @@ class Kind:
         propose: Every effect of the kind that makes sense for some touches.
         classes: Classes of its effects, whose docstrings tell the whole story.
         about: What the family is, in one line; empty for the first line of its first class.
+        title: What those who run machines call it.
+        synonyms: Other words for it, commas between them.
     """
 
     word: str
@@ -41,6 +43,8 @@ class Kind:
     propose: Callable[[Touches], Iterable[Effect]]
     classes: tuple[type, ...] = ()
     about: str = ""
+    title: str = ""
+    synonyms: str = ""
 
     @classmethod
     def of(
@@ -51,6 +55,8 @@ class Kind:
         typical: str = "",
         source: str = "",
         propose: Callable[[Touches], Iterable[Effect]] | None = None,
+        title: str = "",
+        synonyms: str = "",
     ) -> "Kind":
         """The kind of an effect that takes no arguments, which is all that most users need.
 
@@ -61,6 +67,8 @@ class Kind:
             typical: Size that is met in practice.
             source: Where the formula and the size are from.
             propose: The effect where it makes sense for some touches; None for always.
+            title: What those who run machines call it.
+            synonyms: Other words for it, commas between them.
         """
         word = effect().kind
 
@@ -78,7 +86,15 @@ class Kind:
             make=make,
             propose=propose or (lambda touches: (effect(),)),
             classes=(effect,) if isinstance(effect, type) else (),
+            title=title,
+            synonyms=synonyms,
         )
+
+    def matches(self, query: str) -> bool:
+        """Whether every word of a query stands in the name, title, synonyms, formula or summary."""
+        told = (self.word, self.title, self.synonyms, self.formula, self.summary, self.typical)
+        text = " ".join(told).lower().replace("-", " ")
+        return all(word in text for word in query.lower().replace("-", " ").split())
 
     @property
     def usage(self) -> str:

@@ -11,6 +11,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     checked_linear,
@@ -53,6 +54,11 @@ class ColumnBending:
     @property
     def _across(self) -> tuple[int, int]:
         return (self.component + 1) % 3, (self.component + 2) % 3
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"bending of the column of {self.axis}", self.axis)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -101,6 +107,8 @@ def propose(touches: Touches) -> Iterable[ColumnBending]:
 KIND = Kind(
     word="column-bending",
     arguments="axis,sensor,sensor",
+    title="thermal bending of the column",
+    synonyms="thermal drift of the column, column tilt, temperature gradient, one-sided heating",
     formula="E_r = a (T_1 - T_2) s, E_e = a (T_1 - T_2) L s^2/2; s = (q - q_min)/L",
     units="a: µrad/K",
     typical="2 to 15 µrad/K; 12 arcsec from 4 K",

@@ -12,6 +12,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     component_symbol,
@@ -48,6 +49,11 @@ class Follows:
     def name(self) -> str:
         """`follows(EZZ,coolant_l_min)`."""
         return f"follows({self.symbol.name},{self.column})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"{self.symbol.title} that follows {self.column}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -107,6 +113,8 @@ def propose(touches: Touches) -> Iterable[Follows]:
 KIND = Kind(
     word="follows",
     arguments="symbol,column of the user's own",
+    title="what follows a column of your own",
+    synonyms="coolant, pressure, load, own sensor, own column",
     formula="E = a v / s, v a column V_name_unit, s a round step of it",
     units="a: µm or µrad a step; step: unit of the column",
     typical="whatever the column knows",

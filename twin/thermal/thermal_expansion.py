@@ -8,6 +8,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     checked_linear,
@@ -44,6 +45,11 @@ class ThermalExpansion:
         return f"thermal-expansion({self.axis},{self.sensor})"
 
     @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"expansion of the scale of {self.axis} with {self.sensor}", self.axis)
+
+    @property
     def parameters(self) -> Sequence[Parameter]:
         """Coefficient of expansion."""
         return (Parameter("amplitude", "1/K", 20e-6),)
@@ -73,6 +79,9 @@ def propose(touches: Touches) -> Iterable[ThermalExpansion]:
 KIND = Kind(
     word="thermal-expansion",
     arguments="axis,sensor",
+    title="thermal growth of a scale or screw",
+    synonyms="scale growth, expansion of an axis, ball screw heating, glass scale, "
+    "temperature coefficient",
     formula="E = alpha (T - 20 degC) q, along the axis",
     units="alpha: µm/(m K)",
     typical="steel 10 to 12, glass 8, aluminium 23 µm/(m K)",

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Where, moving_axes, refusal
+from twin.model import Kind, Parameter, Term, Title, Where, moving_axes, refusal
 from twin.record import Touches
 from twin.thermal.drive_columns import PER_KELVIN, driven, drives, is_speed
 from twin.units import MINUTE, UM, URAD
@@ -51,6 +51,11 @@ class ThermalField:
     def name(self) -> str:
         """`thermal-field(Z,frame,bed)`."""
         return f"thermal-field({','.join((self.axis, *self.drives))})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"warming of the body of {self.axis}", self.axis)
 
     @property
     def places(self) -> Sequence[tuple[str, float]]:
@@ -109,6 +114,8 @@ def field(touches: Touches) -> ThermalField | None:
 KIND = Kind(
     word="thermal-field",
     arguments="axis,sensor or spindle_rpm,...",
+    title="warming of a body after several drives",
+    synonyms="thermal error field, thermal deformation, many sensors, regression, warm-up",
     formula="E = sum of a d + a_k y_k over drives d; tau_k dy_k/dt = d - y_k, tau 4 16 64 256 min",
     units="a: µm or µrad, per K after a sensor, at 10 000 rpm after the spindle",
     typical="where many sensors know something: 10 to 100 µm in all",

@@ -18,6 +18,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     component_symbol,
@@ -65,6 +66,13 @@ class ThermalLag:
     def name(self) -> str:
         """`thermal-lag(EZZ)`, `thermal-lag(EZZ,spindle_rpm)`."""
         return f"thermal-lag({self.symbol.name}{',' if self.drive else ''}{self.drive})"
+
+    @property
+    def title(self) -> Title:
+        """`growth along Z after switching on`: which body grows is seldom seen."""
+        what = "tilt" if self.symbol.is_angular else "growth"
+        cause = {"": "switching on", SPINDLE: "the spindle speed"}.get(self.drive, self.drive)
+        return Title(f"{what} {self.symbol.motion} after {cause}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -181,6 +189,9 @@ def propose(touches: Touches) -> Iterable[ThermalLag]:
 KIND = Kind(
     word="thermal-lag",
     arguments="symbol[,sensor or spindle_rpm]",
+    title="spindle growth and other warming up",
+    synonyms="spindle growth, warm-up, thermal drift, thermal displacement, time "
+    "constant, thermal drift of the column, heating",
     formula="tau dE/dt = a d - E; d = 1 from time zero, T - 20 degC, or n/(10 000 rpm)",
     units="a: µm or µrad, per K after a sensor; tau: min",
     typical="spindle growth 20 to 100 µm, tau 10 to 40 min; ambient 1 to 5 µm/K, tau 0.5 to 6 h",

@@ -8,6 +8,7 @@ from twin.model import (
     Kind,
     Parameter,
     Term,
+    Title,
     Where,
     check_count,
     component_symbol,
@@ -47,6 +48,12 @@ class ThermalStatic:
         return f"thermal-static({self.symbol.name},{self.sensor})"
 
     @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        what = "tilt" if self.symbol.is_angular else "growth"
+        return Title(f"{what} {self.symbol.motion} with {self.sensor}", self.symbol.link)
+
+    @property
     def parameters(self) -> Sequence[Parameter]:
         """The amplitude per kelvin."""
         sd = 20 * URAD if self.symbol.is_angular else 6 * UM
@@ -80,6 +87,8 @@ def propose(touches: Touches) -> Iterable[ThermalStatic]:
 KIND = Kind(
     word="thermal-static",
     arguments="symbol,sensor",
+    title="thermal growth without a lag",
+    synonyms="expansion of a frame, thermal displacement, temperature coefficient",
     formula="E = a (T - 20 degC), at once",
     units="a: µm/K or µrad/K",
     typical="frames and columns 1 to 30 µm/K",

@@ -29,25 +29,49 @@ class Learnt:
 
     Attributes:
         estimates: Of the machine's parameters, inner parameters held.
+        from_inner: Root (P, T) of the covariance that T uncertain inner parameters add to it.
         factor: Noise over the stated one, as the fit weighted with.
         gross: Rows that were set aside as gross errors, held out or not, (N,).
         memory: Of the noise; None for white noise.
     """
 
     estimates: Prior
+    from_inner: Array
     factor: float
     gross: BoolArray
     memory: Memory | None = None
 
+    @classmethod
+    def of(cls, fit: Fit) -> "Learnt":
+        """What is kept of a fit."""
+        count = len(fit.model.parameters)
+        root = fit.spread[:count]
+        return cls(
+            estimates=Prior.of_estimates(fit.theta[:count], root @ root.T),
+            from_inner=_from_inner(fit),
+            factor=fit.noise.factor,
+            gross=fit.gross.rows | fit.gross_test_rows,
+            memory=fit.memory,
+        )
 
-def remade(run: Run, model: Model, learnt: Learnt) -> Fit:
-    """The fit of a model to a run as it was, from what was kept of it.
+    @property
+    def covariance(self) -> Array:
+        """Of the estimates, that of inner parameters among it, (P, P), base units."""
+        root = self.estimates.root
+        return np.asarray(root @ root.T + self.from_inner @ self.from_inner.T)
 
-    Args:
-        run: The very run that it was made of, copies of rows set aside.
-        model: Its machine and effects, at their inner parameters.
-        learnt: What was kept.
-    """
+    def again(self, run: Run, model: Model) -> Fit:
+        """The fit as it was.
+
+        Args:
+            run: The very run that it was made of, copies of rows set aside.
+            model: Its machine and effects, at their inner parameters.
+        """
+        return _again(run, model, self)
+
+
+def _again(run: Run, model: Model, learnt: Learnt) -> Fit:
+    """The fit of a model to a run as it was, from what was kept of it."""
     setups = setup_errors(run.touches)
     train = run.split != "test"
     used = train & ~learnt.gross
@@ -96,7 +120,7 @@ def _set_aside(gross: BoolArray, train: BoolArray) -> GrossErrors:
     return GrossErrors(rows=gross & train, size=np.zeros(len(gross)), score=score, limit=1.0)
 
 
-def inner_root(fit: Fit) -> Array:
+def _from_inner(fit: Fit) -> Array:
     """Root (P, T) of the covariance that T uncertain inner parameters add to P of the machine.
 
     From a fit with their tangents, ``C_pd C_dd^-1/2`` with d the displacements.
