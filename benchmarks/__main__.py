@@ -22,6 +22,7 @@ def main() -> None:
     run("design_run")
     run("design_machines")
     run("jacobians")
+    run("fuzz_readers")
     run("montecarlo")
     run("placement_certificate")
     run("standard_against_rivals")

@@ -27,7 +27,7 @@ from twin.errors import DesignError  # noqa: E402
 
 SLOW = 5.0
 """Longest time that any small file may take to be read or refused, s."""
-LONGEST = 600
+LONGEST = 900
 """Longest line of a refusal, characters: it is read on a screen."""
 KEPT = 12
 """Faults that are shown in full."""

@@ -98,8 +98,8 @@ def told(name: str, run):
 
 def transfer(source, path: Path) -> tuple[float, float]:
     """Error of a record predicted by a model of another, and what that model promised, µm."""
+    from diagnosis.answer import compare
     from diagnosis.fit import Prior
-    from diagnosis.residual import compare
     from twin.units import UM
 
     fit = source.fit

@@ -20,7 +20,7 @@ should know about a run is a record in `remarks`, its sentence in `report.words`
 new effect needs nothing here.
 """
 
-from diagnosis.answer import Diagnosis, Proof, Step, Verdict, diagnose, prove
+from diagnosis.answer import Comparison, Diagnosis, Proof, Step, Verdict, compare, diagnose, prove
 from diagnosis.files import (
     SavedModel,
     read_model,
@@ -30,7 +30,7 @@ from diagnosis.files import (
     write_residuals,
 )
 from diagnosis.fit import Estimable, Fit, Prior, estimable, fit_run
-from diagnosis.residual import Comparison, Region, Structure, compare
+from diagnosis.residual import Region, Structure
 
 PARTS = ("fit", "evidence", "remarks", "residual", "search", "choice", "answer", "files")
 """From bottom to top: each imports only from those before it."""

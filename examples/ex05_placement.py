@@ -8,9 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.layout import Blank
-from artefact.place import PlacementOptions, design_standard
-from artefact.reach import ProbeReach
+from artefact import Blank, PlacementOptions, ProbeReach, design_standard
 from artefact.worth import TouchOptions
 from probe_paths.plan import Probe
 from sensitivity.first_order import Workspace

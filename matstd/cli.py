@@ -1,6 +1,7 @@
 """Commands of `matstd`: arguments, exit codes, and one line for what a user can put right."""
 
 import argparse
+import errno
 import importlib
 import os
 import sys
@@ -37,13 +38,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     try:
         with clean_stop(args.command):
-            return int(args.run(args) or 0)
+            _check_output(args)
+            code = int(args.run(args) or 0)
+            sys.stdout.flush()  # a disk that is full says so here, not when Python ends
+            return code
     except DesignError as error:
         print(f"matstd {args.command}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
     except BrokenPipeError:  # whoever read our words has heard enough
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
         return 0
+    except OSError as error:
+        if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
+            raise
+        print(f"matstd {args.command}: cannot write its words ({error.strerror})", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_BAD_INPUT
     except KeyboardInterrupt:
         print(stopped_words(args.command), file=sys.stderr)
         return STOPPED
@@ -53,6 +63,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         print(f"matstd {args.command}: {theirs}", file=sys.stderr)
         return EXIT_BAD_INPUT
+
+
+def _check_output(args: argparse.Namespace) -> None:
+    """Refuse an output that is read, or a folder of results in which a file lies that is read."""
+    from twin.files import refuse_own_input
+
+    output = getattr(args, "output", None)
+    if output is None:
+        return
+    given = [v for key, v in vars(args).items() if key not in ("output", "command")]
+    words = [w for v in given for w in (v if isinstance(v, list) else [v])]
+    refuse_own_input(output, [w for w in words if isinstance(w, str)])
 
 
 def _users_fault(error: BaseException) -> Exception | None:

@@ -78,7 +78,12 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     maps = draw_maps(study, folder / "sensitivity", rng.maps)
     maps += draw_path(study, folder / "sensitivity")
     progress("STEP and STL", 0, 1)
-    conformity = export_standard(placement.standard, folder)
+    conformity = export_standard(
+        placement.standard,
+        folder,
+        author=project.standard.author,
+        organisation=project.standard.organisation,
+    )
     progress("probing programs", 0, 1)
     programs = make_programs(plan)
     paths = programs.write(folder / "programs")
@@ -153,8 +158,7 @@ def _prove(
     machine = VirtualMachine(
         project.chain, lambda touches: contribution(errors, touches), noise=project.noise
     )
-    table = project.limits.table_radius_mm
-    campaign = simulate(programs, placement.standard, machine, rng_noise, table_radius=table)
+    campaign = simulate(programs, placement.standard, machine, rng_noise)
     fit = fit_run(campaign.run, population.expected())
     in_volume = probed_volume(campaign.run, PROOF_POSES, rng_volume)
     q = latin_hypercube(workspace, PROOF_POSES, rng_workspace)

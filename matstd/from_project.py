@@ -5,9 +5,9 @@ from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, Project
 from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
 from artefact.reach import ProbeReach
-from artefact.worth import CriterionOptions, TouchOptions
+from artefact.worth import Calibration, CriterionOptions, TouchOptions
 from probe_paths.plan import PlanOptions, Probe
-from twin.units import DEG, KG_M3
+from twin.units import DEG, KG_M3, UM, URAD
 
 _LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
 """Of the sphere centres above the seat, mm and as a share of the blank's height: as far apart as
@@ -19,7 +19,15 @@ _ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
 
 def probe(project: Project) -> Probe:
     """The probe in the spindle."""
-    return Probe(project.probe_radius, project.probe_length)
+    stated = project.probe
+    return Probe(
+        radius=project.probe_radius,
+        length=project.probe_length,
+        stylus_length=stated.stylus_length_mm or 0.0,
+        stylus_radius=0.5 * (stated.stylus_diameter_mm or 0.0),
+        body_radius=0.5 * stated.body_diameter_mm,
+        nose_radius=0.5 * stated.nose_diameter_mm,
+    )
 
 
 def plan_options(project: Project) -> PlanOptions:
@@ -73,7 +81,7 @@ def blank(project: Project) -> Blank:
 
 def placement_options(project: Project) -> PlacementOptions:
     """How much is tried and measured, and what for."""
-    wanted = project.standard
+    wanted, known = project.standard, project.calibration
     return PlacementOptions(
         name=wanted.name,
         serial=wanted.serial,
@@ -84,6 +92,11 @@ def placement_options(project: Project) -> PlacementOptions:
             potential=wanted.potential,
             drawn_machines=wanted.drawn_machines,
             worst_share=wanted.worst_share,
+            calibration=Calibration(
+                patch=known.patch_um * UM,
+                patch_tilt=known.patch_urad * URAD,
+                ball=known.ball_um * UM,
+            ),
         ),
         choice=TouchOptions(touches=wanted.touches, poses=wanted.poses),
     )

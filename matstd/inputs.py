@@ -4,10 +4,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from diagnosis.answer import faults_of_refused
 from diagnosis.choice import offered
 from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
-from twin.errors import DesignError, NotEnoughData
+from report.geometry import fault_sentences
+from twin.errors import BadFile, DesignError, NotEnoughData
 from twin.files import read_run
 from twin.library import (
     is_visible,
@@ -41,7 +43,7 @@ def read_inputs(
     load_installed_effects()
     for path in effect_files:
         load_user_effects(Path(path))
-    run = read_run(run_file)
+    run = _read(run_file)
     if len(run) < MIN_TOUCHES:
         raise NotEnoughData(
             f"{run_file}: {len(run)} touch{'es' if len(run) > 1 else ''}, expected at least "
@@ -59,6 +61,18 @@ def read_inputs(
         remark = f"{model_file} was learnt from this very run, {same}"
         run = replace(run, remarks=(*run.remarks, remark))
     return run, saved
+
+
+def _read(run_file: str) -> Run:
+    """The run; a refusal for its deviations says which mistake in the description makes it fit."""
+    try:
+        return read_run(run_file)
+    except BadFile as refusal:
+        run = refusal.facts.get("run")
+        sentences = fault_sentences(faults_of_refused(run)) if isinstance(run, Run) else []
+        if not sentences:
+            raise
+        raise DesignError("; ".join([str(refusal), *sentences])) from refusal
 
 
 def is_learnt_from(saved: SavedModel, run: Run) -> bool:

@@ -38,7 +38,7 @@ from report.plots import (
 from report.scenes import Scene, draw_standard, draw_values, draw_volumes
 from report.words import comparison_sentence, study_words, verdict_sentence
 
-PARTS = ("style", "words", "identifiability", "maps", "plots", "scenes", "pages")
+PARTS = ("style", "words", "geometry", "identifiability", "maps", "plots", "scenes", "pages")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

@@ -140,7 +140,7 @@ def test_05_an_ideal_scatter_leaves_what_the_noise_leaves_and_one_face_leaves_mo
     assert 0.8 * expected < left[scatter] < 1.6 * expected
     # One smooth face holds hardly more than one direction, even at table poses of its own: so
     # it leaves at least twice as much as the standard does, and half as much again as four spheres.
-    own, spheres = left["standard FFS"], left["four calibrated spheres"]
+    own, spheres = left["standard FFS"], left["4 spheres"]
     face = left["one freeform face"]
     assert face > 2.0 * own
     assert face > 1.5 * spheres

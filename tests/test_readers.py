@@ -13,18 +13,25 @@ from twin.errors import DesignError
 
 EACH = 60
 """Inputs of a reader: a few seconds in all."""
-LONGEST = 600
+LONGEST = 900
 """Longest line of a refusal, characters."""
 NAMES = (
     "machine", "errors", "run", "pose", "sensors", "project", "standard", "model", "log", "program"
 )  # fmt: skip
 
 
+class Cases(dict):
+    """Readers by name; its words are short, because hypothesis tells them with every example."""
+
+    def __repr__(self) -> str:
+        return "cases"
+
+
 @pytest.fixture(scope="module")
 def cases(tmp_path_factory):
     """Every reader with its valid text."""
     made = readers(tmp_path_factory.mktemp("files"))
-    return {reader.name: (reader, reader.path.read_text(encoding="utf-8")) for reader in made}
+    return Cases({r.name: (r, r.path.read_text(encoding="utf-8")) for r in made})
 
 
 def check(reader, data: bytes) -> None:

@@ -120,7 +120,7 @@ class BadFile(DesignError, ValueError):
 
     def __init__(self, path: str | Path, where: str, found: object, expected: str) -> None:
         super().__init__(
-            f"{_short(path, 300)}: {_short(where)}: found {_short(found)}, "
+            f"{_short(path, 300)}: {_short(where)}: found {_short(found, 300)}, "
             f"expected {_short(expected, 400)}",
             path=str(path),
             where=where,

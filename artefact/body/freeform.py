@@ -120,9 +120,10 @@ class FreeformPatch:
         inside: Mask = np.all(np.abs(rows(uv)) <= np.asarray(self.half_size), axis=1)
         return inside
 
-    def grid(self, pitch: float = _GRID_PITCH) -> Array:
-        """Parameters of a regular grid over the trimmed face, borders included, (N, 2)."""
-        axes = [np.linspace(-a, a, int(np.ceil(2 * a / pitch)) + 1) for a in self.half_size]
+    def grid(self, pitch: float = _GRID_PITCH, beyond: float = 0.0) -> Array:
+        """Parameters of a regular grid over the trimmed face and so far beyond it, (N, 2)."""
+        half = [a + beyond for a in self.half_size]
+        axes = [np.linspace(-a, a, int(np.ceil(2 * a / pitch)) + 1) for a in half]
         return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
 
     def project(self, points: Array) -> Array:

@@ -36,10 +36,18 @@ FARTHEST = 1e6
 
 
 class ProbeTable(Table):
-    """`[probe]`: ball radius and length from the gauge point to the ball centre, mm."""
+    """`[probe]`: the ball, its distance from the gauge point, and what stands above it.
+
+    The stylus reaches from the ball centre to the body, the body to the gauge line, the nose of the
+    spindle above it.
+    """
 
     radius_mm: float = Field(gt=0.0, le=25.0)
     length_mm: float = Field(gt=0.0)
+    stylus_length_mm: float | None = Field(default=None, gt=0.0)
+    stylus_diameter_mm: float | None = Field(default=None, gt=0.0)
+    body_diameter_mm: float = Field(default=50.0, gt=0.0)
+    nose_diameter_mm: float = Field(default=90.0, gt=0.0)
 
 
 class MonteCarloTable(Table):
@@ -48,6 +56,14 @@ class MonteCarloTable(Table):
     draws: int = Field(default=2000, ge=100)
     digits: int = Field(default=0, ge=0, le=3)
     tolerance_um: float = Field(default=float("inf"), gt=0.0)
+
+
+class CalibrationTable(Table):
+    """`[calibration]`: standard uncertainties: place and rotations of a patch, centre of a ball."""
+
+    patch_um: float = Field(default=1.0, ge=0.0)
+    patch_urad: float = Field(default=10.0, ge=0.0)
+    ball_um: float = Field(default=0.3, ge=0.0)
 
 
 class SimulationTable(Table):
@@ -71,6 +87,7 @@ class ProjectTable(Table):
     blank: BlankTable = BlankTable()
     limits: LimitsTable = LimitsTable()
     setup: dict[str, SetupTable] = Field(default_factory=lambda: {"a": SetupTable()})
+    calibration: CalibrationTable = CalibrationTable()
     simulation: SimulationTable = SimulationTable()
 
 
@@ -85,6 +102,7 @@ class Project:
         seed: Of all random numbers.
         probe_radius: mm.
         probe_length: Gauge point to ball centre, mm.
+        probe: The same, and what stands above the ball.
         workspace: Smallest and largest reading of every programmed axis, mm or rad.
         poses: Number of poses for the maps.
         draws: Number of random machines for the maps; at most so many where digits are asked for.
@@ -96,6 +114,7 @@ class Project:
         blank: What it is made from.
         limits: What workshop, probe and table allow.
         setup: Where the standard stands on the table.
+        calibration: How well the features of the standard will be known.
         noise: Standard deviation of one simulated touch, mm.
         machines: Number of random machines of the proof.
     """
@@ -106,6 +125,7 @@ class Project:
     seed: int
     probe_radius: float
     probe_length: float
+    probe: ProbeTable
     workspace: dict[str, tuple[float, float]]
     poses: int
     draws: int
@@ -116,6 +136,7 @@ class Project:
     blank: BlankTable
     limits: LimitsTable
     setup: Setup
+    calibration: CalibrationTable
     noise: float
     machines: int
 
@@ -164,6 +185,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         seed=table.seed,
         probe_radius=table.probe.radius_mm,
         probe_length=table.probe.length_mm,
+        probe=_checked_probe(table.probe, path),
         workspace=workspace,
         poses=poses,
         draws=table.montecarlo.draws,
@@ -174,6 +196,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         blank=table.blank,
         limits=table.limits,
         setup=setup.setup(name),
+        calibration=table.calibration,
         noise=table.simulation.noise_um * UM,
         machines=table.simulation.machines,
     )
@@ -214,3 +237,15 @@ def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
     if not low <= high:
         raise BadFile(path, key, [low, high], "the smaller number first")
     return low, high
+
+
+def _checked_probe(probe: ProbeTable, path: Path) -> ProbeTable:
+    """A stylus that is thinner than the ball and ends between ball and gauge point."""
+    length, diameter = probe.stylus_length_mm, probe.stylus_diameter_mm
+    if length is not None and not probe.radius_mm < length < probe.length_mm:
+        expected = f"between radius_mm = {probe.radius_mm:g} and length_mm = {probe.length_mm:g}"
+        raise BadFile(path, "probe.stylus_length_mm", f"{length:g}", expected)
+    if diameter is not None and diameter >= 2.0 * probe.radius_mm:
+        expected = f"less than the ball, {2.0 * probe.radius_mm:g}"
+        raise BadFile(path, "probe.stylus_diameter_mm", f"{diameter:g}", expected)
+    return probe

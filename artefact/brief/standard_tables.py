@@ -24,6 +24,8 @@ class StandardTable(Table):
 
     name: str = "FFS-1"
     serial: str = ""
+    author: str = "not stated"
+    organisation: str = "not stated"
     material: str = "X40Cr14 (1.2083), hardened"
     density_kg_m3: float = Field(default=7800.0, gt=0.0)
     expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)

@@ -1,10 +1,11 @@
 """What a standard buys over the artefacts that people have, at equal touches and table poses."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from artefact.body import Standard
+from artefact.compare.placed_spheres import COUNTS, placed_spheres
 from artefact.layout import Blank, rivals
 from artefact.reach import Requests, joined
 from artefact.worth import (
@@ -12,9 +13,11 @@ from artefact.worth import (
     TouchOptions,
     Visibility,
     chosen_poses,
+    chosen_touches_on,
     pose_quota,
     random_touches,
     some_touches,
+    touches_to_choose_from,
 )
 from information.criteria import DesignCriterion, Posterior, prior_sd_of_tip
 from information.selection import Selection, exchange, fill
@@ -107,7 +110,7 @@ def _different(tried: Requests) -> int:
 
 
 def _posterior(criterion: Criterion, touches: Requests) -> Posterior:
-    return Posterior(criterion.whitened(touches), criterion.prior_sd, criterion.model.names)
+    return Posterior(criterion.known_rows(touches), criterion.prior_sd, criterion.model.names)
 
 
 def _rms(values: Array) -> float:
@@ -136,8 +139,9 @@ def compare(
 ) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
     """Other artefacts at as many touches: bodies that people have, and scatter that nobody has.
 
-    Bodies choose their own table poses and touches as the standard does, and the probe needs the
-    same angle, travel, room and free way on them; only the share of the spheres is not limited.
+    Spheres are placed, and table poses and touches on them chosen, as those of the standard are,
+    with no limit to their share; block and face choose theirs from touches drawn at random. The
+    probe needs the same angle, travel, room and free way on all, and calibration knows all alike.
     The ideal scatter has points anywhere in the volume and any normal, and nothing is in its way.
 
     Args:
@@ -150,19 +154,28 @@ def compare(
         rng: Source of the random numbers.
 
     Returns:
-        The artefacts, and the names of those that this machine can make no touch on.
+        The artefacts, and the names of those that the blank has no room for, or that this
+        machine can make too few touches on.
     """
     out, unreachable = [], []
-    for name, body in rivals(criterion.volume, blank, rng).items():
+    free = replace(options, sphere_share=(0.0, 1.0))
+    for name, body in _bodies(criterion, all_poses, blank, options, rng).items():
         try:
-            own = chosen_poses(criterion.plain, body, all_poses, options)
-            tried = some_touches(criterion, body, own, options, rng)
+            if body is None:
+                raise NotReachable("no room")
+            here = criterion.on(body)
+            own = chosen_poses(criterion.plain.on(body), body, all_poses, free)
+            if body.patches:
+                tried = some_touches(here, body, own, free, rng)
+                chosen = chosen_touches(here, here.objective, tried, free)
+            else:
+                tried = touches_to_choose_from(here, body, own, free)
+                chosen = tried[chosen_touches_on(here, body, tried, free)[0]]
         except NotReachable:
             unreachable.append(name)
             continue
         lots = random_lots(tried, options.touches, rng)
-        chosen = chosen_touches(criterion, criterion.objective, tried, options)
-        out.append(evaluated(name, criterion, chosen, lots, library, _different(tried), body))
+        out.append(evaluated(name, here, chosen, lots, library, _different(tried), body))
     tried = _scatter(criterion, poses, rng)
     lots = random_lots(tried, options.touches, rng)
     for name, objective in (("I", criterion.objectives["I"]), ("D", criterion.objectives["D"])):
@@ -174,6 +187,22 @@ def compare(
         )
     out.append(evaluated("ideal scatter, at random", criterion, lots[0], lots, library, len(tried)))
     return tuple(out), tuple(unreachable)
+
+
+def _bodies(
+    criterion: Criterion,
+    poses: Array,
+    blank: Blank,
+    options: TouchOptions,
+    rng: np.random.Generator,
+) -> dict[str, Standard | None]:
+    """Artefacts by name; None for one that the blank has no room for."""
+    try:
+        spheres = placed_spheres(criterion.plain, blank, poses, options.touches, rng)
+    except NotReachable:
+        spheres = dict.fromkeys(COUNTS)
+    named = {f"{count} spheres": body for count, body in spheres.items()}
+    return named | rivals(criterion.volume, blank, rng)
 
 
 def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[Requests]:

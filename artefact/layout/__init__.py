@@ -13,7 +13,7 @@ from artefact.layout.candidates import (
     random_sites,
     strength,
 )
-from artefact.layout.rival_artefacts import rivals
+from artefact.layout.rival_artefacts import rivals, with_spheres
 from artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard_from_sites
 
 __all__ = [
@@ -30,4 +30,5 @@ __all__ = [
     "rivals",
     "standard_from_sites",
     "strength",
+    "with_spheres",
 ]

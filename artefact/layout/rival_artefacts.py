@@ -1,24 +1,23 @@
 """Artefacts that people have, built as bodies that a probe must get round like any other."""
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch, Standard, graph_patch
 from artefact.layout.candidates import smooth_heights
 from artefact.layout.sites import Blank
-from artefact.layout.spread import rim
 from sensitivity.first_order import Box
 from twin.frames import Array, pose, rotation
 from twin.units import DEG
 
-_SPHERE = 12.5  # mm, radius of the spheres
-_STEM, _FOOT = 6.0, 9.0  # mm
 _PROUD = 2.0  # mm by which the sides of the block stand out beyond its top
 _TALLEST = 40.0  # mm that the one face may rise above its plane
 _BENEATH = 5.0  # mm above mid-base, where columns end
 
 
 def rivals(volume: Box, blank: Blank, rng: np.random.Generator) -> dict[str, Standard]:
-    """Four calibrated spheres, a five-sided block and one freeform face, all as large as allowed.
+    """A five-sided block and one freeform face, as large as allowed.
 
     Each fills the volume that the standard fills, on the same base.
 
@@ -28,7 +27,6 @@ def rivals(volume: Box, blank: Blank, rng: np.random.Generator) -> dict[str, Sta
         rng: Draws the shape of the freeform face.
     """
     return {
-        "four calibrated spheres": _standard("SPHERES", blank, (), _four_spheres(volume, blank)),
         "five-sided block": _standard("BLOCK", blank, _block(volume, blank)),
         "one freeform face": _standard("FACE", blank, (_one_face(volume, blank, rng),)),
     }
@@ -53,18 +51,22 @@ def _standard(
     )
 
 
-def _four_spheres(volume: Box, blank: Blank) -> tuple[DatumSphere, ...]:
-    """At the corners of the base, at heights spread over that of the volume."""
-    heights = np.linspace(volume[0][2] + 25.0, volume[1][2], 4)[[0, 2, 1, 3]]
-    places = rim(blank.base, _FOOT + 3.0)
-    found = []
-    for i, (quarter, height) in enumerate(zip(range(4), heights, strict=True), 1):
-        corner = np.array([np.cos((quarter + 0.5) * 90 * DEG), np.sin((quarter + 0.5) * 90 * DEG)])
-        x, y = places[int(np.argmax(places @ corner))]
-        centre = np.array([x, y, height])
-        top = blank.base.thickness
-        found.append(DatumSphere(f"SPH{i}", centre, _SPHERE, _STEM, _FOOT, top))
-    return tuple(found)
+def with_spheres(
+    blank: Blank, centres: Sequence[Array], name: Callable[[int], str] = "SPH{}".format
+) -> Standard:
+    """Nothing but spheres on upright stems, (3,) each.
+
+    Args:
+        blank: Base, and the balls and stems that every standard gets.
+        centres: Of the balls, artefact frame, mm.
+        name: Of a sphere by its number, from 1.
+    """
+    fit, top = blank.fittings, blank.base.thickness
+    spheres = tuple(
+        DatumSphere(name(i), c, fit.sphere_radius, fit.stem_radius, fit.foot_radius, top)
+        for i, c in enumerate(centres, 1)
+    )
+    return _standard("SPHERES", blank, (), spheres)
 
 
 def _block(volume: Box, blank: Blank) -> tuple[FreeformPatch, ...]:

@@ -85,7 +85,7 @@ class Placement:
     Attributes:
         standard: Measured against every limit; every patch names the errors it is for.
         requests: The touches.
-        criterion: What they were chosen by.
+        criterion: What they were chosen by, on the standard.
         prior_rms: Expected deviation of the tool point before any touch, rms, mm: over the probed
             volume, over the user's workspace.
         rivals: This standard first, then other artefacts at as many touches.
@@ -156,11 +156,13 @@ def design_standard(
     all_poses = table_poses(criterion, choice.poses) if poses_to_try is None else poses_to_try
     standard = _standard(criterion.plain, blank, all_poses, options, rng)
     progress("placement", 3, 6)
-    poses = chosen_poses(criterion.plain, standard, all_poses, choice)
-    standard = with_optimised_shapes(criterion.plain, standard, poses, blank.limits, choice, rng)
+    plain = criterion.plain.on(standard)
+    poses = chosen_poses(plain, standard, all_poses, choice)
+    standard = with_optimised_shapes(plain, standard, poses, blank.limits, choice, rng)
     progress("placement", 4, 6)
-    tried = touches_to_choose_from(criterion, standard, poses, choice)
-    chosen, nearness = chosen_touches_on(criterion, standard, tried, choice)
+    here = criterion.on(standard)
+    tried = touches_to_choose_from(here, standard, poses, choice)
+    chosen, nearness = chosen_touches_on(here, standard, tried, choice)
     requests = tried[chosen]
     standard = _with_shares(criterion, standard, requests)
     progress("placement", 5, 6)
@@ -169,9 +171,7 @@ def design_standard(
     )
     library = visibility(criterion, free)
     lots = random_lots(tried, len(requests), rng)
-    own = evaluated(
-        f"standard {options.name}", criterion, requests, lots, library, len(tried), standard
-    )
+    own = evaluated(f"standard {options.name}", here, requests, lots, library, len(tried), standard)
     rivals, unreachable = compare(criterion, all_poses, poses, blank, choice, library, rng)
     progress("placement", 6, 6)
     return Placement(

@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from artefact.body import FreeformPatch, Limits, Standard, constraints, graph_patch, unit
+from artefact.body import OVERHANG, FreeformPatch, Limits, Standard, constraints, graph_patch, unit
 from artefact.layout import CONTROL, STEEPEST, TALLEST, strength
 from artefact.reach import Requests, joined
 from artefact.worth import Criterion, TouchOptions, each_at, face_grid, sphere_grid
@@ -166,7 +166,9 @@ def heights_for(half_size: tuple[float, float], slopes: Array, limits: Limits) -
     units = np.eye(CONTROL * CONTROL).reshape(-1, CONTROL, CONTROL)
     trials = [graph_patch("trial", np.eye(4), half_size, h) for h in units]
     at = [trial.jet(uv) for trial in trials]
-    bent = [trial.jet(trial.grid(5.0)) for trial in trials]
+    # Beyond the trimmed face too: slopes are wanted on the face alone, and a net that is free to
+    # swing in the overhang ran from -325 to +160 mm, which the CAD kernel needed minutes to trim.
+    bent = [trial.jet(trial.grid(5.0, OVERHANG)) for trial in trials]
     slope = np.stack([np.concatenate([j.hu, j.hv]) for j in at], axis=1)
     size = _SMOOTH * float(np.mean(half_size))
     bend = np.stack([np.concatenate([j.huu, np.sqrt(2.0) * j.huv, j.hvv]) for j in bent], axis=1)

@@ -7,6 +7,7 @@ in `CRITERIA` and in `criterion_for`.
 """
 
 from artefact.worth.attribution import error_shares, parameter_symbols
+from artefact.worth.calibration import Calibration
 from artefact.worth.effect_visibility import Visibility, visibility
 from artefact.worth.touch_choice import (
     TouchOptions,
@@ -32,6 +33,7 @@ from artefact.worth.touch_curves import TouchCurve, touch_curve
 
 __all__ = [
     "CRITERIA",
+    "Calibration",
     "Criterion",
     "CriterionOptions",
     "TouchCurve",

@@ -9,14 +9,16 @@ exactly the standard stands, and what is predicted is the tool relative to the w
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from artefact.body import Standard
 from artefact.layout import Blank
 from artefact.reach import ProbeReach, Requests
+from artefact.worth.calibration import Calibration
 from artefact.worth.potential import Potential, potential
 from information.criteria import (
     DesignCriterion,
@@ -64,6 +66,8 @@ class Criterion:
         objectives: What touches can be chosen for, by the names in `CRITERIA`.
         name: The one that they are chosen for.
         potential: Effects that may be there or not, which touches shall show; None for none.
+        calibration: How well the features of a body are known.
+        body: Whose features they are; None while there is none, so that none is uncertain.
     """
 
     reach: ProbeReach
@@ -77,6 +81,8 @@ class Criterion:
     objectives: Mapping[str, DesignCriterion]
     name: str = "I"
     potential: Potential | None = None
+    calibration: Calibration = field(default_factory=Calibration)
+    body: Standard | None = None
 
     @property
     def objective(self) -> DesignCriterion:
@@ -85,11 +91,40 @@ class Criterion:
 
     @property
     def plain(self) -> "Criterion":
-        """The same criterion without potential terms, for choices that do not hang on them."""
+        """The same criterion without potential terms, for choices that do not hang on them.
+
+        Asked before `on`, which adds the columns of a body.
+        """
         if self.potential is None:
             return self
+        assert self.body is None
         plain = {name: one.primary or one for name, one in self.objectives.items()}
         return replace(self, objectives=plain, potential=None)
+
+    def on(self, body: Standard) -> "Criterion":
+        """The same criterion for touches on a body whose features are known by calibration."""
+        assert self.body is None
+        count = self.calibration.columns(body, _none(self.reach)).shape[1]
+        if not count:
+            return replace(self, body=body)
+        objectives = {key: with_potential(one, count, 0.0) for key, one in self.objectives.items()}
+        return replace(self, objectives=objectives, body=body)
+
+    def calibrated(self, wanted: Requests) -> Array:
+        """Columns of the features' places in units of the touches' noise, (N, Q)."""
+        if self.body is None:
+            return np.zeros((len(wanted), 0))
+        return self.calibration.columns(self.body, wanted) / self.noise
+
+    def known_rows(self, wanted: Requests) -> Array:
+        """Rows (N, P) in which the features' places are averaged over, and not known.
+
+        The deviations of touches on one feature are correlated, ``1 + C C^T`` in units of the
+        noise; rows multiplied by the inverse of its Cholesky factor are as good as independent.
+        """
+        W, C = self.whitened(wanted), self.calibrated(wanted)
+        factor = np.linalg.cholesky(np.eye(len(W)) + C @ C.T)
+        return np.asarray(np.linalg.solve(factor, W), dtype=np.float64)
 
     def whitened(self, wanted: Requests) -> Array:
         """Rows of touches in units of noise and prior, (N, P)."""
@@ -100,18 +135,19 @@ class Criterion:
         return out
 
     def rows(self, wanted: Requests) -> Array:
-        """Rows of touches in the directions that matter and in the potential terms, (N, R).
+        """Rows of touches in the directions that matter, the potential terms, the features' places.
 
-        The same for every objective.
+        Shape (N, R), the same for every objective.
         """
         reduced = self.objective.rows(self.whitened(wanted))
-        if self.potential is None:
-            return reduced
-        parts = [
-            self.potential.rows(self.reach.touches(wanted[rows]), reduced[rows])
-            for rows in blocks(len(wanted), _ROWS_A_BLOCK)
-        ]
-        return np.concatenate([reduced, np.concatenate(parts)], axis=1)
+        columns = [reduced]
+        if self.potential is not None:
+            parts = [
+                self.potential.rows(self.reach.touches(wanted[rows]), reduced[rows])
+                for rows in blocks(len(wanted), _ROWS_A_BLOCK)
+            ]
+            columns.append(np.concatenate(parts))
+        return np.concatenate([*columns, self.calibrated(wanted)], axis=1)
 
 
 @dataclass(frozen=True)
@@ -127,12 +163,14 @@ class CriterionOptions:
             averaged; 0 for
             the expected sizes alone.
         worst_share: Share of the drawn machines, the worst, that are averaged; 1 for all.
+        calibration: How well the features of a standard are known.
     """
 
     name: str = "I"
     potential: float = 0.0
     drawn_machines: int = 0
     worst_share: float = 1.0
+    calibration: Calibration = field(default_factory=Calibration)
 
     def __post_init__(self) -> None:
         if self.name not in CRITERIA:
@@ -204,7 +242,14 @@ def criterion_for(
         objectives=objectives,
         name=options.name,
         potential=terms,
+        calibration=options.calibration,
     )
+
+
+def _none(reach: ProbeReach) -> Requests:
+    """No touches."""
+    rotary = np.zeros((0, len(reach.chain.rotary_axes)))
+    return Requests(np.zeros(0, dtype=np.str_), np.zeros((0, 3)), np.zeros((0, 3)), rotary)
 
 
 def _sharing(objective: DesignCriterion, rows: Array, count: int, share: float) -> DesignCriterion:

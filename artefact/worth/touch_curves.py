@@ -13,7 +13,7 @@ import numpy as np
 
 from artefact.reach import Requests
 from artefact.worth.touch_criterion import Criterion
-from information.criteria import mean_prediction
+from information.criteria import mean_prediction, with_potential
 from information.selection import Selection, fill
 from twin.errors import DesignError
 from twin.frames import Array
@@ -48,7 +48,7 @@ def touch_curve(
     """Error left after the best few of some touches, all of them, and each more than once.
 
     Args:
-        criterion: Machine, noise, poses that are predicted.
+        criterion: Machine, noise, poses that are predicted, on the artefact.
         name: Of the artefact.
         touches: That it was designed with.
         counts: Numbers of touches to look at; the designed one is added.
@@ -63,8 +63,12 @@ def touch_curve(
     areas = (criterion.tip_volume, criterion.tip_user)
     rows = criterion.whitened(touches)
     predict = mean_prediction(np.concatenate(areas), rows, criterion.prior_sd)
-    W = predict.rows(rows)
-    forms = [_form(criterion, tip, predict.directions) for tip in areas]
+    places = criterion.calibrated(touches)
+    W = np.concatenate([predict.rows(rows), places], axis=1)
+    unfelt = (0, places.shape[1])  # the tool point does not feel where a feature lies
+    forms = [np.pad(_form(criterion, tip, predict.directions), unfelt) for tip in areas]
+    if places.shape[1]:
+        predict = with_potential(predict, places.shape[1], 0.0)
     left = np.empty((2, len(numbers)))
     rounds, part = np.zeros_like(forms[0]), np.empty(0)
     selection = Selection(predict, W)

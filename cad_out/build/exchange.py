@@ -1,5 +1,6 @@
 """STEP AP242 out and in, and the kernel's triangulation, through calls whose settings are ours."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,7 @@ from cad_out.build.faces import faces_of, is_closed, is_valid, shells_of, solids
 from cad_out.build.solid import Solid
 from twin.errors import NotBuildable
 from twin.frames import Array
+from twin.versions import versions
 
 TIME_STAMP = "2000-01-01T00:00:00"
 """In every STEP file: the same standard gives the same bytes."""
@@ -60,13 +62,29 @@ class Reread:
     names: tuple[str, ...]
 
 
-def write_step(path: Path, solid: Solid, standard: Standard) -> None:
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a STEP file comes from, for its header.
+
+    Attributes:
+        design: SHA-256 of the design file, `standard.toml`.
+        author: Who is responsible for it.
+        organisation: Whom the author works for.
+    """
+
+    design: str
+    author: str
+    organisation: str
+
+
+def write_step(path: Path, solid: Solid, standard: Standard, origin: Origin) -> None:
     """Write AP242 in millimetres: one part, named and coloured faces, material, volume.
 
     Args:
         path: The file; written in one go by the kernel, so give a neighbour name.
         solid: To be written.
         standard: For name and material.
+        origin: For the header.
 
     Raises:
         NotBuildable: The kernel refuses to translate or to write.
@@ -84,9 +102,30 @@ def write_step(path: Path, solid: Solid, standard: Standard) -> None:
         raise NotBuildable(
             f"standard '{standard.name}': the CAD kernel cannot translate it to STEP"
         )
-    _write_header(writer.ChangeWriter().Model(), standard)
+    _write_header(writer.ChangeWriter().Model(), standard, origin)
     if writer.Write(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise NotBuildable(f"{path}: the CAD kernel cannot write the STEP file")
+    path.write_text(with_unit_of_density(path.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def with_unit_of_density(text: str) -> str:
+    """A STEP text whose density is in g/cm^3, as its number is.
+
+    The kernel writes the exponents 3 of the gram and 2 of the centimetre, whatever it is told.
+
+    Raises:
+        NotBuildable: The density is not written as it was when this was found.
+    """
+    item = re.search(r"'density',POSITIVE_RATIO_MEASURE\([^)]*\),#(\d+)\)", text)
+    unit = item and re.search(rf"^#{item[1]} = DERIVED_UNIT\(\(#(\d+),#(\d+)\)\);", text, re.M)
+    if not unit:
+        raise NotBuildable("the CAD kernel wrote no density with a unit of mass and length")
+    for number, written, meant in ((unit[1], "3.", "1."), (unit[2], "2.", "-3.")):
+        element = rf"^(#{number} = DERIVED_UNIT_ELEMENT\(#\d+,){re.escape(written)}\);"
+        text, count = re.subn(element, rf"\g<1>{meant});", text, flags=re.M)
+        if count != 1:
+            raise NotBuildable(f"the CAD kernel wrote another unit of density in entity #{number}")
+    return text
 
 
 def read_step(path: Path) -> Reread:
@@ -228,17 +267,26 @@ def _setting(name: str, value: int) -> None:
         raise NotBuildable(f"the CAD kernel does not know its setting {name}")
 
 
-def _write_header(model: Any, standard: Standard) -> None:
+def _write_header(model: Any, standard: Standard, origin: Origin) -> None:
     header = APIHeaderSection_MakeHeader(model)
     header.SetName(_text(_part_name(standard)))
     header.SetTimeStamp(_text(TIME_STAMP))
-    header.SetAuthorValue(1, _text(""))
-    header.SetOrganizationValue(1, _text(""))
+    header.SetAuthorValue(1, _text(in_ascii(origin.author)))
+    header.SetOrganizationValue(1, _text(in_ascii(origin.organisation)))
     header.SetOriginatingSystem(_text("material-standard"))
-    header.SetPreprocessorVersion(_text("material-standard"))
-    header.SetAuthorisation(_text(""))
-    header.SetDescriptionValue(1, _text("Freeform material standard"))
+    tool = f"material-standard {versions()['material-standard']}"
+    header.SetPreprocessorVersion(_text(tool))
+    header.SetAuthorisation(_text("not stated"))
+    words = f"Freeform material standard, SHA-256 of standard.toml {origin.design}"
+    header.SetDescriptionValue(1, _text(words))
     header.Apply(model)
+
+
+def in_ascii(text: str) -> str:
+    """Text for a header: what is not ASCII as ISO 10303-21, 6.4.3.3 writes it, UTF-16 in hex."""
+    return re.sub(
+        r"[^ -~]+", lambda m: f"\\X2\\{m[0].encode('utf-16-be').hex().upper()}\\X0\\", text
+    )
 
 
 def _names(label: Any) -> list[str]:

@@ -6,13 +6,13 @@ from cad_out.build.process import run_apart
 from twin.errors import NotBuildable
 
 
-def run_kernel(task: str, folder: Path, *arguments: float, timeout: float = 150.0) -> None:
+def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 150.0) -> None:
     """Run one task of `cad_out.build.worker` in a process of its own.
 
     Args:
         task: Name of the function.
         folder: Through which the two processes speak.
-        arguments: Further numbers for the function.
+        arguments: Further arguments of the function.
         timeout: After which the process is stopped, s.
 
     Raises:

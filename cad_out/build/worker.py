@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -25,15 +26,17 @@ _FIRST = 0.75  # of the chord asked for at once: on spheres the kernel overshoot
 _FINER = 0.7
 
 
-def build(folder: str, chord: float) -> None:
+def build(folder: str, chord: float, author: str, organisation: str) -> None:
     """Build the standard of a folder: STEP file, triangles, facts about the solid.
 
     Args:
         folder: Holds standard.toml; takes the results, or the reason of a refusal.
         chord: Largest distance of the mesh from the exact faces, mm.
+        author: For the header of the STEP file.
+        organisation: The same.
     """
     try:
-        _build(Path(folder), chord)
+        _build(Path(folder), chord, author, organisation)
     except DesignError as refusal:
         note_refusal(Path(folder), refusal)
 
@@ -50,13 +53,14 @@ def reread(folder: str) -> None:
         note_refusal(place, refusal)
 
 
-def _build(place: Path, chord: float) -> None:
-    from cad_out.build.exchange import write_step
+def _build(place: Path, chord: float, author: str, organisation: str) -> None:
+    from cad_out.build.exchange import Origin, write_step
     from cad_out.build.solid import build_solid
 
     standard = read_standard(place / STANDARD)
     solid = build_solid(standard)
-    write_step(place / STEP, solid, standard)
+    design = hashlib.sha256((place / STANDARD).read_bytes()).hexdigest()
+    write_step(place / STEP, solid, standard, Origin(design, author, organisation))
     mesh = _mesh(standard, solid, chord)
     np.savez(place / MESH, corners=mesh.corners, triangles=mesh.triangles, owner=mesh.owner)
     (place / FACTS).write_text(json.dumps({"volume": solid.volume}), encoding="utf-8")

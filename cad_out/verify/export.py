@@ -13,9 +13,16 @@ from cad_out.verify.conformity import Conformity, measure, refuse_faults
 from twin.errors import DesignError
 
 STL = "standard.stl"
+NOT_STATED = "not stated"
 
 
-def export_standard(standard: Standard, out_dir: str | Path, chord: float = 0.01) -> Conformity:
+def export_standard(
+    standard: Standard,
+    out_dir: str | Path,
+    chord: float = 0.01,
+    author: str = NOT_STATED,
+    organisation: str = NOT_STATED,
+) -> Conformity:
     """Build the standard, write standard.step and standard.stl, and prove both against the design.
 
     Both files are built and measured in a folder of their own beside the goal and moved there
@@ -25,6 +32,8 @@ def export_standard(standard: Standard, out_dir: str | Path, chord: float = 0.01
         standard: To be built; its limits are the caller's to check.
         out_dir: Folder for the two files.
         chord: Largest distance of the mesh from the exact faces, mm.
+        author: Who is responsible for the design, for the header of the STEP file.
+        organisation: Whom the author works for.
 
     Returns:
         All measured figures.
@@ -40,7 +49,7 @@ def export_standard(standard: Standard, out_dir: str | Path, chord: float = 0.01
     except OSError as error:
         raise DesignError(f"{out_dir}: cannot be written ({error.strerror})") from error
     try:
-        conformity, _ = build_and_measure(standard, place, chord)
+        conformity, _ = build_and_measure(standard, place, chord, author, organisation)
         refuse_faults(standard.name, conformity)
         for name in (STEP, STL):
             (place / name).replace(out_dir / name)
@@ -49,19 +58,27 @@ def export_standard(standard: Standard, out_dir: str | Path, chord: float = 0.01
     return conformity
 
 
-def build_and_measure(standard: Standard, place: Path, chord: float) -> tuple[Conformity, Mesh]:
+def build_and_measure(
+    standard: Standard,
+    place: Path,
+    chord: float,
+    author: str = NOT_STATED,
+    organisation: str = NOT_STATED,
+) -> tuple[Conformity, Mesh]:
     """Build into an empty folder and measure; figures out of their limits are not refused here.
 
     Args:
         standard: To be built.
         place: Empty folder.
         chord: Largest distance of the mesh from the exact faces, mm.
+        author: For the header of the STEP file.
+        organisation: The same.
 
     Returns:
         The figures, and the mesh in float64 with the feature of every triangle.
     """
     write_standard(place / STANDARD, standard)
-    run_kernel("build", place, chord)
+    run_kernel("build", place, chord, author, organisation)
     built = json.loads((place / FACTS).read_text(encoding="utf-8"))["volume"]
     with np.load(place / MESH) as arrays:
         mesh = Mesh(arrays["corners"], arrays["triangles"], arrays["owner"])

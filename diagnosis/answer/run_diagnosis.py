@@ -8,6 +8,8 @@ import numpy as np
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.collinear import check_distinct, not_significant
 from diagnosis.answer.detectable import detectable
+from diagnosis.answer.fault_trial import description_faults
+from diagnosis.answer.learnt_geometry import learnt_geometry
 from diagnosis.answer.next_measurement import Plan, plan
 from diagnosis.answer.one_set import ToldSet, told_set
 from diagnosis.answer.sizes import sizes
@@ -140,6 +142,12 @@ def _result(
         where=_where(steps, verdict),
         detectable=detectable(effects, seen, len(final.library.complement.u)),
         plans=_plans(task, added, classes, gross, rng),
+        geometry=learnt_geometry(
+            steps[-1].fit,
+            task.prior if task.is_known else None,
+            steps[0].fit if len(steps) > 1 else None,
+        ),
+        faults=description_faults(steps[0].fit, progress),
         remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
     )
 

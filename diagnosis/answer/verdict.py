@@ -6,6 +6,8 @@ from typing import Any
 
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
+from diagnosis.answer.fault_trial import DescriptionFault
+from diagnosis.answer.learnt_geometry import LearntGeometry
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.choice import Choice
 from diagnosis.fit import Fit, Reported
@@ -92,6 +94,8 @@ class Diagnosis(Tabular):
         where: Regions where the same residual fails, drawn by what the found effects explain.
         detectable: Smallest size of every effect that these touches would have shown.
         plans: Touches that would tell confused effects apart.
+        geometry: What the run says of the machine's geometry.
+        faults: Mistakes in the description that would make the run fit.
         remarks: What else a user should know.
         choice: How the set was chosen by prediction; None where the search left nothing to choose.
     """
@@ -106,6 +110,8 @@ class Diagnosis(Tabular):
     where: tuple[Region, ...]
     detectable: tuple[Detectable, ...]
     plans: tuple[Plan, ...]
+    geometry: LearntGeometry
+    faults: tuple[DescriptionFault, ...]
     remarks: tuple[Remark, ...]
     choice: Choice | None = None
 

@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer import Detectable, Diagnosis, Plan, Step
+from diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResidual, Plan, Step
 from diagnosis.choice import Choice
+from diagnosis.files.fault_table import fault_table
+from diagnosis.files.geometry_table import geometry_table
 from diagnosis.fit import Fit, file_unit
-from diagnosis.residual import Comparison, Condition, GroupResidual, Region, Side
+from diagnosis.residual import Condition, Region, Side
 from twin.files import reading_columns, write_whole
 from twin.record import Touches
 from twin.units import UM
@@ -48,6 +50,8 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         "depends_on": [{"variable": d.variable, "p_value": d.p_value} for d in result.depends_on],
         "detectable": [_detectable(d) for d in result.detectable],
         "next_measurement": [_plan(p) for p in result.plans],
+        "geometry": geometry_table(result.geometry),
+        "description_faults": fault_table(result.faults),
         "remarks": list(remarks),
         **choice,
     }
@@ -97,6 +101,8 @@ def comparison_table(
         ],
         "poses": [_group(g) for g in found.poses],
         "features": [_group(g) for g in found.features],
+        "geometry": geometry_table(found.geometry),
+        "description_faults": fault_table(found.faults),
         "remarks": list(remarks),
         **learnt,
     }

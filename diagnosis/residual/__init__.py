@@ -1,11 +1,10 @@
 """What a model leaves: patterns, regions, tests for structure.
 
-In: a `Fit` or an `EffectSet`. Out: a `Comparison` with the `Structure` and the `Region`s of its
+In: a `Fit` or an `EffectSet`. Out: the `Structure` and the `Region`s of its
 residual and a `Remark` for everything noteworthy; `partial` is what the run shows of one effect.
 A new test is a module beside `waves` and `crowds`, called by `structure`.
 """
 
-from diagnosis.residual.comparison import Comparison, GroupResidual, compare
 from diagnosis.residual.failing_regions import Condition, Region, Side, regions
 from diagnosis.residual.partial_residuals import SEES, Partial, partial
 from diagnosis.residual.patterns import directions, groups, variables
@@ -13,15 +12,12 @@ from diagnosis.residual.structure import Shape, Structure, find_structure
 
 __all__ = [
     "SEES",
-    "Comparison",
     "Condition",
-    "GroupResidual",
     "Partial",
     "Region",
     "Shape",
     "Side",
     "Structure",
-    "compare",
     "directions",
     "find_structure",
     "groups",

@@ -7,8 +7,10 @@ With ``M = prior + F`` for the information ``F = W^T W`` of the touches,
     E      `LargestEigenvalue`   largest eigenvalue of r^T M^-1 r
     D      `Determinant`         -log det M, shown as det(M)^(-1/R)
 
-All are convex in F. Each has the same three methods: its `value`, its `tangent`, a weighted mean of
-forms that is nowhere above it, which searches follow and bounds rest on, and itself `extended` by
+All are convex in F. Each has the same three methods: its `value` at M, (R, R), smooth or not; its
+`tangent` there times the weight of the machine, a weighted mean of forms that is nowhere above it,
+which searches follow and bounds rest on; and itself `extended` by potential terms, together `worth`
+when nothing is known of them. `shown` states a mean of values, `size` is R, directions and
 potential terms. The largest of several is smoothed in a search: a power mean stands for it, whose
 power is the `sharpness`; what has no largest is as sharp as can be.
 
@@ -19,7 +21,6 @@ Reference:
 """
 
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -31,30 +32,6 @@ VISIBLE = 1e-13
 
 _SHARPNESS = 16.0  # power that stands for the largest at first; searches raise it
 _LOUD = 1e-6  # share of the largest weight below which a form is left out of a tangent
-
-
-class Measure(Protocol):
-    """What is left unknown of one machine; smaller is better."""
-
-    @property
-    def size(self) -> int:
-        """R, directions and potential terms."""
-
-    @property
-    def sharpness(self) -> float:
-        """Power of the mean that stands for the largest of several; infinite where none does."""
-
-    def value(self, M: Array, smooth: bool = False) -> float:
-        """For ``M = prior + F``, (R, R); smooth with the power mean."""
-
-    def tangent(self, M: Array, weight: float) -> Tangent:
-        """Seen from M, (R, R), times the weight of the machine."""
-
-    def extended(self, count: int, worth: float) -> "Measure":
-        """With so many potential terms, together `worth` when nothing is known of them."""
-
-    def shown(self, value: float) -> float:
-        """A mean of values as it is stated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,6 +203,10 @@ class Determinant:
     def shown(self, value: float) -> float:
         """``det(M)^(-1/R)``, the geometric mean over the machines."""
         return float(np.exp(value / self.size))
+
+
+Measure = MeanVariance | LargestVariance | LargestEigenvalue | Determinant
+"""What is left unknown of one machine; smaller is better."""
 
 
 def _joined(K: Array, count: int, worth: float) -> Array:

@@ -3,11 +3,25 @@
 A tangent is the criterion of one machine seen from one information: ``trace(K M^-1)``, or the
 negative logarithm of ``det M``, both times the weight of the machine. Searches know nothing else of
 a criterion. For a row w with its ``reach = w M^-1``, its `leverage` is ``w M^-1 w`` and its
-`numerator` is ``w M^-1 K M^-1 w``, for the determinant the leverage again.
+`numerator` is ``w M^-1 K M^-1 w``, for the determinant the leverage again. Both tangents have the
+same methods:
+
+    value       at M, (R, R)
+    slope       S, (R, R): a little of the row w lets the value fall by ``w^T S w`` of it
+    degree      ``trace(S M)``
+    numerators  of rows with their reaches (N, R), (N,)
+    fall        of the value with each row in (sign 1) or out (sign -1), (N,)
+    step        change of all numerators by one row, (N,), and by how much the value falls
+    group_fall  of the value with groups of rows, (groups,), from their reaches (groups, n, R) and
+                ``inner = 1 + w M^-1 w^T``, (groups, n, n) (Woodbury)
+    pair        numerators of two rows with one another, (2, 2), for their reaches (R, 2)
+    flow_slope  how fast the value falls at the flow t between two rows (`relaxation`)
+    after_flow  change of ``w^T S w`` of all rows, (N,), when ``M^-1`` falls by
+                ``reach inner reach^T``, with the reaches (R, 2) of two rows and inner (2, 2)
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,52 +46,6 @@ class RowStep(NamedTuple):
     along: Array
     signed: float
     c: float
-
-
-class Tangent(Protocol):
-    """A criterion of one machine along which a search goes."""
-
-    def value(self, M: Array, inverse: Array) -> float:
-        """Of the tangent at M, (R, R)."""
-
-    def degree(self, inverse: Array) -> float:
-        """``trace(S M)`` for the slope S."""
-
-    def slope(self, inverse: Array) -> Array:
-        """S, (R, R): a little of the row w lets the value fall by ``w^T S w`` of it."""
-
-    def numerators(self, reach: Array, leverage: Array) -> Array:
-        """Of rows with their reaches (N, R), (N,)."""
-
-    def fall(self, numerator: Array, leverage: Array, sign: float = 1.0) -> Array:
-        """By how much the value falls with each row in (sign 1) or out (sign -1), (N,)."""
-
-    def step(self, row: RowStep) -> tuple[Array, float]:
-        """Change of all numerators by one row, (N,), and by how much the value falls."""
-
-    def group_fall(self, reach: Array, inner: Array) -> Array:
-        """By how much groups of rows let the value fall, (groups,) (Woodbury).
-
-        Args:
-            reach: Of the rows of each group, (groups, n, R).
-            inner: ``1 + w M^-1 w^T``, (groups, n, n).
-        """
-
-    def pair(self, reach: Array) -> Array:
-        """Numerators of two rows with one another, (2, 2), for their reaches (R, 2)."""
-
-    def flow_slope(self, t: float, a: float, b: float, c: float, d: float) -> float:
-        """How fast the value falls at the flow t between two rows (`relaxation.best_flow`)."""
-
-    def after_flow(self, W: Array, inverse: Array, reach: Array, inner: Array) -> Array:
-        """Change of ``w^T S w`` of all rows, (N,), when ``M^-1`` falls by ``reach inner reach^T``.
-
-        Args:
-            W: All rows, (N, R).
-            inverse: ``M^-1`` before, (R, R).
-            reach: Of the two rows, (R, 2).
-            inner: Shape (2, 2).
-        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,3 +164,7 @@ class LogDeterminant:
         """Change of ``w M^-1 w``."""
         along = W @ reach
         return -self.weight * np.asarray(np.einsum("ni,ij,nj->n", along, inner, along))
+
+
+Tangent = Trace | LogDeterminant
+"""A criterion of one machine along which a search goes."""

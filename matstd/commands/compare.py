@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
 
 if TYPE_CHECKING:
+    from diagnosis.answer import Comparison
     from diagnosis.files import SavedModel
-    from diagnosis.residual import Comparison
 
 OURS = ("pictures/*.png", *REPORT_FILES)
 """Results that not every comparison leaves."""
@@ -37,8 +37,8 @@ def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
     import numpy as np
 
+    from diagnosis.answer import compare
     from diagnosis.files import write_comparison, write_residuals
-    from diagnosis.residual import compare
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs
     from matstd.progress import stages
@@ -81,6 +81,7 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
+    from report.geometry import fault_sentences, ladder_sentence, noted_lines
     from report.numbers import signed
     from report.words import (
         comparison_sentence,
@@ -100,6 +101,10 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
+    for sentence in fault_sentences(found.faults):
+        say(f"- {sentence}", style="bold")
+    for line in (ladder_sentence(found.geometry), *noted_lines(found.geometry)):
+        say(f"- {line}")
     for remark in found.remarks:
         say(f"- {remark_sentence(remark)}")
     first = "" if args.no_report else "report.html, "

@@ -143,6 +143,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     from rich.table import Column, Table
 
     from matstd.console import console, say
+    from report.geometry import fault_sentences, ladder_sentence, noted_lines
     from report.words import remark_sentence, rivals_words, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
@@ -157,6 +158,10 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     for step in result.steps:
         if step.effect is not None and step.confusion is not None and step.confusion.rivals:
             say(f"- {step.effect.name} cannot be told from {rivals_words(step, TOLD)}")
+    for sentence in fault_sentences(result.faults):
+        say(f"- {sentence}", style="bold")
+    for line in (ladder_sentence(result.geometry), *noted_lines(result.geometry)):
+        say(f"- {line}")
     for remark in result.remarks:
         say(f"- {remark_sentence(remark)}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:

@@ -5,18 +5,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.body import Meeting, Standard, contact
-from artefact.reach import TABLE_RADIUS
 from probe_paths.control import Move, ProbeStep, ReadProgram
-from probe_paths.plan import Probe, ToolClearance, solid_hull, swing_height, top_height
+from probe_paths.plan import (
+    SMALLEST_GAP,
+    SMALLEST_STEP,
+    ToolClearance,
+    solid_hull,
+    swing_height,
+    top_height,
+)
 from twin.errors import BadFile
 from twin.frames import Array, apply, inverse
 from twin.machine import Chain, tip
 from twin.record import IntArray, Labels
 
-SMALLEST_GAP = 0.5
-"""Least gap between the probe and anything solid while it is positioned, mm."""
-
-_SMALLEST_STEP = 0.25  # mm, of the march along a move
 _MARCHES = 400
 
 
@@ -28,30 +30,34 @@ class _Moves:
     before: Array
     after: Array
 
+    @property
+    def fields(self) -> tuple[IntArray, Array, Array]:
+        """Line, readings before, readings after."""
+        return self.line, self.before, self.after
+
     def __getitem__(self, rows: IntArray) -> "_Moves":
         return _Moves(self.line[rows], self.before[rows], self.after[rows])
 
 
-def check_moves(
-    program: ReadProgram, standard: Standard, chain: Chain, table_radius: float = TABLE_RADIUS
-) -> None:
+def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     """Refuse a program that would drive the probe into the standard or the table.
 
     The machine and the set-up are taken as nominal. Moves above everything are free; below that
-    the ball is marched along each move, never further than its gap, and the whole tool is looked
-    at where each move ends. Turning moves are looked at over all positions in between.
+    the ball and the whole tool are marched along each move, and along each touch until its expected
+    contact, never further than their gaps. Turning moves are looked at over all positions between.
+    Probe and table are those that the program's head states.
 
     Args:
         program: As read from its text.
         standard: What stands on the table.
         chain: The machine.
-        table_radius: Of the table's face, mm.
 
     Raises:
         BadFile: Line of the first move that comes too near, and what it comes near to.
     """
-    probe = Probe(program.heading.radius, program.heading.length)
-    setup = program.heading.setup
+    probe, setup = program.heading.probe, program.heading.setup
+    table_radius = program.heading.table_radius
+    assert table_radius is not None, "no program is read without it"
     solid = solid_hull(standard, setup, table_radius)
     moves = _moves(program)
     rotary = [chain.axis_index(name) for name in chain.rotary_axes]
@@ -67,10 +73,12 @@ def check_moves(
         np.flatnonzero(lowest < top_height(chain, straight.after[:, rotary], solid, probe))
     ]
     clearance = ToolClearance(chain, standard, setup, probe, table_radius)
+    strokes = _strokes(program, chain)
     if len(low.line):
-        gap, nearest = clearance.gap(low.after)
-        _refuse(program, low.line, gap, nearest)
         _refuse(program, low.line, _marched(clearance, low), np.full(len(low.line), "the standard"))
+    swept = _Moves(*(np.concatenate(pair) for pair in zip(low.fields, strokes.fields, strict=True)))
+    gap, nearest = clearance.swept_gap(swept.before, swept.after)
+    _refuse(program, swept.line, gap, nearest)
 
 
 def _moves(program: ReadProgram) -> _Moves:
@@ -94,6 +102,15 @@ def _moves(program: ReadProgram) -> _Moves:
     )
 
 
+def _strokes(program: ReadProgram, chain: Chain) -> _Moves:
+    """Touches from their starts to the contacts that are expected, as far off as they retract."""
+    touches = program.touches
+    width = len(chain.axes)
+    start = np.array([touch.q for touch in touches]).reshape(-1, width)
+    way = np.array([touch.back * touch.direction for touch in touches]).reshape(-1, width)
+    return _Moves(np.array([touch.line for touch in touches], dtype=np.int64), start, start + way)
+
+
 def _marched(clearance: ToolClearance, moves: _Moves) -> Array:
     """Smallest gap of the ball along straight moves, (M,), mm; from below."""
     T_artefact_table = inverse(clearance.setup.T_table_artefact)
@@ -110,7 +127,7 @@ def _marched(clearance: ToolClearance, moves: _Moves) -> Array:
         gap = clearance.standard.distance(centre) - clearance.probe.radius
         smallest[active] = np.minimum(smallest[active], gap)
         # the gap cannot shrink faster than the ball moves
-        travel[active] += np.maximum(gap - SMALLEST_GAP, _SMALLEST_STEP)
+        travel[active] += np.maximum(gap - SMALLEST_GAP, SMALLEST_STEP)
         active = active[(travel[active] < length[active]) & (gap >= SMALLEST_GAP)]
         if not len(active):
             break

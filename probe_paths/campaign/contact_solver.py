@@ -61,7 +61,8 @@ class ContactSolver:
     ) -> None:
         touches = program.touches
         self.program, self.standard, self.machine, self.noise = program, standard, machine, noise
-        self.radius, self.length = program.heading.radius, program.heading.length
+        probe = program.heading.probe
+        self.radius, self.length = probe.radius, probe.length
         self.start = np.array([t.q for t in touches]).reshape(-1, len(machine.chain.axes))
         self.direction = np.array([t.direction for t in touches]).reshape(self.start.shape)
         self.distance = np.array([t.distance for t in touches])

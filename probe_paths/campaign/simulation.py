@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from artefact.body import Standard
-from artefact.reach import TABLE_RADIUS
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.evaluation import evaluate
@@ -47,7 +46,6 @@ def simulate(
     machine: VirtualMachine,
     rng: np.random.Generator,
     probe: Probe | None = None,
-    table_radius: float = TABLE_RADIUS,
 ) -> Campaign:
     """Run program files on the twin and evaluate the logs that they leave.
 
@@ -57,7 +55,6 @@ def simulate(
         machine: As it really is; the evaluation knows only its nominal chain.
         rng: For the noise of the trigger.
         probe: In the spindle; None takes the one that each program states.
-        table_radius: Of the table's face, mm: moves are kept clear of it.
 
     Raises:
         BadFile: A program that the control, or a cautious operator, would not run.
@@ -66,7 +63,7 @@ def simulate(
     """
     texts = [read_program(path, machine.chain, probe) for path in programs]
     for text in texts:
-        check_moves(text, standard, machine.chain, table_radius)
+        check_moves(text, standard, machine.chain)
     runs = run_programs(texts, standard, machine, rng)
     runs[-1].check_done()
     parts = [

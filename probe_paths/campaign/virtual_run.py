@@ -26,7 +26,7 @@ from probe_paths.control import (
     Value,
     step_times,
 )
-from probe_paths.plan import LINEAR, Probe, ProgramFrame, stated_serial
+from probe_paths.plan import LINEAR, ProgramFrame, stated_serial
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
 from twin.record import Labels, Touches
@@ -215,8 +215,7 @@ class _Control:
         self, program: ReadProgram, contacts: ContactSolver, machine: VirtualMachine
     ) -> None:
         self.program, self.contacts = program, contacts
-        heading = program.heading
-        self.frame = ProgramFrame(machine.chain, Probe(heading.radius, heading.length))
+        self.frame = ProgramFrame(machine.chain, program.heading.probe)
         self.dialect, self.begin = machine.dialect, machine.begin
         self.lines: dict[str, list[str]] = {}
         self.results = self._results()

@@ -55,7 +55,8 @@ def stated_probe(path: str | Path, radius: float | None, length: float | None) -
         return None
     head, _ = heading(read_blocks(_content(Path(path)), path), Path(path))
     return Probe(
-        head.radius if radius is None else radius, head.length if length is None else length
+        head.probe.radius if radius is None else radius,
+        head.probe.length if length is None else length,
     )
 
 
@@ -125,10 +126,10 @@ def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], 
 def _probe(head: Heading, probe: Probe | None, path: Path) -> Probe:
     """The probe in the spindle, which must be the one that the program was made for."""
     if probe is None:
-        return Probe(head.radius, head.length)
+        return head.probe
     for what, stated, actual in (
-        ("radius", head.radius, probe.radius),
-        ("length", head.length, probe.length),
+        ("radius", head.probe.radius, probe.radius),
+        ("length", head.probe.length, probe.length),
     ):
         if abs(stated - actual) > 1e-5:
             raise BadFile(
@@ -137,4 +138,4 @@ def _probe(head: Heading, probe: Probe | None, path: Path) -> Probe:
                 f"a probe of {what} {stated:g} mm",
                 f"{actual:g} mm, as in the spindle",
             )
-    return probe
+    return head.probe

@@ -126,7 +126,10 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
     starts = [i for i, (_, text) in enumerate(remarks) if text.startswith("STANDARD ")]
     if not starts:
         raise BadFile(path, "head", "no comment ';STANDARD ... SETUP ...'", "the program's head")
-    head = parse_heading(remarks[starts[0] : starts[0] + 5], path)
+    head = parse_heading(remarks[starts[0] : starts[0] + 7], path)
+    if head.table_radius is None:
+        found = "no comments ';STYLUS ... BODY ...' and ';NOSE ... TABLE ...'"
+        raise BadFile(path, "head", found, "what must be kept clear: emit the program anew")
     features: dict[int, str] = {}
     for line, text in remarks:
         match = _FEATURE.fullmatch(text)
@@ -156,8 +159,8 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
         _TOOL, ";TOOL <number> IS THE PROBE: L<signed> R<signed>, ...", remarks, path
     )
     for name, stated, planned in (
-        ("L", tool[1], head.length + head.radius),
-        ("R", tool[2], head.radius),
+        ("L", tool[1], head.probe.tool_length),
+        ("R", tool[2], head.probe.radius),
     ):
         if abs(float(stated) - planned) > _DIGITS:
             raise BadFile(path, f"line {line}", f"{name}{stated}", f"{planned:+.4f} as PROBE says")

@@ -59,12 +59,11 @@ class Writer:
         self.frame = ProgramFrame(plan.chain, plan.probe)
         self.rotary = plan.chain.rotary_axes
         self.number = {name: i + 1 for i, name in enumerate(plan.standard.features)}
-        probe = plan.probe
         self.heading = Heading(
             standard=plan.standard.name,
             setup=plan.setup,
-            radius=probe.radius,
-            length=probe.length,
+            probe=plan.probe,
+            table_radius=plan.options.table_radius,
             serial=stated_serial(plan.standard.serial),
         )
         top = plan.chain.link("Z").range[1]

@@ -7,6 +7,8 @@ collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of p
 """
 
 from probe_paths.plan.clearance import (
+    SMALLEST_GAP,
+    SMALLEST_STEP,
     ToolClearance,
     readings_at,
     solid_hull,
@@ -22,6 +24,8 @@ from probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
 
 __all__ = [
     "LINEAR",
+    "SMALLEST_GAP",
+    "SMALLEST_STEP",
     "Heading",
     "PlanOptions",
     "Probe",

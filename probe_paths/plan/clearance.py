@@ -1,7 +1,7 @@
 """Space for the probe: heights at which nothing stands in the way, and gaps at a touch."""
 
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -13,8 +13,15 @@ from twin.frames import Array, apply, turn
 from twin.machine import Chain, linear_directions, table_to_tool, tip
 from twin.record import Labels, Setup
 
-_SWING = 7
-"""Samples of every rotary axis over one move: both axes turn, in no order that is known."""
+SMALLEST_GAP = 0.5
+"""Least gap between the probe and anything solid while it is positioned, mm."""
+
+SMALLEST_STEP = 0.25
+"""Of a march along a move, mm."""
+
+_SWING = 25
+"""Samples of every axis that turns in a move: all turn, in no order that is known. Half a turn is
+cut every 7 degrees, between which nothing within 300 mm of an axis rises by 0.6 mm."""
 
 
 class SolidHull(NamedTuple):
@@ -83,7 +90,10 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
 
 
 def swing_height(chain: Chain, path: Array, solid: SolidHull, probe: Probe) -> Array:
-    """Highest `top_height` while the rotary axes turn along a path, whichever turns first.
+    """Highest `top_height` along a path of the rotary axes, whichever turns first; from above.
+
+    Between two samples that are d apart a point at a distance r from an axis rises above both by
+    r d^2 / 8 at most, which is added.
 
     Args:
         chain: The machine.
@@ -94,12 +104,28 @@ def swing_height(chain: Chain, path: Array, solid: SolidHull, probe: Probe) -> A
     Returns:
         Of each of the W - 1 moves, mm.
     """
-    axes = path.shape[1]
-    share = np.array(list(product(np.linspace(0.0, 1.0, _SWING), repeat=axes)))
-    between = path[:-1, None] + share * (path[1:] - path[:-1])[:, None]  # (W - 1, S, R)
-    heights = top_height(chain, between.reshape(len(share) * (len(path) - 1), axes), solid, probe)
-    highest: Array = heights.reshape(len(path) - 1, -1).max(axis=1)
+    arms = _arms(chain, solid, probe)
+    highest = np.empty(len(path) - 1)
+    for i, (start, end) in enumerate(pairwise(path)):
+        turn_by = end - start
+        shares = [np.linspace(0.0, 1.0, _SWING if angle else 1) for angle in turn_by]
+        between = start + np.array(list(product(*shares))) * turn_by
+        rise = float(np.sum(arms * (turn_by / (_SWING - 1)) ** 2)) / 8.0
+        highest[i] = top_height(chain, between, solid, probe).max(initial=-np.inf) + rise
     return highest
+
+
+def _arms(chain: Chain, solid: SolidHull, probe: Probe) -> Array:
+    """How far anything that a rotary axis carries is from its axis at most, (R,), mm."""
+    on_table = float((np.linalg.norm(solid.points, axis=1) + solid.radii).max())
+    tool = float(np.linalg.norm(probe.outline(), axis=1).max())
+    arms = []
+    for name in chain.rotary_axes:
+        link = chain.link(name)
+        origin = chain.table_origin if link.carries_workpiece else np.zeros(3)
+        carried = on_table if link.carries_workpiece else tool + probe.length
+        arms.append(carried + float(np.linalg.norm(link.point - origin)))
+    return np.array(arms)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,3 +161,35 @@ class ToolClearance:
             Plate((self.table_radius,) * 2, self.table_radius, -TABLE_THICKNESS, 0.0),
         )
         return near.distance, near.body
+
+    def swept_gap(self, before: Array, after: Array) -> tuple[Array, Labels]:
+        """Smallest gap of the tool above its ball along straight moves of the linear axes.
+
+        The gap of a body that is shifted shrinks no faster than it moves, so each march goes on by
+        the gap that it finds, and ends where less than `SMALLEST_GAP` is left.
+
+        Args:
+            before: Readings at the beginning, (M, A).
+            after: Readings at the end, (M, A).
+
+        Returns:
+            The gap (M,), mm, from below, and the name of what is nearest (M,).
+        """
+        way = after - before
+        length = np.linalg.norm(way, axis=1)
+        # a way down and the same way up again count once
+        leading = np.take_along_axis(way, np.argmax(np.abs(way), axis=1)[:, None], axis=1)
+        low, high = np.where(leading < 0.0, after, before), np.where(leading < 0.0, before, after)
+        ends = np.round(np.concatenate([low, high], axis=1), 6)
+        _, first, same = np.unique(ends, axis=0, return_index=True, return_inverse=True)
+        smallest, nearest = np.full(len(first), np.inf), np.full(len(first), "", dtype="U32")
+        travel, active = np.zeros(len(first)), np.arange(len(first))
+        while len(active):
+            rows = first[active]
+            share = np.minimum(travel[active] / np.maximum(length[rows], 1e-12), 1.0)
+            gap, body = self.gap(before[rows] + share[:, None] * way[rows])
+            closer = gap < smallest[active]
+            smallest[active[closer]], nearest[active[closer]] = gap[closer], body[closer]
+            travel[active] += np.maximum(gap - SMALLEST_GAP, SMALLEST_STEP)
+            active = active[(share < 1.0) & (gap >= SMALLEST_GAP)]
+        return smallest[same.reshape(-1)], nearest[same.reshape(-1)]

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from probe_paths.plan.probe import Probe
 from twin.errors import BadFile, DesignError
 from twin.frames import Array, fixed_xyz, fixed_xyz_angles, pose
 from twin.record import Setup
@@ -21,6 +22,8 @@ _SERIAL = re.compile(r"SERIAL ([A-Za-z0-9_.+-]{1,24})")
 _NUMBER = r"([+-]\d+\.\d+)"
 _ORIGIN = re.compile(rf"ORIGIN X{_NUMBER} Y{_NUMBER} Z{_NUMBER}")
 _TURNED = re.compile(rf"TURNED A{_NUMBER} B{_NUMBER} C{_NUMBER}")
+_STYLUS = re.compile(rf"STYLUS L{_NUMBER} R{_NUMBER} BODY R{_NUMBER}")
+_NOSE = re.compile(rf"NOSE R{_NUMBER} TABLE R{_NUMBER}")
 _PROBE = re.compile(rf"PROBE RADIUS {_NUMBER} LENGTH TO BALL CENTRE {_NUMBER}")
 
 
@@ -31,34 +34,48 @@ class Heading:
     Attributes:
         standard: Name of the standard, as its file has it.
         setup: Where it is believed to stand.
-        radius: Of the probe's ball, mm.
-        length: Of the probe to the ball centre, mm.
+        probe: In the spindle.
+        table_radius: Of the rotary table's face, mm; None where neither it nor the shape of the
+            probe above its ball is stated, as in logs of earlier programs.
         serial: Number of the standard, as far as a program can state it; empty where it has none.
     """
 
     standard: str
     setup: Setup
-    radius: float
-    length: float
+    probe: Probe
+    table_radius: float | None = None
     serial: str = ""
 
     @property
     def lines(self) -> list[str]:
-        """Four lines, and a fifth with the serial number; six decimals, mm and degrees."""
+        """Its lines, four at least; numbers with six decimals, mm and degrees."""
         for name in (self.standard, self.setup.name):
             if not _NAME.match(name):
                 raise DesignError(
                     f"name '{name}' cannot stand in a program: expected 1 to 24 letters, digits, "
                     "_ . + or -"
                 )
-        T_table_artefact = self.setup.T_table_artefact
+        T_table_artefact, probe = self.setup.T_table_artefact, self.probe
         angles = fixed_xyz_angles(T_table_artefact[:3, :3]) / DEG
         return [
             f"STANDARD {self.standard} SETUP {self.setup.name}",
             "ORIGIN " + _words("XYZ", T_table_artefact[:3, 3]),
             "TURNED " + _words("ABC", angles),
-            f"PROBE RADIUS {self.radius:+.6f} LENGTH TO BALL CENTRE {self.length:+.6f}",
+            f"PROBE RADIUS {probe.radius:+.6f} LENGTH TO BALL CENTRE {probe.length:+.6f}",
+            *self._workshop,
             *([f"SERIAL {self.serial}"] if self.serial else []),
+        ]
+
+    @property
+    def _workshop(self) -> list[str]:
+        """The probe above its ball, and the table that it is kept clear of."""
+        if self.table_radius is None:
+            return []
+        probe = self.probe
+        return [
+            f"STYLUS L{probe.stylus_length:+.6f} R{probe.stylus_radius:+.6f} "
+            f"BODY R{probe.body_radius:+.6f}",
+            f"NOSE R{probe.nose_radius:+.6f} TABLE R{self.table_radius:+.6f}",
         ]
 
 
@@ -95,12 +112,22 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> Heading
     angles = _numbers(_TURNED, lines[2], path, "TURNED A.. B.. C..")
     radius, length = _numbers(_PROBE, lines[3], path, "PROBE RADIUS .. LENGTH TO BALL CENTRE ..")
     T_table_artefact = pose(fixed_xyz(angles * DEG), origin)
-    serial = _SERIAL.fullmatch(lines[4][1]) if len(lines) > 4 else None
+    # programs of earlier versions stated neither shape and table nor the serial number
+    more = [text for _, text in lines[4:]]
+    shape, table_radius = {}, None
+    if more and more[0].startswith("STYLUS "):
+        expected = "STYLUS L.. R.. BODY R.., then NOSE R.. TABLE R.."
+        stylus = _numbers(_STYLUS, lines[4], path, expected)
+        around = _numbers(_NOSE, lines[min(5, len(lines) - 1)], path, expected)
+        names = ("stylus_length", "stylus_radius", "body_radius", "nose_radius")
+        shape = dict(zip(names, [*stylus.tolist(), float(around[0])], strict=True))
+        table_radius, more = float(around[1]), more[2:]
+    serial = _SERIAL.fullmatch(more[0]) if more else None
     return Heading(
         standard=words[1],
         setup=Setup(words[3], T_table_artefact),
-        radius=float(radius),
-        length=float(length),
+        probe=Probe(float(radius), float(length), **shape),
+        table_radius=table_radius,
         serial=serial[1] if serial else "",
     )
 

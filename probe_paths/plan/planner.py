@@ -6,7 +6,14 @@ import numpy as np
 
 from artefact.body import Standard
 from artefact.reach import ProbeReach, Requests, joined
-from probe_paths.plan.clearance import readings_at, solid_hull, swing_height, top_height
+from probe_paths.plan.clearance import (
+    SMALLEST_GAP,
+    ToolClearance,
+    readings_at,
+    solid_hull,
+    swing_height,
+    top_height,
+)
 from probe_paths.plan.frame import LINEAR, ProgramFrame
 from probe_paths.plan.heading import rounded_setup
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, rotary_path, visits
@@ -96,7 +103,7 @@ def plan_touches(
     height = np.empty(len(requests))
     for stop in stops:
         height[stop.rows] = stop.height
-    wanted = _examined(task, replace(requests, rotary=rotary), height)
+    wanted = _swept(task, _examined(task, replace(requests, rotary=rotary), height), height)
     refused = [_refusal(task, wanted, i, i) for i, r in enumerate(wanted.reason) if r]
     if len(refused) > options.tolerated:
         raise NotReachable(
@@ -164,6 +171,25 @@ def _examined(task: _Task, wanted: Requests, height: Array) -> _Touches:
     )
 
 
+def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
+    """Touches with a reason against those whose way in brings the tool too near to something."""
+    rows = np.flatnonzero(touches.reason == "")
+    above = touches.start[rows].copy()
+    above[:, task.chain.axis_index("Z")] = height[rows]
+    o = task.options
+    clearance = ToolClearance(task.chain, task.standard, task.setup, task.probe, o.table_radius)
+    reason = touches.reason.copy()
+    for before, after in (
+        (above, touches.start[rows]),
+        (touches.start[rows], touches.contact[rows]),
+    ):
+        gap, nearest = clearance.swept_gap(before, after)
+        for i in np.flatnonzero(gap < min(SMALLEST_GAP, o.smallest_gap)):
+            words = f"{gap[i]:.2f} mm between probe and {nearest[i]} on its way in"
+            reason[rows[i]] = reason[rows[i]] or words
+    return replace(touches, reason=reason)
+
+
 def _refusal(task: _Task, touches: _Touches, row: int, request: int) -> Refusal:
     chain, q = task.chain, touches.contact[row]
     rotary = {a: float(q[chain.axis_index(a)]) for a in chain.rotary_axes}
@@ -179,6 +205,17 @@ def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, Refus
     height = np.repeat([stop.height for stop in poses], [len(lot) for lot in lots])
     examined = _examined(task, joined(lots), height)
     ends = np.cumsum([len(lot) for lot in lots])
+    lot = np.repeat(np.arange(len(lots)), [len(one) for one in lots])
+    # marching costs a hundred times as much as a look: only what would be chosen is marched
+    is_swept = np.zeros(len(lot), dtype=bool)
+    while True:
+        good = np.flatnonzero(examined.reason == "")
+        best = good[np.unique(lot[good], return_index=True)[1]]
+        rows = best[~is_swept[best]]
+        if not len(rows):
+            break
+        examined.reason[rows] = _swept(task, examined[rows], height[rows]).reason
+        is_swept[rows] = True
     return {
         stop.pose: _first_good(task, examined[slice(int(end) - len(lot), int(end))])
         for stop, lot, end in zip(poses, lots, ends, strict=True)

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from diagnosis.answer import Comparison
 from diagnosis.fit import Reported
-from diagnosis.residual import Comparison
+from report.geometry import fault_sentences
+from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
     Picture,
@@ -56,6 +58,7 @@ def write_compare_page(
         title=title,
         found=found,
         sentence=comparison_sentence(found),
+        faults=fault_sentences(found.faults),
         remarks=[remark_sentence(r) for r in found.remarks],
         where=region_rows(found.where),
         structure=[{"words": structure_words(s), "p": s.p_value} for s in found.structure],
@@ -65,6 +68,7 @@ def write_compare_page(
         pictures=residual_pictures(place, "residual", found.fit, z),
         patterns=pattern_pictures(place, found.fit, found.structure, rng),
         gross=gross_rows(found.fit),
+        geometry=geometry_section(found.geometry),
         worst_line=int(found.run.line[worst]),
         worst_um=float(found.residual[worst]) / UM,
         worst_normalised=float(found.normalised[worst]),

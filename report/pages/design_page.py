@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import FreeformPatch, max_slope, min_concave_radius
+from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
 from artefact.compare import Rival
-from artefact.worth import touch_curve
+from artefact.worth import Criterion, touch_curve
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
 from report.pages.page import digits, write_page
@@ -21,7 +21,13 @@ from report.plots import (
 )
 from report.scenes import draw_standard
 from report.style import save
-from report.words import best_rival, comparison_remarks, criterion_words, verdict_of_design
+from report.words import (
+    best_rival,
+    comparison_remarks,
+    criterion_words,
+    design_lines,
+    verdict_of_design,
+)
 from twin.errors import DesignError
 from twin.units import DEG, UM
 
@@ -93,7 +99,9 @@ def _volumes(design: Design, folder: Path, remarks: list[str]) -> list[tuple[str
 def _draw_curves(design: Design, folder: Path) -> str:
     """Error left against the number of touches, on every artefact; returns the caption."""
     placement = design.placement
-    curves = [touch_curve(placement.criterion, r.name, r.touches) for r in placement.rivals]
+    curves = [
+        touch_curve(_on(placement.criterion, r.body), r.name, r.touches) for r in placement.rivals
+    ]
     save(draw_touch_curves(curves, design.project.noise), folder / CURVES)
     return (
         "Error left against the number of touches, predicted for every artefact by one rule: its "
@@ -101,6 +109,11 @@ def _draw_curves(design: Design, folder: Path) -> str:
         f"Marked: the {len(placement.requests)} touches of the table above. No machine is drawn "
         "for it: it is the spread that the touches leave to machines of the stated error ranges."
     )
+
+
+def _on(criterion: Criterion, body: Standard | None) -> Criterion:
+    """The criterion for touches on a body, or on none."""
+    return criterion if body is None else criterion.on(body)
 
 
 def _standard(design: Design) -> dict[str, Any]:
@@ -111,6 +124,7 @@ def _standard(design: Design) -> dict[str, Any]:
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
         "certificate": design.placement.certificate,
         "criterion": criterion_words(design.project.standard),
+        "identification": " ".join(design_lines(design.placement)[2:]),
         "comparison": [_rival(r, design, on_machine) for r in design.placement.rivals],
         "rival": _rival(best, design, on_machine) if best is not None else None,
         "step_deviation": _at_most(faces),

@@ -9,7 +9,9 @@ import numpy as np
 
 from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import file_unit
+from report.geometry import fault_sentences
 from report.numbers import digits, unit_words
+from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
     Picture,
@@ -79,6 +81,7 @@ def write_diagnosis_page(
         title=title,
         result=result,
         sentence=verdict_sentence(result),
+        faults=fault_sentences(result.faults),
         remarks=[remark_sentence(r) for r in result.remarks],
         where=region_rows(result.where),
         depends_on=[
@@ -93,6 +96,7 @@ def write_diagnosis_page(
         before=residual_pictures(place, "before", result.start),
         after=residual_pictures(place, "after", result.fit) if len(result.steps) > 1 else [],
         on_standard=_on_standard(result, place),
+        geometry=geometry_section(result.geometry),
         detectable=_detectable(result.detectable),
         plans=[_plan(p.tells_apart, p.touches, p.separation) for p in result.plans],
         gross=gross_rows(result.fit),

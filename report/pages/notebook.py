@@ -14,9 +14,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from artefact.compare import IdentifiabilityReport
-from diagnosis.answer import Diagnosis
+from diagnosis.answer import Comparison, Diagnosis
 from diagnosis.fit import Fit
-from diagnosis.residual import Comparison
 from report.identifiability import gist
 from report.maps import draw_regions
 from report.pages.page import picture

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from probe_paths.campaign import Order, orders, probing_time
-from probe_paths.plan import Probe
 from report.numbers import percent
 from report.pages.design_result import Design
 from report.words import ordering_words
@@ -15,7 +14,7 @@ from twin.units import HOUR, MINUTE, UM, URAD
 def minutes(design: Design) -> dict[str, float]:
     """Minutes on the machine by artefact, by one planner and one clock; nan without a body."""
     project, placement = design.project, design.placement
-    probe = Probe(project.probe_radius, project.probe_length)
+    probe = design.plan.probe
     found = {placement.own.name: design.programs.duration / MINUTE}
     for rival in placement.rivals[1:]:
         seconds = np.nan

@@ -3,7 +3,8 @@
 from artefact.brief import StandardTable
 from artefact.compare import Alternative
 from artefact.place import Placement
-from report.numbers import percent
+from report.numbers import digits, percent
+from twin.units import UM
 
 _CRITERIA = {
     "I": "mean variance of the predicted tool point over probed volume and workspace",
@@ -43,6 +44,22 @@ def alternative_words(other: Alternative) -> str:
     change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
     variance = f"mean predicted variance of the tool point {change} at equal touches"
     return f"{other.name}: {seen}; {variance}"
+
+
+def identification_sentence(placement: Placement) -> str:
+    """What the freeform faces cost or gain in identification; empty without spheres beside them."""
+    own = placement.own
+    spheres = [r for r in placement.rivals[1:] if r.body is not None and not r.body.patches]
+    if not spheres:
+        return ""
+    best = min(spheres, key=lambda r: r.rms_user)
+    change = own.rms_user / best.rms_user - 1.0
+    return (
+        f"Identification: the freeform faces {'cost' if change > 0.0 else 'gain'} "
+        f"{percent(abs(change))} over the user's workspace: after as many touches the standard "
+        f"leaves {digits(own.rms_user / UM)} µm rms, {best.name} placed by the same optimiser "
+        f"{digits(best.rms_user / UM)} µm, with the calibration of every feature taken in."
+    )
 
 
 def comparison_remarks(placement: Placement) -> list[str]:

@@ -8,6 +8,7 @@ from artefact.compare import Rival
 from artefact.place import Placement
 from diagnosis.answer import Proof
 from report.numbers import digits
+from report.words.artefact_words import identification_sentence
 from twin.units import UM
 
 EQUAL = 1.05
@@ -47,14 +48,14 @@ def verdict_of_design(placement: Placement) -> str:
 
 
 def design_lines(placement: Placement) -> list[str]:
-    """The verdict and, second, what is left in the probed volume."""
+    """The verdict, what is left in the probed volume, and what faces cost or gain over spheres."""
     own = placement.own
     others = [r for r in placement.rivals if r is not own and r.body is not None]
     line = f"in the probed volume alone it leaves {_um(own.rms)}"
     if others:
         rival = min(others, key=lambda r: r.rms)
         line += f", the best other artefact there, {rival.name}, {_um(rival.rms)}"
-    return [verdict_of_design(placement), line]
+    return [verdict_of_design(placement), line, *filter(None, [identification_sentence(placement)])]
 
 
 def proof_line(number: int, in_workspace: Proof, in_volume: Proof) -> str:

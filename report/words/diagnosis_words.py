@@ -3,9 +3,9 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from diagnosis.answer import Diagnosis, Step, Verdict
+from diagnosis.answer import Comparison, Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
-from diagnosis.residual import Comparison, Condition, Shape, Side, Structure
+from diagnosis.residual import Condition, Shape, Side, Structure
 from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
 from report.words.remark_words import memory_words
 from twin.record import Run

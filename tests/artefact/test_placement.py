@@ -134,7 +134,8 @@ def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
     assert own.rms < 0.9 * own.rms_random
     assert own.rms < own.p95
     by_name = {r.name: r for r in placement.rivals}
-    assert len(by_name) == 7
+    assert {f"{n} spheres" for n in (4, 5, 7, 13)} < set(by_name)
+    assert len(by_name) == 10
     assert own.rms < 0.6 * by_name["one freeform face"].rms
     assert own.rms < 0.6 * by_name["five-sided block"].rms
     ideal = by_name["ideal scatter, chosen by I"]
@@ -150,21 +151,24 @@ def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
 
 def test_certificate_is_of_the_choice(placement):
     found, criterion = placement.certificate, placement.criterion
-    rows = criterion.rows(placement.requests)
+    rows = criterion.on(placement.standard).rows(placement.requests)
     assert found.count == 160
-    assert found.value == pytest.approx(criterion.objective.value(rows.T @ rows), rel=1e-6)
+    assert found.value == pytest.approx(
+        criterion.on(placement.standard).objective.value(rows.T @ rows), rel=1e-6
+    )
     assert 0.5 < found.efficiency <= 1.0
 
 
 def test_figures_are_those_of_the_information(placement):
     criterion = placement.criterion
+    here = criterion.on(placement.standard)
     posterior = Posterior(
-        criterion.whitened(placement.requests), criterion.prior_sd, criterion.model.names
+        here.known_rows(placement.requests), criterion.prior_sd, criterion.model.names
     )
     rms = np.sqrt(np.mean(posterior.predicted_sd(criterion.tip_volume) ** 2))
     assert placement.own.rms == pytest.approx(rms, rel=1e-12)
     both = np.concatenate([criterion.tip_volume, criterion.tip_user])
-    plain = criterion.plain
+    plain = criterion.plain.on(placement.standard)
     rows = plain.rows(placement.requests)
     mean_square = np.mean(posterior.predicted_sd(both) ** 2)
     assert plain.objective.value(rows.T @ rows) == pytest.approx(mean_square, rel=1e-6)

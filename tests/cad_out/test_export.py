@@ -1,7 +1,9 @@
 """STEP and STL of built standards, read anew; refusals and crashes leave nothing behind."""
 
+import hashlib
 import re
 from dataclasses import fields, replace
+from importlib.metadata import version
 
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ import pytest
 import cad_out
 from artefact.body.datum import DatumSphere
 from cad_out.build import kernel
+from cad_out.build.exchange import in_ascii, with_unit_of_density
 from cad_out.build.mesh import (
     chord_errors,
     is_watertight,
@@ -67,6 +70,38 @@ def test_poles_and_knots_in_the_file_are_those_of_the_design(small, built):
         assert isinstance(face, SphereFace)
         assert np.abs(face.centre - sphere.centre).max() < NM
         assert face.radius == sphere.radius
+
+
+def test_the_header_says_where_the_file_comes_from(small, built):
+    place, _, _ = built
+    header = re.sub(r"\s*\n\s*", "", (place / "standard.step").read_text().split("ENDSEC;")[0])
+    design = hashlib.sha256((place / "standard.toml").read_bytes()).hexdigest()
+    assert f"standard.toml{design}" in header.replace(" ", "")
+    assert header.count("('not stated')") == 2
+    assert f"material-standard {version('material-standard')}" in header
+    assert in_ascii("Müller & Søn") == r"M\X2\00FC\X0\ller & S\X2\00F8\X0\n"
+
+
+def test_density_has_the_dimension_of_a_density(small, built):
+    """Exponents of gram and centimetre, read from the text; the kernel's own are 3 and 2."""
+    text = (built[0] / "standard.step").read_text()
+    value, unit = re.search(
+        r"'density',POSITIVE_RATIO_MEASURE\(\s*([\d.]+)\s*\),#(\d+)\)", text
+    ).groups()
+    assert float(value) == pytest.approx(small.material.density * 1e6)
+    elements = re.search(rf"\n#{unit} = DERIVED_UNIT\(\(#(\d+),#(\d+)\)\)", text).groups()
+    found = [
+        re.search(rf"\n#{e} = DERIVED_UNIT_ELEMENT\(#(\d+),([-\d.]+)\)", text).groups()
+        for e in elements
+    ]
+    bases = [re.search(rf"\n#{base} = ([^;]*);", text)[1] for base, _ in found]
+    assert "SI_UNIT($,.GRAM.)" in bases[0]
+    assert "SI_UNIT(.CENTI.,.METRE.)" in bases[1]
+    assert [float(power) for _, power in found] == [1.0, -3.0]
+    with pytest.raises(NotBuildable, match="no density"):
+        with_unit_of_density("DATA;")
+    with pytest.raises(NotBuildable, match="another unit"):
+        with_unit_of_density(text)
 
 
 def test_a_pole_moved_by_a_tenth_of_a_micrometre_is_found(small, built, tmp_path):

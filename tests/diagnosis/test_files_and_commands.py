@@ -104,6 +104,8 @@ def test_keys_and_types_are_those_of_the_contract(table) -> None:
         "depends_on",
         "detectable",
         "next_measurement",
+        "geometry",
+        "description_faults",
         "remarks",
     ]
     assert table["format"] == "diagnosis/1"

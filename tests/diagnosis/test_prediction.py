@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from diagnosis.answer.comparison import compare
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.sizes import sizes
 from diagnosis.choice import prediction
@@ -20,7 +21,6 @@ from diagnosis.evidence.evidence import EffectSet
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.memory import Memory
 from diagnosis.fit.prior import Prior
-from diagnosis.residual.comparison import compare
 from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
 from matstd.inputs import candidates
 from report.words.diagnosis_words import named_value, promise_sentence

@@ -5,6 +5,7 @@ from probe_paths.language import klartext as k
 from probe_paths.language.blocks import Kind, read_blocks
 from probe_paths.language.dialect import Dialect
 from probe_paths.plan.heading import Heading, parse_heading, rounded_setup
+from probe_paths.plan.probe import Probe
 from twin.errors import DesignError
 from twin.frames import pose, rotation
 from twin.record.touches import Setup
@@ -102,14 +103,14 @@ def test_unknown_dialect_words_are_refused():
 def test_a_heading_survives_its_lines():
     T_table_artefact = pose(rotation(np.array([0.1, -0.2, 3.0])), np.array([1.23456789, -2.0, 3.0]))
     setup = rounded_setup(Setup("b", T_table_artefact))
-    head = Heading("FFS-600U", setup, 2.998765, 160.25)
+    head = Heading("FFS-600U", setup, Probe(2.998765, 160.25))
     back = parse_heading(list(enumerate(head.lines, start=5)), "A.H")
     assert (back.standard, back.setup.name) == ("FFS-600U", "b")
     np.testing.assert_allclose(back.setup.T_table_artefact, setup.T_table_artefact, atol=1e-12)
-    assert abs(back.radius - head.radius) < ROUNDING
+    assert abs(back.probe.radius - head.probe.radius) < ROUNDING
     assert np.abs(setup.T_table_artefact - T_table_artefact).max() < ROUNDING
 
 
 def test_a_name_with_blanks_cannot_stand_in_a_heading():
     with pytest.raises(DesignError, match="1 to 24 letters"):
-        _ = Heading("my standard", Setup("a"), 3.0, 160.0).lines
+        _ = Heading("my standard", Setup("a"), Probe(3.0, 160.0)).lines

@@ -15,7 +15,7 @@ from twin.frames import pose
 from twin.units import NM, UM
 
 U = 1.0 * UM
-HEAD = 11
+HEAD = 13
 """Lines of a head, from MATSTD LOG 1 to EX EY TL."""
 TOUCH = 5
 """Lines of a touch on a machine with two rotary axes."""
@@ -119,7 +119,7 @@ FAULTS = {
     ),
     "a foreign line between touches": (before(touch_line(3), "OPERATOR JM"), set(), "left out"),
     "foreign lines between touches": (before(touch_line(3), "A", "B", "C"), set(), "lines"),
-    "blank lines": (all_of(before(touch_line(3), "", " "), before(20, "\t")), set(), ""),
+    "blank lines": (all_of(before(touch_line(3), "", " "), before(22, "\t")), set(), ""),
     "blank at every end": (lambda lines: [f"  {line} \t" for line in lines], set(), ""),
     "decimal commas": (
         lambda lines: [re.sub(r"(\d)\.(\d)", r"\1,\2", s) for s in lines],
@@ -141,14 +141,14 @@ FAULTS = {
     "lines before the head": (before(0, "SOME OTHER PROGRAM"), set(), "before the head"),
     "the first line lost": (without(0), set(), ""),
     "the first line garbled": (instead(0, "MATXTD L0G 1"), set(), "before the head"),
-    "no date": (without(6), set(), "without a date"),
-    "month 13": (edited(6, "-  1-", "- 13-"), set(), "without a date"),
-    "no time in the head": (without(7), set(), "the first touch's is taken"),
-    "hour 25 in the head": (edited(7, "T  8:", "T 25:"), set(), "the first touch's is taken"),
-    "tool and preset lost": (without(8), set(), "it is left out"),
-    "tool garbled": (instead(8, "TOOL ????"), set(), "it is left out"),
-    "offsets lost": (without(10), set(), "it is left out"),
-    "offsets garbled": (instead(10, "EX   0.0"), set(), "it is left out"),
+    "no date": (without(8), set(), "without a date"),
+    "month 13": (edited(8, "-  1-", "- 13-"), set(), "without a date"),
+    "no time in the head": (without(9), set(), "the first touch's is taken"),
+    "hour 25 in the head": (edited(9, "T  8:", "T 25:"), set(), "the first touch's is taken"),
+    "tool and preset lost": (without(10), set(), "it is left out"),
+    "tool garbled": (instead(10, "TOOL ????"), set(), "it is left out"),
+    "offsets lost": (without(12), set(), "it is left out"),
+    "offsets garbled": (instead(12, "EX   0.0"), set(), "it is left out"),
     "hour 25": (edited(touch_line(8, 4), "T  8:", "T 25:"), {8}, "touch that begins"),
     "the clock an hour back": (
         lambda lines: [
@@ -197,9 +197,9 @@ HEAD_FAULTS = {
     "no origin": (instead(3, "ORIGIN X+1.0"), "ORIGIN X"),
     "no rotation": (without(4), "TURNED A"),
     "no probe": (instead(5, "PROBE"), "PROBE RADIUS"),
-    "no calibration": (without(9), "R <number> L <number>"),
-    "calibration garbled": (instead(9, "R 3.0"), "R <number> L <number>"),
-    "the head alone, cut": (lambda lines: lines[:9], "the end of the part"),
+    "no calibration": (without(11), "R <number> L <number>"),
+    "calibration garbled": (instead(11, "R 3.0"), "R <number> L <number>"),
+    "the head alone, cut": (lambda lines: lines[:11], "the end of the part"),
 }
 
 
@@ -317,7 +317,7 @@ def test_a_ball_far_off_the_spindle_axis_is_said(lines, small, chain):
 
 
 def test_another_serial_number_is_refused(lines, small, chain):
-    numbered = before(6, "SERIAL 007")(list(lines))
+    numbered = before(8, "SERIAL 007")(list(lines))
     parts = read_log("L", chain.rotary_axes, "\n".join(numbered) + "\n")
     assert parts[0].heading.serial == "007"
     assert len(evaluate(parts, replace(small, serial="007"), chain, U)) == 24
@@ -357,7 +357,7 @@ def test_a_sphere_beside_its_calibrated_place_is_said(golden, small, chain):
 
 
 def test_a_run_without_a_date_begins_long_ago(lines, chain):
-    (part,) = read_log("L", chain.rotary_axes, "\n".join(without(6)(list(lines))) + "\n")
+    (part,) = read_log("L", chain.rotary_axes, "\n".join(without(8)(list(lines))) + "\n")
     assert part.begin.date() == UNDATED.date()
     assert (part.begin.hour, part.begin.minute) == (8, 0)
 

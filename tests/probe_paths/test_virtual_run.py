@@ -37,13 +37,13 @@ def deviations(run, standard, chain):
     """By the definition, foot points on the standard at its believed place, one by one."""
     heading = run.program.heading
     T_artefact_table = inverse(heading.setup.T_table_artefact)
-    centre = apply(T_artefact_table, tip(chain, run.q, heading.length))
+    centre = apply(T_artefact_table, tip(chain, run.q, heading.probe.length))
     out = np.empty(len(centre))
     for i, name in enumerate(run.feature):
         surface = standard.features[name]
         uv = surface.project(centre[i : i + 1])
         n, p = surface.normal(uv)[0], surface.point(uv)[0]
-        out[i] = n @ (centre[i] - p) - heading.radius
+        out[i] = n @ (centre[i] - p) - heading.probe.radius
     return out
 
 
@@ -99,7 +99,7 @@ def test_contacts_against_bisection_of_the_distance(read, small, chain):
 
         def gap(t, touch=touch, surface=surface, patch=patch):
             q = (touch.q + t * touch.direction)[None]
-            added = contribution(errors, at_poses(chain, q, run.program.heading.length))
+            added = contribution(errors, at_poses(chain, q, run.program.heading.probe.length))
             centre = apply(T_artefact_table, exact_tip(chain, q, 160.0, added)[0])
             near = apply(inverse(patch.T_artefact_patch), centre)[:2]
             return distance_to(surface, centre, near) - 3.0

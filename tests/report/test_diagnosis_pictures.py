@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from diagnosis.answer.comparison import compare
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
-from diagnosis.residual.comparison import compare
 from diagnosis.residual.partial_residuals import partial, roughness
 from report.numbers import with_uncertainty
 from report.pages.compare_page import write_compare_page

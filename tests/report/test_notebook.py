@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnosis.answer.comparison import compare
 from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.residual.comparison import compare
 from report.words.diagnosis_words import comparison_sentence, verdict_sentence
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population

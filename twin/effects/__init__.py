@@ -6,16 +6,19 @@ the search and the reports know it from then on.
 
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
-from twin.effects.probe import normal_in_tool
+from twin.effects.probe import ProbeRadius, normal_in_tool
 from twin.effects.second_time import MARK, Again, again
-from twin.effects.setup_error import setup_errors
+from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 
 __all__ = [
     "MARK",
+    "SHIFT_SD",
+    "TURN_SD",
     "Again",
     "ComponentError",
     "HigherOrder",
     "LocationError",
+    "ProbeRadius",
     "again",
     "component",
     "normal_in_tool",

@@ -11,7 +11,13 @@ from twin.files.run_file import SetupTable, read_run
 from twin.files.run_writer import write_run
 from twin.files.sensor_file import SensorRecord, read_sensors
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
-from twin.files.whole import NOT_WRITABLE, refuse_to_overwrite, write_whole, written_whole
+from twin.files.whole import (
+    NOT_WRITABLE,
+    refuse_own_input,
+    refuse_to_overwrite,
+    write_whole,
+    written_whole,
+)
 
 __all__ = [
     "NOT_WRITABLE",
@@ -32,6 +38,7 @@ __all__ = [
     "read_sensors",
     "read_text",
     "reading_columns",
+    "refuse_own_input",
     "refuse_to_overwrite",
     "write_run",
     "write_whole",

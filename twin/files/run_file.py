@@ -86,11 +86,15 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     if not len(table):
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks = [columns.assumed_point(axis) for axis in chain.assumed_points]
-    run = _assemble(table, chain, head, remarks)
-    placed, moved = aligned(run)
-    run = replace(placed, deviation=run.deviation) if "dev_um" in table else placed
+    stated = _assemble(table, chain, head, remarks)
+    placed, moved = aligned(stated)
+    run = replace(placed, deviation=stated.deviation) if "dev_um" in table else placed
     remarks += [columns.moved_setup(m) for m in moved]
-    run = checked_run(run, table, remarks)
+    try:
+        run = checked_run(run, table, remarks)
+    except BadFile as refusal:
+        refusal.facts["run"] = stated  # for whoever can say which mistake makes it so
+        raise
     return replace(run, remarks=tuple(remarks))
 
 

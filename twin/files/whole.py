@@ -3,7 +3,7 @@
 import errno
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -19,6 +19,7 @@ NOT_WRITABLE = (
     errno.EISDIR,
     errno.ENOTDIR,
     errno.EIO,
+    errno.ENAMETOOLONG,
 )
 """What a user can put right when a file cannot be written: a full disk, no right to write."""
 
@@ -30,11 +31,16 @@ def written_whole(path: str | Path) -> Iterator[Path]:
     Raises:
         DesignError: The folder cannot be written to, or the disk is full.
     """
-    path = Path(path)
+    if "\0" in str(path):
+        raise DesignError(f"{str(path)!r}: cannot be written (no name has a zero byte in it)")
+    path = Path(os.path.realpath(path))  # the file that a link leads to, not the link
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise DesignError(f"{path}: cannot be written (it is a folder or a device, not a file)")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        # a part of the name is enough, and a long one leaves no room for what is appended
         handle, name = tempfile.mkstemp(
-            prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent
+            prefix=f".{path.stem[:32]}-", suffix=path.suffix[-32:], dir=path.parent
         )
     except OSError as error:
         raise _not_written(path, error) from error
@@ -56,7 +62,9 @@ def written_whole(path: str | Path) -> Iterator[Path]:
 
 
 def _not_written(path: Path, error: OSError) -> DesignError:
-    return DesignError(f"{path}: cannot be written ({error.strerror or error})")
+    name = str(path)
+    shown = name if len(name) < 300 else f"{name[:200]} ..."
+    return DesignError(f"{shown}: cannot be written ({error.strerror or error})")
 
 
 def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
@@ -73,5 +81,17 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
 
 def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:
     """Raise DesignError if the file exists and nobody asked to overwrite it."""
-    if not force and Path(path).exists():
+    if not force and os.path.exists(path):
         raise DesignError(f"{path}: already exists; choose another name or give --force")
+
+
+def refuse_own_input(output: str | Path, inputs: Iterable[str | Path]) -> None:
+    """Raise DesignError if the output is a file that is read, or the folder in which one lies."""
+    for path in inputs:
+        if not (os.path.isfile(path) and os.path.exists(output)):
+            continue
+        if os.path.samefile(path, output):
+            raise DesignError(f"{output}: is an input of this command; choose another name")
+        if os.path.samefile(os.path.dirname(os.path.abspath(path)), output):
+            name = os.path.basename(path)
+            raise DesignError(f"{output}: holds {name}, an input of this command; choose another")

@@ -6,6 +6,7 @@ group `material_standard.effects`; from then on it is named, proposed and diagno
 
 import importlib.util
 import inspect
+import os
 import re
 from collections.abc import Sequence
 from importlib.metadata import entry_points
@@ -226,8 +227,8 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
         BadFile: It is no Python file, fails when run, or has no `Kind` in it.
     """
     spec = importlib.util.spec_from_file_location(f"matstd_user_{path.stem}", path)
-    if spec is None or spec.loader is None or not path.is_file():
-        found = "nothing that Python can load" if path.is_file() else "no such file"
+    if spec is None or spec.loader is None or not os.path.isfile(path):
+        found = "nothing that Python can load" if os.path.isfile(path) else "no such file"
         raise BadFile(path, "file", found, "a .py file with a Kind in it")
     module = importlib.util.module_from_spec(spec)
     try:

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.answer.fault_trial import DescriptionFault, description_faults
+from diagnosis.answer.learnt_geometry import LearntGeometry, learnt_geometry
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.fit import BoolArray, Fit, Learnt, Prior, fit_run, solve
 from diagnosis.remarks import Remark, remarks
-from diagnosis.residual.failing_regions import Region, regions
-from diagnosis.residual.structure import Structure, find_structure
+from diagnosis.residual import Region, Structure, find_structure, regions
 from twin.compute import one_blas_thread
 from twin.display import Tabular
 from twin.frames import Array
@@ -51,6 +52,9 @@ class Comparison(Tabular):
             and of the prediction where it was made without this run.
         structure: What the residual varies with, the most certain first.
         where: Regions where the model fails.
+        geometry: What the run says of the machine's geometry, and what of it changed since the
+            model was made, if it is one of an earlier run.
+        faults: Mistakes in the description that would make the run fit.
         remarks: What else a user should know.
         learnt: The fit that the model was learnt by, where that was from this very run: its
             figures are those that were told then.
@@ -61,6 +65,8 @@ class Comparison(Tabular):
     u: Array
     structure: tuple[Structure, ...]
     where: tuple[Region, ...]
+    geometry: LearntGeometry
+    faults: tuple[DescriptionFault, ...]
     remarks: tuple[Remark, ...]
     learnt: Fit | None = None
 
@@ -195,6 +201,8 @@ def compare(
         u=u,
         structure=found,
         where=regions(fit),
+        geometry=learnt_geometry(fit, estimates),
+        faults=description_faults(fit, progress),
         remarks=remarks(fit),
         learnt=None if learnt is None else learnt.again(run, model),
     )

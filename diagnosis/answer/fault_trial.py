@@ -1,0 +1,298 @@
+"""Which mistake in the description makes a run fit.
+
+Every suspect is one mistake undone. Each is fitted with the machine's errors held to what such a
+machine is expected to have, never widened: a wrong description asks for errors that no machine has,
+and undoing the mistake makes them usual again. The measure is the evidence with the size of the
+noise integrated out, over an even choice of touches without the farthest twentieth, so that chips
+decide nothing. What is named is then undone exactly, and the whole run is fitted anew: the figures
+told are those of that fit.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+
+import numpy as np
+
+from diagnosis.answer.suspects import (
+    Fault,
+    Suspect,
+    corrected,
+    free_sd,
+    has_minutes_for_seconds,
+    placed,
+    suspects,
+)
+from diagnosis.evidence import Progress, quiet
+from diagnosis.fit import PRIOR_DOF, Fit, fit_run, solve, unit_mistake
+from twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, setup_errors
+from twin.errors import NotEnoughData
+from twin.frames import Array, apply, inverse
+from twin.library import ordinary_model
+from twin.model import Effect, columns
+from twin.record import Run, Setup, Touches
+
+TOUCHES = 400
+"""Touches that suspects are tried on: more change no answer, and thirty suspects take seconds."""
+
+TRIMMED = 0.05
+"""Share of the touches, farthest from a first fit, that do not count."""
+
+NAMED = 15.0
+"""Log odds against a right description from which a mistake is named: five standard deviations of a
+number beside what its freedom costs."""
+
+CLASS = float(np.log(100.0))
+"""Log odds below which two mistakes are not told apart."""
+
+BETTER = 2.0
+"""Factor by which undoing a mistake must bring down the held-out error or the excess of the
+machine's errors over what is expected."""
+
+ABSURD = 3.0
+"""Noise over the stated one, or errors over expected ones, from which axes are suspected."""
+
+SETUPS = 20.0
+"""Factor on the usual freedom of the set-ups (1 mm, 5 mrad): where the standard stands is no
+mistake in the description, and must not pass for the zero of a table or the length of a tool."""
+
+BEYOND = 5.0
+"""A number of the description is wrong beyond so many usual standard deviations of the error that
+does the same; what is smaller is an error of the machine or of the probe, and found as such."""
+
+MOVED = 30.0
+"""Most log odds that a set-up costs which stands elsewhere than stated by many times its freedom:
+with the standard turned about, one axis the other way looks like another."""
+
+STEPS = 3
+"""Turns in which a number is found and moved exactly: a zero wrong by a degree needs two."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundNumber:
+    """A number of the description as the run has it, mm or rad.
+
+    Attributes:
+        name: `radius`, `length`, `EX0C`.
+        change: What has to be added to what is stated.
+        u: Its standard uncertainty.
+    """
+
+    name: str
+    change: float
+    u: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DescriptionFault:
+    """A mistake in the description that makes the run fit once it is undone.
+
+    Attributes:
+        fault: Which mistake.
+        axes: That it concerns.
+        numbers: What was found where the mistake is a number.
+        notation: Chain with which the run fits, "" where it stays.
+        log_odds: Evidence for it against the description as it is.
+        rms: Residual as described and without the mistake, mm.
+        test_rms: Held-out error as described and without the mistake, mm.
+        widened: Errors of the machine over the expected ones, likewise.
+        alike: Other mistakes that explain the run as well.
+    """
+
+    fault: Fault
+    axes: tuple[str, ...]
+    numbers: tuple[FoundNumber, ...]
+    notation: str
+    log_odds: float
+    rms: tuple[float, float]
+    test_rms: tuple[float, float]
+    widened: tuple[float, float]
+    alike: tuple["DescriptionFault", ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Trial:
+    """A suspect, the how manyth, with its numbers found, and its evidence."""
+
+    index: int
+    suspect: Suspect
+    theta: Array
+    u: Array
+    evidence: float
+
+
+def description_faults(before: Fit, progress: Progress = quiet) -> tuple[DescriptionFault, ...]:
+    """Mistakes in the description of a run or its machine that make it fit; usually none.
+
+    Args:
+        before: Fit of the run as it is described, whatever its deviations are.
+        progress: Told of the suspects.
+    """
+    run = before.run
+    named = [_clock(before)] if has_minutes_for_seconds(run) else []
+    excess = max(before.widened, before.noise.factor)
+    is_absurd = excess > ABSURD or unit_mistake(before) is not None
+    few = placed(_few(run))
+    right = _evidence(few, (), np.zeros(0))[0] - _moved_setups(run.touches.setups, few.touches)
+    trials = []
+    for i, suspect in enumerate(suspects(few, is_absurd)):
+        moved = _moved_setups(run.touches.setups, suspect.run.touches)
+        trials.append(_trial(i, suspect, moved))
+        progress(0.5, "mistakes in the description")
+    trials = sorted(trials, key=lambda t: -t.evidence)
+    close = [t for t in trials if t.evidence > max(right + NAMED, trials[0].evidence - CLASS)]
+    told = [_told(before, t, right, is_absurd) for t in close]
+    # an axis has many places on the other side that differ in nothing
+    kept = list({(t.fault, t.axes): t for t in reversed(told) if t is not None}.values())[::-1]
+    if kept:
+        named.append(replace(kept[0], alike=tuple(kept[1:])))
+    return tuple(named)
+
+
+def faults_of_refused(run: Run) -> tuple[DescriptionFault, ...]:
+    """The same for a run that its reader has refused; nothing where not even that can be fitted."""
+    try:
+        return description_faults(fit_run(run, ordinary_model(run.touches.chain)))
+    except (NotEnoughData, np.linalg.LinAlgError):
+        return ()
+
+
+def _clock(fit: Fit) -> DescriptionFault:
+    """Minutes in a column of seconds: seen from the pace alone, no residual shows it."""
+    return DescriptionFault(
+        fault=Fault.MINUTES,
+        axes=(),
+        numbers=(),
+        notation="",
+        log_odds=0.0,
+        rms=(fit.rms, fit.rms),
+        test_rms=(fit.test_rms, fit.test_rms),
+        widened=(fit.widened, fit.widened),
+    )
+
+
+def _few(run: Run) -> Run:
+    """An even choice of the rows that a fit uses."""
+    rows = np.flatnonzero(run.split != "test")
+    pick = np.unique(np.linspace(0, len(rows) - 1, min(TOUCHES, len(rows))).astype(np.int64))
+    return run[rows[pick]]
+
+
+def _usual_size(suspect: Suspect) -> Iterator[Effect]:
+    """The free numbers as effects with their usual standard deviations."""
+    ordinary = {e.name: e for e in ordinary_model(suspect.run.touches.chain).effects}
+    for effect in suspect.free:
+        yield ordinary.get(effect.name, effect)
+
+
+def _moved_setups(stated: Sequence[Setup], touches: Touches) -> float:
+    """Log odds against set-ups that had to be moved so far from where they are stated to stand."""
+    cost = 0.0
+    for before, after in zip(stated, touches.setups, strict=True):
+        step = after.T_table_artefact @ inverse(before.T_table_artefact)
+        middle = apply(before.T_table_artefact, touches.point.mean(axis=0))
+        shift = float(np.linalg.norm(apply(step, middle) - middle)) / (SETUPS * SHIFT_SD)
+        turn = float(np.linalg.norm(step[:3, :3] - np.eye(3))) / (SETUPS * TURN_SD)
+        cost += min(0.5 * (shift**2 + turn**2), MOVED)
+    return cost
+
+
+def _trial(index: int, suspect: Suspect, moved: float) -> _Trial:
+    """Numbers of a suspect, found and moved exactly in turns, and its evidence at the end.
+
+    Args:
+        index: The how manyth it is.
+        suspect: On some of the touches.
+        moved: Log odds against where it puts the set-ups.
+    """
+    total = np.zeros(sum(len(e.parameters) for e in suspect.free))
+    at = suspect
+    for remaining in reversed(range(STEPS)):
+        evidence, theta, u = _evidence(at.run, at.free, total)
+        if not suspect.free or not remaining:
+            break
+        total = total + theta
+        at = corrected(suspect, total)
+    return _Trial(index=index, suspect=suspect, theta=total, u=u, evidence=evidence - moved)
+
+
+def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array, Array]:
+    """Log evidence of a run up to a constant, with the free numbers and their uncertainties.
+
+    Args:
+        run: As a suspect has it.
+        free: Numbers of the description that are left free.
+        at: By how much they have been moved already, (K,).
+    """
+    touches = run.touches
+    machine, setups = ordinary_model(touches.chain).effects, setup_errors(touches)
+    usual = (*machine, *setups)
+    count = sum(len(e.parameters) for e in free)
+    sd_free = np.concatenate([free_sd(e) for e in free]) if free else np.zeros(0)
+    sd_machine = [p.sd for e in machine for p in e.parameters]
+    sd_setups = [SETUPS * p.sd for e in setups for p in e.parameters]
+    sd = np.concatenate([sd_machine, sd_setups, sd_free])
+    X = columns((*usual, *free), touches) * sd / run.u[:, None]
+    y = run.deviation / run.u
+    first = solve(X, y)
+    z = np.abs(first.residual) / np.sqrt(np.maximum(1.0 - first.leverage, 1e-6))
+    kept = z <= np.quantile(z, 1.0 - TRIMMED)
+    solution = solve(X[kept], y[kept])
+    n = len(y)
+    objective = solution.objective * n / int(kept.sum())
+    if count:  # what was moved before is part of the departure from what is stated
+        phi = solution.phi[-count:]
+        objective += float(((phi + at / sd_free) ** 2 - phi**2).sum())
+    log_det = 2.0 * float(np.log(np.abs(np.diag(solution.R))).sum())
+    evidence = _log_evidence(objective, log_det, n)
+    u = sd_free * np.sqrt((solution.root[-count:] ** 2).sum(axis=1)) if count else np.zeros(0)
+    theta = sd_free * solution.phi[-count:] if count else np.zeros(0)
+    return evidence, theta, u
+
+
+def _log_evidence(objective: float, log_det: float, n: int) -> float:
+    """As `evidence.log_evidence`: normal linear model, the size of the noise integrated out."""
+    return -0.5 * (n + PRIOR_DOF) * float(np.log(max(objective, 1e-9) + PRIOR_DOF)) - 0.5 * log_det
+
+
+def _told(before: Fit, trial: _Trial, right: float, is_absurd: bool) -> DescriptionFault | None:
+    """A mistake with the figures of the whole run; None where undoing it does not make it fit.
+
+    A number is named for what it gains beside the usual errors of the machine. An axis or a sign
+    is wrong altogether: without the mistake the run must fit, or it was not that.
+    """
+    suspect = trial.suspect
+    usual = [p.sd for e in _usual_size(suspect) for p in e.parameters]
+    if suspect.free and (np.abs(trial.theta) < BEYOND * np.array(usual)).all():
+        return None
+    suspect = next(islice(suspects(before.run, is_absurd), trial.index, None))  # on all touches
+    undone = corrected(suspect, trial.theta) if suspect.free else suspect
+    chain = undone.run.touches.chain
+    after = fit_run(undone.run, ordinary_model(chain))
+    falls = before.test_rms > BETTER * after.test_rms or before.widened > BETTER * after.widened
+    if not suspect.free and (not falls or unit_mistake(after) is not None):
+        return None
+    changed = chain.notation != before.model.chain.notation
+    return DescriptionFault(
+        fault=suspect.fault,
+        axes=suspect.axes,
+        numbers=tuple(_numbers(trial)),
+        notation=chain.notation if changed else "",
+        log_odds=trial.evidence - right,
+        rms=(before.rms, after.rms),
+        test_rms=(before.test_rms, after.test_rms),
+        widened=(before.widened, after.widened),
+    )
+
+
+def _numbers(trial: _Trial) -> Iterator[FoundNumber]:
+    """What has to be added to the numbers of the description."""
+    values = zip(trial.suspect.free, trial.theta, trial.u, strict=True)
+    for effect, value, u in values:
+        name = effect.name.partition("(")[2].removesuffix(")")
+        if isinstance(effect, ProbeRadius):
+            yield FoundNumber("radius", float(value), float(u))
+        elif name == "EZ0t":  # the ball higher up is a shorter tool
+            yield FoundNumber("length", -float(value), float(u))
+        else:
+            yield FoundNumber(name, float(value), float(u))

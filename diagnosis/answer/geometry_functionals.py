@@ -1,0 +1,284 @@
+"""Quantities of a machine's geometry as linear functions of the parameters of a model.
+
+- lines along every linear axis through the middle of what was probed, all rotary axes at zero, give
+  the scale (slope along the axis), the straightness (across it, about the straight line of least
+  squares) and, two by two, the squareness;
+- the angular errors of a linear axis and all errors of a rotary one are curves of its reading, of
+  which the peak-to-valley over the probed readings is told;
+- the line of a rotary axis is where the tool sees it, place and tilt, while the axis turns.
+
+None of them depends on where the standard stands, nor on how parameters share what they have in
+common.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from diagnosis.fit import Fit
+from twin.frames import Array
+from twin.machine import LETTERS, Chain, Family, Link, tip
+from twin.model import Effect, Model
+from twin.record import Touches, at_poses
+
+POINTS = 21
+"""Poses of a line along an axis: a sine over the travel has ten of them in every half wave."""
+
+
+class Quantity(Enum):
+    """What is told of the geometry of a machine."""
+
+    SCALE = "scale"
+    STRAIGHTNESS = "straightness"
+    SQUARENESS = "squareness"
+    ANGULAR = "angular error"
+    ROTARY_LINE = "line of a rotary axis"
+    ROTARY_MOTION = "error motion of a rotary axis"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Functional:
+    """A quantity as weights (P,) of the parameters of the geometric effects."""
+
+    quantity: Quantity
+    symbol: str
+    axes: tuple[str, ...]
+    unit: str
+    weights: Array
+    lever: float
+
+
+def is_geometry(effect: Effect) -> bool:
+    """Whether an effect is a component or location error, a function of readings alone."""
+    return effect.kind in ("geometric", "location")
+
+
+def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
+    """Everything that can be told, axis by axis.
+
+    Args:
+        fit: Of a model with component and location errors; others are no geometry.
+        theta: Parameters (P,) at which the peaks and valleys of curves are looked for.
+    """
+    chain = fit.model.chain
+    lines = {axis: _Line(fit, axis) for axis in chain.linear_axes if _is_probed(fit, axis)}
+    for line in lines.values():
+        yield from line.functionals(theta)
+    axes = sorted(lines)
+    for i, first in enumerate(axes):
+        for second in axes[i + 1 :]:
+            yield from _squareness(lines[first], lines[second])
+    for axis in chain.rotary_axes:
+        if _is_probed(fit, axis):
+            yield from _rotary(fit, theta, axis)
+
+
+def _is_probed(fit: Fit, axis: str) -> bool:
+    return bool(np.ptp(fit.run.touches.reading(axis)[fit.used]) > 0.0)
+
+
+def _along_axis(fit: Fit, axis: str) -> Touches:
+    """Poses along an axis over the probed readings: linear axes in the middle, rotary at zero."""
+    t = fit.run.touches[fit.used]
+    chain = t.chain
+    q = np.zeros((POINTS, len(chain.axes)))
+    for name in chain.linear_axes:
+        q[:, chain.axis_index(name)] = 0.5 * (t.reading(name).min() + t.reading(name).max())
+    own = t.reading(axis)
+    q[:, chain.axis_index(axis)] = np.linspace(own.min(), own.max(), POINTS)
+    return at_poses(chain, q, float(np.mean(t.length)))
+
+
+def _per_parameter(fit: Fit) -> Iterator[tuple[int, Effect]]:
+    """Geometric effects with the place of their first parameter."""
+    start = 0
+    for effect in fit.model.effects:
+        if is_geometry(effect):
+            yield start, effect
+        start += len(effect.parameters)
+
+
+def _curves(fit: Fit, poses: Touches, link: Link) -> dict[int, Array]:
+    """Error curves of one axis per unit of every parameter, by component, each (N, P)."""
+    index = poses.chain.link_index(link.name)
+    size = (len(poses), len(fit.model.parameters))
+    out: dict[int, Array] = {}
+    for start, effect in _per_parameter(fit):
+        for term in effect.terms(poses):
+            if term.where.part == "twist" and term.where.link == index:
+                curve = out.setdefault(term.where.component, np.zeros(size))
+                curve[:, start + term.parameter] += term.amount
+    return out
+
+
+def _displacements(fit: Fit, poses: Touches) -> Array:
+    """Displacement of the tool relative to the table per unit of every parameter, (N, 3, P)."""
+    out = np.zeros((len(poses), 3, len(fit.model.parameters)))
+    for start, effect in _per_parameter(fit):
+        part = slice(start, start + len(effect.parameters))
+        out[:, :, part] = Model(poses.chain, (effect,)).relative_columns(poses)
+    return out
+
+
+def _peak_to_valley(curve: Array, theta: Array) -> Array:
+    """Weights (P,) of the largest less the smallest value of a curve (N, P)."""
+    values = curve @ theta
+    return np.asarray(curve[int(np.argmax(values))] - curve[int(np.argmin(values))])
+
+
+class _Line:
+    """Displacements along a line parallel to one linear axis, per unit of every parameter."""
+
+    def __init__(self, fit: Fit, axis: str) -> None:
+        self.fit, self.axis = fit, axis
+        self.poses = _along_axis(fit, axis)
+        chain = self.poses.chain
+        self.link = chain.link(axis)
+        place = tip(chain, self.poses.q, self.poses.length)
+        self.direction = (place[-1] - place[0]) / np.linalg.norm(place[-1] - place[0])
+        self.D = _displacements(fit, self.poses)  # (N, 3, P)
+        q = self.poses.reading(axis)
+        self.q = q - q.mean()
+        self.travel = float(self.link.range[1] - self.link.range[0])
+
+    def slope(self, direction: Array) -> Array:
+        """Least-squares slope of the displacement in a direction, (P,), mm per mm."""
+        return np.asarray(self.q @ np.einsum("nip,i->np", self.D, direction) / (self.q @ self.q))
+
+    def functionals(self, theta: Array) -> Iterator[Functional]:
+        """Scale, straightness, angular errors."""
+        letter = LETTERS[self.link.own]
+        yield Functional(
+            quantity=Quantity.SCALE,
+            symbol=f"E{letter}{self.axis}",
+            axes=(self.axis,),
+            unit="1",
+            weights=self.slope(self.direction),
+            lever=self.travel,
+        )
+        for i in (k for k in range(3) if k != self.link.own):
+            across = np.eye(3)[i] - self.direction[i] * self.direction
+            curve = np.einsum("nip,i->np", self.D, across)
+            curve = curve - curve.mean(axis=0) - self.q[:, None] * self.slope(across)
+            yield Functional(
+                quantity=Quantity.STRAIGHTNESS,
+                symbol=f"E{LETTERS[i]}{self.axis}",
+                axes=(self.axis,),
+                unit="mm",
+                weights=_peak_to_valley(curve, theta),
+                lever=1.0,
+            )
+        lever = _longest_other(self.poses.chain, self.axis)
+        for component, curve in sorted(_curves(self.fit, self.poses, self.link).items()):
+            if component >= 3:
+                yield Functional(
+                    quantity=Quantity.ANGULAR,
+                    symbol=f"E{LETTERS[component]}{self.axis}",
+                    axes=(self.axis,),
+                    unit="rad",
+                    weights=_peak_to_valley(curve, theta),
+                    lever=lever,
+                )
+
+
+def _longest_other(chain: Chain, axis: str) -> float:
+    """Longest travel of the other linear axes, mm: the arm that an angular error may have."""
+    others = [chain.link(a).range for a in chain.linear_axes if a != axis]
+    return max((float(high - low) for low, high in others), default=0.0)
+
+
+def _squareness(first: _Line, second: _Line) -> Iterator[Functional]:
+    """Deviation of two axes from a right angle, as the rotation of the second about the third.
+
+    ``EC0Y = -(slope of X over y) - (slope of Y over x)``, and so on by cyclic exchange.
+    """
+    about = np.cross(first.direction, second.direction)
+    third = int(np.argmax(np.abs(about)))
+    if abs(first.direction @ second.direction) > 0.5:  # parallel axes have no squareness
+        return
+    sign = float(np.cross(np.eye(3)[third], second.direction) @ first.direction)
+    slopes = second.slope(first.direction) + first.slope(second.direction)
+    yield Functional(
+        quantity=Quantity.SQUARENESS,
+        symbol=f"E{LETTERS[3 + third]}0{second.axis}",
+        axes=(first.axis, second.axis),
+        unit="rad",
+        weights=np.sign(sign) * slopes,
+        lever=second.travel,
+    )
+
+
+def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
+    """Line, zero and error motions of a rotary axis."""
+    t = fit.run.touches[fit.used]
+    link = t.chain.link(axis)
+    reach = float(np.linalg.norm(np.ptp(t.point_table, axis=0)))
+    unit = {False: "mm", True: "rad"}
+    for component, weights in sorted(_line_of(fit, axis).items()):
+        yield Functional(
+            quantity=Quantity.ROTARY_LINE,
+            symbol=f"E{LETTERS[component]}0{axis}",
+            axes=(axis,),
+            unit=unit[component >= 3],
+            weights=weights,
+            lever=reach if component >= 3 else 1.0,
+        )
+    for component, curve in sorted(_curves(fit, _along_axis(fit, axis), link).items()):
+        is_angle = component >= 3
+        yield Functional(
+            quantity=Quantity.ROTARY_MOTION,
+            symbol=f"E{LETTERS[component]}{axis}",
+            axes=(axis,),
+            unit=unit[is_angle],
+            weights=_peak_to_valley(curve, theta),
+            lever=reach if is_angle else 1.0,
+        )
+
+
+def _line_of(fit: Fit, axis: str) -> dict[int, Array]:
+    """Weights (P,) of the line of a rotary axis, by component of its location error.
+
+    While the axis turns, with the others at rest, everything that the model holds displaces the
+    tool relative to the table. Of that, what the location errors of the axis would do by least
+    squares beside a rigid motion of the standard is where its line appears to be, as seen from the
+    tool: `EX0C` and an opposite `EX0t` are the same there. With the tool at both ends of what was
+    probed along every linear axis: from one place a turned standard looks like a displaced line.
+    """
+    t = fit.run.touches[fit.used]
+    chain = t.chain
+    link = chain.link(axis)
+    sweep = _along_axis(fit, axis)
+    places_of_tool = []
+    for linear in chain.linear_axes:
+        readings = t.reading(linear)
+        for end in (readings.min(), readings.max()):
+            q = sweep.q.copy()
+            q[:, chain.axis_index(linear)] = end
+            places_of_tool.append(q)
+    q = np.concatenate(places_of_tool or [sweep.q])
+    poses = at_poses(chain, q, float(np.mean(t.length)))
+    D = _displacements(fit, poses)
+    places = {f"location({s.name})": s for s in chain.symbols if s.family is Family.LOCATION}
+    own = {
+        places[effect.name].component: D[:, :, start]
+        for start, effect in _per_parameter(fit)
+        if effect.name in places and places[effect.name].link == axis
+    }
+    own.pop(link.own_component, None)  # its zero is a rotation of the standard, or of the tool
+    if not own:
+        return {}
+    rigid = np.concatenate(
+        [np.tile(np.eye(3), (len(poses), 1, 1)), _crossed(poses.point_table)], axis=2
+    )
+    basis = np.concatenate([np.stack(list(own.values()), axis=2), rigid], axis=2)
+    size = np.linalg.norm(basis.reshape(-1, basis.shape[2]), axis=0)
+    scaled = basis.reshape(-1, basis.shape[2]) / size
+    found = np.linalg.lstsq(scaled, D.reshape(-1, D.shape[2]), rcond=1e-9)[0] / size[:, None]
+    return {component: found[k] for k, component in enumerate(own)}
+
+
+def _crossed(points: Array) -> Array:
+    """Displacement of points (N, 3) per unit rotation about each direction, (N, 3, 3)."""
+    return np.stack([np.cross(axis, points) for axis in np.eye(3)], axis=2)

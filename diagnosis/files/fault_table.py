@@ -1,0 +1,32 @@
+"""Mistakes in a description as they stand in diagnosis.json and comparison.json."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from diagnosis.answer import DescriptionFault
+from twin.units import UM
+
+
+def fault_table(faults: Sequence[DescriptionFault]) -> list[dict[str, Any]]:
+    """Every mistake with its numbers and what undoing it does; lengths in mm, angles in rad."""
+    return [_fault(f) | {"cannot_be_told_from": [_fault(a) for a in f.alike]} for f in faults]
+
+
+def _fault(fault: DescriptionFault) -> dict[str, Any]:
+    return {
+        "mistake": fault.fault.value,
+        "axes": list(fault.axes),
+        "chain": fault.notation or None,
+        "numbers": [
+            {"name": n.name, "change": _digits(n.change), "uncertainty": _digits(n.u)}
+            for n in fault.numbers
+        ],
+        "log_odds": _digits(fault.log_odds),
+        "test_rms_um": [_digits(v / UM) for v in fault.test_rms],
+        "errors_over_expected": [_digits(v) for v in fault.widened],
+    }
+
+
+def _digits(value: float) -> float:
+    """Six significant digits: more would be rounding."""
+    return float(f"{value:.6g}")

@@ -1,0 +1,75 @@
+"""Mistakes in the description of a machine or a run, in words, each with its figures."""
+
+from collections.abc import Sequence
+
+from diagnosis.answer import DescriptionFault, Fault
+from report.numbers import digits, with_uncertainty
+from report.words import microns
+from twin.units import DEG
+from twin.words import listed
+
+
+def fault_sentences(faults: Sequence[DescriptionFault]) -> list[str]:
+    """One sentence for each mistake, with what else would explain the run as well."""
+    return [_sentence(fault) for fault in faults]
+
+
+def _sentence(fault: DescriptionFault) -> str:
+    if fault.fault is Fault.MINUTES:
+        return f"{_what(fault)}; nothing was changed"
+    names = [_what(f) for f in (fault, *fault.alike)]
+    either = "either " if len(names) > 1 else ""
+    before, after = fault.test_rms
+    was = f"{microns(before)} held out as described"
+    if fault.widened[0] > 1.0:
+        was += f", with errors {digits(fault.widened[0], 2)} times those expected of such a machine"
+    return (
+        f"the description looks wrong: {either}{listed(names, 'or')}. Without that mistake the "
+        f"run fits to {microns(after)} held out ({was}); nothing was changed"
+    )
+
+
+_MISTAKES = {
+    Fault.AXIS_REVERSED: "{axes} runs the other way than the machine file says",
+    Fault.AXES_SWAPPED: "the columns of {axes} are exchanged",
+    Fault.ROTARY_ORDER: "{axes} stand in the chain in the other order (it fits with {chain})",
+    Fault.OTHER_SIDE: "{axes} stands on the other side of the chain (it fits with {chain})",
+    Fault.RADIANS: "the columns of {axes} hold radians, not degrees",
+    Fault.NORMALS_INWARD: "the normals point into the standard",
+    Fault.MINUTES: "touches follow each other in less than a second: time_s looks like minutes, "
+    "not seconds",
+}
+
+
+def _what(fault: DescriptionFault) -> str:
+    """The mistake itself."""
+    axes = listed(list(fault.axes))
+    match fault.fault:
+        case Fault.TOOL_LENGTH:
+            return f"the tool is {_by(fault, 'longer', 'shorter')} than probe.length_mm says"
+        case Fault.BALL_RADIUS:
+            return f"the ball's radius is {_by(fault, 'larger', 'smaller')} than probe.radius_mm"
+        case Fault.PIVOT:
+            return f"axis.{axes}.point is wrong by {_numbers(fault)}"
+        case Fault.ZERO:
+            return f"{axes} is not at zero where it reads zero, by {_numbers(fault)}"
+    return _MISTAKES[fault.fault].format(axes=axes, chain=fault.notation)
+
+
+def _by(fault: DescriptionFault, more: str, less: str) -> str:
+    """`2.01 ± 0.08 mm longer`."""
+    (number,) = fault.numbers
+    size = with_uncertainty(abs(number.change), number.u, "mm")
+    return f"{size} {more if number.change > 0.0 else less}"
+
+
+def _numbers(fault: DescriptionFault) -> str:
+    """`2.01 ± 0.08 mm in X`; angles in degrees."""
+    told = []
+    for number in fault.numbers:
+        letter = number.name[1]
+        if letter in "ABC":
+            told.append(with_uncertainty(number.change / DEG, number.u / DEG, "°"))
+        else:
+            told.append(f"{with_uncertainty(number.change, number.u, 'mm')} in {letter}")
+    return listed(told)

@@ -1,0 +1,152 @@
+"""The machine's geometry in words: what was learnt, what it does, what changed."""
+
+from dataclasses import dataclass
+
+from diagnosis.answer import Correction, GeometryRow, LearntGeometry, Quantity
+from report.numbers import digits, with_uncertainty
+from report.words import microns
+from twin.units import UM, URAD
+from twin.words import listed
+
+_UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
+
+_TURNS = {"A": "X", "B": "Y", "C": "Z"}
+"""Direction about which a letter turns."""
+
+NOTED = 8
+"""Quantities that are told on the console."""
+
+
+@dataclass(frozen=True, slots=True)
+class GeometryLine:
+    """One row of the table as a reader sees it.
+
+    Attributes:
+        name: `squareness of Y to X (EC0Y)`.
+        value: `3 ± 2 → 41 ± 2 µrad`, or that the run does not determine it.
+        at_ends: What it does over the travel.
+        expected: What was expected.
+        note: Beyond expected, changed, shared with what.
+        is_noted: Whether the note says something that a reader should see first.
+    """
+
+    name: str
+    value: str
+    at_ends: str
+    expected: str
+    note: str
+    is_noted: bool
+
+
+def geometry_lines(geometry: LearntGeometry) -> list[GeometryLine]:
+    """The whole table."""
+    return [_line(row) for row in geometry.rows]
+
+
+def quantity_name(row: GeometryRow) -> str:
+    """`squareness of Y to X (EC0Y)`."""
+    axis, letter = row.axes[-1], row.symbol[1]
+    match row.quantity:
+        case Quantity.SCALE:
+            words = f"scale of {axis}"
+        case Quantity.STRAIGHTNESS:
+            words = f"straightness of {axis} in {letter}"
+        case Quantity.SQUARENESS:
+            words = f"squareness of {axis} to {row.axes[0]}"
+        case Quantity.ANGULAR:
+            about = _TURNS[letter]
+            words = f"roll of {axis}" if about == axis[0] else f"tilt of {axis} about {about}"
+        case Quantity.ROTARY_LINE:
+            tilts = letter in _TURNS
+            words = (
+                f"tilt of the line of {axis} about {_TURNS[letter]}"
+                if tilts
+                else f"line of {axis} in {letter}"
+            )
+        case Quantity.ROTARY_MOTION:
+            about = f"about {_TURNS[letter]}" if letter in _TURNS else f"in {letter}"
+            words = (
+                f"positioning of {axis}" if letter == axis[0] else f"error motion of {axis} {about}"
+            )
+    return f"{words} ({row.symbol})"
+
+
+def _line(row: GeometryRow) -> GeometryLine:
+    unit, factor = _UNITS[row.unit]
+    expected = f"{digits(row.expected / factor, 2)} {unit}"
+    name = quantity_name(row)
+    if not row.is_determined:
+        shared = f"; shared with {listed(list(row.shared_with))}" if row.shared_with else ""
+        return GeometryLine(
+            name=name,
+            value="not determined",
+            at_ends="",
+            expected=expected,
+            note=f"the run leaves {digits(row.estimate.u / factor, 2)} {unit} open{shared}",
+            is_noted=False,
+        )
+    notes = ["beyond what was expected"] if row.is_beyond_expected else []
+    if row.has_changed and row.change is not None:
+        notes.append(f"changed by {_value(row.change.value, row.change.u, factor, unit)}")
+    return GeometryLine(
+        name=name,
+        value=value_words(row),
+        at_ends="" if row.unit == "mm" else _value(row.at_ends.value, row.at_ends.u, UM, "µm"),
+        expected=expected,
+        note="; ".join(notes),
+        is_noted=bool(notes),
+    )
+
+
+def value_words(row: GeometryRow) -> str:
+    """`41.0 ± 2.0 µrad`, or `3.0 ± 2.0 → 41.0 ± 2.0 µrad` where there was a value before."""
+    unit, factor = _UNITS[row.unit]
+    now = _value(row.estimate.value, row.estimate.u, factor, unit)
+    if row.before is None:
+        return now
+    return f"{_value(row.before.value, row.before.u, factor, '')} → {now}"
+
+
+def _value(value: float, u: float, factor: float, unit: str) -> str:
+    return with_uncertainty(value / factor, u / factor, unit)
+
+
+def noted_lines(geometry: LearntGeometry) -> list[str]:
+    """What of the geometry a reader should see first: changes, and what exceeds expectations.
+
+    Without such, squareness and scales.
+    """
+    noted = [r for r in geometry.rows if r.has_changed or r.is_beyond_expected]
+    if not noted:
+        usual = (Quantity.SQUARENESS, Quantity.SCALE)
+        noted = [r for r in geometry.rows if r.quantity in usual and r.is_determined]
+    by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
+    lines = [_line(r) for r in by_size[:NOTED]]
+    told = [
+        f"{ln.name}: {ln.value}"
+        + (f", {ln.at_ends} over the travel" if ln.at_ends else "")
+        + (f"; {ln.note}" if ln.note else "")
+        for ln in lines
+    ]
+    more = len(noted) - len(lines)
+    return [*told, f"and {more} more in the table"] if more > 0 else told
+
+
+def ladder_sentence(geometry: LearntGeometry) -> str:
+    """`Held-out error: set-up alone 20.5 µm, with geometry 0.60 µm, with effects 0.58 µm`."""
+    steps = [
+        f"{'with ' if i else ''}{step.rung.value} {microns(step.test_rms)}"
+        for i, step in enumerate(geometry.ladder)
+    ]
+    return f"held-out error: {', '.join(steps)}"
+
+
+def correction_line(correction: Correction) -> str:
+    """A line to copy into the machine file: `point = [0.054, 0, -420]  # axis.B; was ...`."""
+    table, _, key = correction.key.rpartition(".")
+    places = 8 if key == "direction" else 4
+    numbers = ", ".join(f"{v:.{places}f}" for v in correction.found)
+    was = ", ".join(f"{v:g}" for v in correction.stated)
+    unit, factor = ("µrad", URAD) if key == "direction" else ("µm", UM)
+    u = ", ".join("-" if v is None else digits(v / factor, 2) for v in correction.u)
+    return f"[{table}] {key} = [{numbers}]  # was [{was}], ± [{u}] {unit}"

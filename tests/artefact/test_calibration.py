@@ -1,0 +1,139 @@
+"""Features known as well as their calibration: columns, averages over them, and what stays."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from artefact.compare.placed_spheres import COUNTS, placed_spheres
+from artefact.layout.sites import Blank
+from artefact.reach.probe_clearance import ProbeShape
+from artefact.reach.touchable import ProbeReach
+from artefact.worth.calibration import Calibration
+from artefact.worth.touch_choice import each_at, face_grid, sphere_grid, table_poses
+from artefact.worth.touch_criterion import criterion_for
+from information.criteria.posterior import Posterior
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from twin.errors import DesignError
+from twin.frames import apply, fixed_xyz, pose
+from twin.machine.chain import Axis, make_chain
+from twin.record.touches import Setup
+from twin.units import DEG, NM, UM
+
+PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
+MILL = make_chain(
+    "mill",
+    "[w C' X' f Y Z t]",
+    {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"} | {"C": Axis((-200.0 * DEG, 200.0 * DEG))},
+    (0.0, 0.0, -400.0),
+)
+POSE = np.zeros((1, 1))
+ALGEBRA = 1e-8  # relative: a marginal by a Cholesky factor against a block of an inverse
+
+
+@pytest.fixture(scope="module")
+def criterion():
+    area = Workspace(
+        MILL, {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}, 160.0
+    )
+    reach = ProbeReach(MILL, Setup("a"), PROBE, 160.0)
+    model = Population(MILL).model
+    return criterion_for(reach, model, Blank(), area, 1.0 * UM, np.random.default_rng(4))
+
+
+@pytest.fixture(scope="module")
+def touches(standard):
+    patch, sphere = standard.patches[0], standard.spheres[0]
+    poses = np.array([[-60.0], [0.0], [80.0]]) * DEG
+    on_patch = each_at(patch, face_grid(patch.half_size, 4), poses)
+    on_sphere = each_at(sphere, sphere_grid(12), poses)
+    return type(on_patch)(
+        *(
+            np.concatenate([getattr(t, f) for t in (on_patch, on_sphere)])
+            for f in ("feature", "point", "normal", "rotary")
+        )
+    )
+
+
+def test_columns_of_a_patch_are_its_displacements_along_the_normals(standard, touches):
+    """The patch is moved and turned as a whole; a touch along the normal meets it so much later."""
+    patch, sd = standard.patches[0], Calibration()
+    mine = touches[touches.feature == patch.name]
+    found = sd.columns(standard, mine)
+    assert found.shape == (len(mine), 6 * len(standard.patches) + 3 * len(standard.spheres))
+    rng = np.random.default_rng(1)
+    amount = rng.normal(size=6) * 10.0
+    centre = patch.T_artefact_patch[:3, 3]
+    turn = pose(fixed_xyz(amount[3:] * sd.patch_tilt))
+    moved = apply(turn, mine.point - centre) + centre + amount[:3] * sd.patch
+    expected = np.einsum("ni,ni->n", moved - mine.point, mine.normal)
+    # the remainder is of second order: (1e-4 rad)^2 / 2 of 30 mm
+    np.testing.assert_allclose(found[:, :6] @ amount, expected, atol=0.5 * NM)
+    assert not found[:, 6:].any()
+
+
+def test_columns_of_a_sphere_are_the_shifts_of_its_centre(standard, touches):
+    mine = touches[touches.feature == standard.spheres[0].name]
+    found = Calibration(ball=2.0 * UM).columns(standard, mine)
+    first = 6 * len(standard.patches)
+    np.testing.assert_allclose(found[:, first : first + 3], 2.0 * UM * mine.normal, rtol=1e-12)
+    assert not np.delete(found, np.s_[first : first + 3], axis=1).any()
+
+
+def test_rows_that_average_over_the_places_know_what_the_joint_estimate_knows(
+    criterion, standard, touches
+):
+    here = criterion.on(standard)
+    W, C = here.whitened(touches), here.calibrated(touches)
+    both, P = np.concatenate([W, C], axis=1), W.shape[1]
+    joint = np.linalg.inv(np.eye(both.shape[1]) + both.T @ both)[:P, :P]
+    known = here.known_rows(touches)
+    alone = np.linalg.inv(np.eye(P) + known.T @ known)
+    np.testing.assert_allclose(alone, joint, rtol=ALGEBRA, atol=ALGEBRA * np.diag(joint).max())
+
+
+def test_the_criterion_counts_what_the_places_hide(criterion, standard, touches):
+    here = criterion.on(standard)
+    rows = here.rows(touches)
+    after = Posterior(here.known_rows(touches), here.prior_sd, here.model.names)
+    tips = np.concatenate([here.tip_volume, here.tip_user])
+    expected = np.mean(after.predicted_sd(tips) ** 2)
+    assert here.objective.value(rows.T @ rows) == pytest.approx(expected, rel=1e-6)
+    plain = criterion.rows(touches)
+    assert here.objective.value(rows.T @ rows) > criterion.objective.value(plain.T @ plain)
+
+
+def test_an_exact_calibration_changes_nothing(criterion, standard, touches):
+    exact = replace(criterion, calibration=Calibration(0.0, 0.0, 0.0)).on(standard)
+    np.testing.assert_array_equal(exact.rows(touches), criterion.rows(touches))
+    np.testing.assert_allclose(exact.known_rows(touches), exact.whitened(touches), rtol=1e-12)
+    with pytest.raises(DesignError, match="from zero up"):
+        Calibration(patch=-1.0 * UM)
+
+
+def test_placed_spheres_stand_apart_and_beat_spheres_anywhere(criterion):
+    blank, rng = Blank(), np.random.default_rng(3)
+    poses = table_poses(criterion, 12)
+    found = placed_spheres(criterion, blank, poses, 160, rng)
+    assert set(found) == set(COUNTS)
+
+    def left(spheres):
+        """Criterion after the same directions on every sphere at the same few poses."""
+        touches = [each_at(s, sphere_grid(12), poses[::9]) for s in spheres]
+        W = np.concatenate([criterion.rows(t) for t in touches]) / np.sqrt(len(spheres))
+        return criterion.objective.value(W.T @ W)
+
+    for count, body in found.items():
+        centres = np.stack([s.centre for s in body.spheres])
+        assert len(centres) == count
+        across = np.linalg.norm(centres[:, None, :2] - centres[:, :2], axis=-1)
+        assert across[np.triu_indices(count, 1)].min() >= 2.0 * (12.5 + 3.0) + 1.0
+        assert np.abs(centres[:, :2]).max() < 140.0 - 9.0
+        assert not body.patches
+    candidates = placed_spheres.__globals__["_candidates"](blank, criterion.volume, rng)
+    anywhere = [
+        left([candidates[k] for k in rng.choice(len(candidates), 4, replace=False)])
+        for _ in range(20)
+    ]
+    assert left(found[4].spheres) < np.median(anywhere)

@@ -1,0 +1,96 @@
+"""Mistakes in the description: planted in the text of the files, named with their figures."""
+
+import re
+
+import numpy as np
+import pytest
+from simulator_case import read_back, simulate_case
+
+from diagnosis.answer.fault_trial import description_faults, faults_of_refused
+from diagnosis.answer.suspects import Fault
+from diagnosis.fit.identification import fit_run
+from matstd.cli import main
+from report.geometry.fault_words import fault_sentences
+from twin.errors import BadFile
+from twin.library.ordinary import ordinary_model
+
+
+@pytest.fixture(scope="module")
+def texts():
+    """Run file and machine file of an ordinary table-table machine."""
+    run, machine, _ = simulate_case(np.random.default_rng(77), "hsm600u", with_alike=False)
+    return run, machine
+
+
+def faults_in(run, machine):
+    try:
+        read = read_back(run, machine)
+    except BadFile as refusal:
+        return faults_of_refused(refusal.facts["run"])
+    return description_faults(fit_run(read, ordinary_model(read.touches.chain)))
+
+
+def test_nothing_is_suspected_of_a_right_description(texts) -> None:
+    assert faults_in(*texts) == ()
+
+
+def test_a_reversed_axis_is_named_though_the_reader_refuses_the_run(texts) -> None:
+    run, machine = texts
+    turned = machine.replace("[axis.C]\n", "[axis.C]\ndirection = [0.0, 0.0, -1.0]\n")
+    (fault,) = faults_in(run, turned)
+    assert (fault.fault, fault.axes, fault.alike) == (Fault.AXIS_REVERSED, ("C",), ())
+    assert fault.test_rms[0] > 1000.0 * fault.test_rms[1]
+    (sentence,) = fault_sentences([fault])
+    assert "C runs the other way than the machine file says" in sentence
+    assert "nothing was changed" in sentence
+
+
+def test_rotary_axes_in_the_other_order_are_named_with_the_chain(texts) -> None:
+    run, machine = texts
+    (fault,) = faults_in(run, machine.replace("[w C' B' X'", "[w B' C' X'"))
+    assert fault.fault is Fault.ROTARY_ORDER
+    assert fault.notation == "[w C' B' X' f Y Z (C1) t]"
+
+
+@pytest.mark.parametrize(("radius", "change"), [("2.9", 0.1), ("3.08", -0.08)])
+def test_a_ball_radius_comes_back_with_its_sign(texts, radius, change) -> None:
+    run, machine = texts
+    (fault,) = faults_in(run.replace("radius_mm = 3.0", f"radius_mm = {radius}"), machine)
+    assert fault.fault is Fault.BALL_RADIUS
+    (number,) = fault.numbers
+    assert number.change == pytest.approx(change, abs=4.0 * number.u)
+    assert number.u < 0.003
+
+
+def test_a_tool_length_and_the_point_of_its_tilting_axis_are_not_told_apart(texts) -> None:
+    """On a machine that tilts the table about B both move B's line along Z as the tool sees it."""
+    run, machine = texts
+    (fault,) = faults_in(run.replace("length_mm = 160.0", "length_mm = 161.5"), machine)
+    both = {(f.fault, f.axes): f for f in (fault, *fault.alike)}
+    assert set(both) == {(Fault.TOOL_LENGTH, ()), (Fault.PIVOT, ("B",))}
+    (length,) = both[Fault.TOOL_LENGTH, ()].numbers
+    assert length.change == pytest.approx(-1.5, abs=4.0 * length.u)
+    assert "either" in fault_sentences([fault])[0]
+
+
+def test_a_pivot_comes_back_with_its_sign(texts) -> None:
+    run, machine = texts
+    wrong = re.sub(r"(\[axis\.C\]\nrange = [^\n]*\npoint = )\[[^\]]*\]", r"\1[2.0, 0, 0]", machine)
+    assert wrong != machine
+    (fault,) = faults_in(run, wrong)
+    assert (fault.fault, fault.axes) == (Fault.PIVOT, ("C",))
+    (number,) = fault.numbers
+    assert number.name == "EX0C"
+    assert number.change == pytest.approx(-2.0, abs=4.0 * number.u)
+
+
+def test_the_command_line_names_the_mistake_in_its_refusal(texts, tmp_path, capsys) -> None:
+    run, machine = texts
+    turned = machine.replace("[axis.B]\n", "[axis.B]\ndirection = [0.0, -1.0, 0.0]\n")
+    (tmp_path / "run.csv").write_text(run, encoding="utf-8")
+    (tmp_path / "machine.toml").write_text(turned, encoding="utf-8")
+    out = tmp_path / "out"
+    assert main(["compare", str(tmp_path / "run.csv"), "-o", str(out), "--no-report"]) == 2
+    told = capsys.readouterr().err
+    assert "B runs the other way than the machine file says" in " ".join(told.split())
+    assert not out.exists()

@@ -1,0 +1,142 @@
+"""The learnt geometry: what was planted in the exact chain comes back with sign, size and name."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.answer.geometry_functionals import Quantity
+from diagnosis.answer.learnt_geometry import Rung, geometry_rows, learnt_geometry
+from diagnosis.fit.identification import fit_run
+from diagnosis.fit.prior import Prior
+from report.geometry.geometry_words import correction_line, noted_lines
+from twin.frames import apply, inverse
+from twin.library.ordinary import ordinary_model
+from twin.machine.kinematics import tip
+from twin.units import UM, URAD
+
+KEY = (2, "hsm600u")
+SHRUNK = 0.03
+"""What the prior may take of a planted value, as a share, beside a hundredth of a micrometre."""
+
+
+def with_link(chain, name, **changes):
+    links = tuple(replace(k, **changes) if k.name == name else k for k in chain.links)
+    return replace(chain, links=links)
+
+
+@pytest.fixture(scope="module")
+def learnt(case):
+    """A function: true chain, readings that are true -> rows by symbol; none for as simulated."""
+    run = case(*KEY).run
+    t = run.touches
+
+    def made(chain=None, scale=None):
+        moved = np.zeros(len(run))
+        if chain is not None or scale is not None:
+            q = t.q if scale is None else t.q * scale
+            true = tip(chain or t.chain, q, t.length)
+            back = inverse(t.T_table_artefact)
+            moved = np.einsum("ni,ni->n", t.normal, apply(back, true) - t.ball_artefact)
+        fit = fit_run(replace(run, deviation=run.deviation - moved), ordinary_model(t.chain))
+        return fit, {r.symbol: r for r in geometry_rows(fit)}
+
+    return made
+
+
+def turned(direction, omega):
+    out = direction + np.cross(omega, direction)
+    return out / np.linalg.norm(out)
+
+
+@pytest.mark.parametrize(
+    ("axis", "symbol", "omega"),
+    [("Y", "EC0Y", (0, 0, 40.0)), ("Z", "EB0Z", (0, 40.0, 0)), ("Z", "EA0Z", (40.0, 0, 0))],
+)
+def test_an_axis_out_of_square_is_found_with_its_sign(case, learnt, axis, symbol, omega) -> None:
+    chain = case(*KEY).run.touches.chain
+    turn = turned(chain.link(axis).direction, np.array(omega) * URAD)
+    before = learnt()[1][symbol]
+    after = learnt(with_link(chain, axis, direction=turn))[1][symbol]
+    assert after.quantity is Quantity.SQUARENESS
+    assert after.is_determined
+    got = after.estimate.value - before.estimate.value
+    assert got == pytest.approx(40.0 * URAD, rel=SHRUNK)
+    assert after.at_ends.value == pytest.approx(abs(after.estimate.value) * after.lever)
+
+
+def test_a_scale_is_found(case, learnt) -> None:
+    """X goes 18 ppm farther than it says."""
+    scale = np.ones(len(case(*KEY).run.touches.chain.axes))
+    scale[case(*KEY).run.touches.chain.axis_index("X")] += 18e-6
+    before, after = learnt()[1], learnt(scale=scale)[1]
+    for symbol, wanted in (("EXX", 18e-6), ("EYY", 0.0), ("EZZ", 0.0)):
+        got = after[symbol].estimate.value - before[symbol].estimate.value
+        assert got == pytest.approx(wanted, abs=SHRUNK * 18e-6)
+    assert after["EXX"].unit == "1"
+
+
+@pytest.mark.parametrize(("symbol", "i"), [("EX0C", 0), ("EY0C", 1), ("EX0B", 0), ("EZ0B", 2)])
+def test_a_displaced_line_is_found_and_corrected(case, learnt, symbol, i) -> None:
+    chain = case(*KEY).run.touches.chain
+    axis = symbol[-1]
+    shift = 60.0 * UM * np.eye(3)[i]
+    true = with_link(chain, axis, point=chain.link(axis).point + shift)
+    before = learnt()[1][symbol]
+    fit, rows = learnt(true)
+    assert rows[symbol].is_determined
+    got = rows[symbol].estimate.value - before.estimate.value
+    assert got == pytest.approx(60.0 * UM, rel=SHRUNK)
+    geometry = learnt_geometry(fit)
+    found = {c.key: c for c in geometry.corrections}
+    value = rows[symbol].estimate
+    if abs(value.value) > 3.0 * value.u:
+        point = found[f"axis.{axis}.point"]
+        assert point.found[i] == pytest.approx(chain.link(axis).point[i] + value.value)
+        assert point.u[i] == value.u
+        assert f"[axis.{axis}] point = [" in correction_line(point)
+
+
+@pytest.mark.parametrize(("axis", "symbol", "i"), [("C", "EA0C", 0), ("B", "EC0B", 2)])
+def test_a_tilted_line_is_found(case, learnt, axis, symbol, i) -> None:
+    chain = case(*KEY).run.touches.chain
+    turn = turned(chain.link(axis).direction, 50.0 * URAD * np.eye(3)[i])
+    before = learnt()[1][symbol]
+    after = learnt(with_link(chain, axis, direction=turn))[1][symbol]
+    got = after.estimate.value - before.estimate.value
+    # the turned axis also moves its line at the height of the standard: a share of the tilt
+    assert got == pytest.approx(50.0 * URAD, rel=0.1)
+
+
+def test_what_the_tool_on_its_axis_cannot_show_is_no_result(learnt) -> None:
+    """Roll of Z about a tool that stands in it: never a number, always open."""
+    rows = learnt()[1]
+    assert not rows["ECZ"].is_determined
+    assert not rows["ECZ"].has_changed
+    assert not rows["ECZ"].is_beyond_expected
+
+
+def test_the_same_machine_has_not_changed_and_a_crash_has(case, learnt) -> None:
+    """The model of one run against another with one axis knocked out of square."""
+    fit, _ = learnt()
+    machine = len(fit.model.parameters)
+    before = Prior.of_estimates(fit.theta[:machine], fit.covariance[:machine, :machine])
+    same = learnt_geometry(fit, before)
+    assert not [r.symbol for r in same.rows if r.has_changed]
+    chain = case(*KEY).run.touches.chain
+    turn = turned(chain.link("Y").direction, np.array([0.0, 0.0, 60.0]) * URAD)
+    crashed = learnt_geometry(learnt(with_link(chain, "Y", direction=turn))[0], before)
+    changed = {r.symbol: r for r in crashed.rows if r.has_changed}
+    assert "EC0Y" in changed
+    assert changed["EC0Y"].change.value == pytest.approx(60.0 * URAD, rel=SHRUNK)
+    (line,) = [t for t in noted_lines(crashed) if "EC0Y" in t]
+    assert "squareness of Y to X (EC0Y): " in line
+    assert " → " in line
+
+
+def test_the_ladder_begins_with_the_setup_alone(learnt) -> None:
+    fit, _ = learnt()
+    steps = learnt_geometry(fit).ladder
+    assert [s.rung for s in steps] == [Rung.SETUP, Rung.GEOMETRY]
+    assert steps[0].test_rms > 5.0 * steps[1].test_rms
+    assert steps[1].test_rms == fit.test_rms

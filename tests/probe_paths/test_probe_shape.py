@@ -1,0 +1,244 @@
+"""Another probe: what it cannot do is refused, and the rest keeps clear by a checker from outside.
+
+The checker shares nothing with the clearance of plan and collision check: surfaces are clouds of
+points, the tool is exact cylinders.
+"""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.reach.touchable import ProbeReach
+from probe_paths.campaign.collisions import check_moves
+from probe_paths.control.interpreter import interpret
+from probe_paths.control.steps import Move, ProbeStep
+from probe_paths.emit.program import make_programs
+from probe_paths.emit.writer import Feeds
+from probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
+from probe_paths.plan.heading import Heading, parse_heading
+from probe_paths.plan.planner import plan_touches
+from probe_paths.plan.probe import NOSE_HEIGHT, Probe
+from probe_paths.plan.touch_plan import PlanOptions
+from twin.errors import BadFile
+from twin.frames import apply
+from twin.machine.kinematics import table_to_tool, tip
+from twin.record.touches import Setup
+from twin.units import DEG
+
+WIDE = Probe(stylus_length=40.0, stylus_radius=1.5, body_radius=31.0, nose_radius=50.0)
+"""A common one: stem of 3 x 40 mm, body of 62 mm, spindle nose of 100 mm."""
+
+CLOUD = 2.0
+"""Distance of neighbouring points of a cloud, mm."""
+MISSED = 1.0
+"""How much nearer than its points a surface with edges may be, mm; flat ones are by less."""
+PITCH = 6.0
+"""Of the places along a move that are looked at, mm."""
+
+
+def plate(half_x, half_y, z):
+    x, y = (np.arange(-h, h + CLOUD, CLOUD).clip(-h, h) for h in (half_x, half_y))
+    grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    return np.column_stack([grid, np.full(len(grid), z)])
+
+
+def ring(radius, z):
+    angle = np.linspace(0.0, 2.0 * np.pi, max(int(2.0 * np.pi * radius / CLOUD), 6))
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(len(angle), z)])
+
+
+def cloud(standard, setup, table_radius):
+    """Points on base, faces, column walls, spheres, stems, and on the table, table frame."""
+    base = standard.base
+    points = [plate(*base.half_size, base.thickness)]
+    for side in (-1.0, 1.0):
+        for z in np.arange(0.0, base.thickness + CLOUD, CLOUD).clip(0.0, base.thickness):
+            a, b = base.half_size
+            x, y = np.arange(-a, a, CLOUD), np.arange(-b, b, CLOUD)
+            points += [np.column_stack([x, np.full(len(x), side * b), np.full(len(x), z)])]
+            points += [np.column_stack([np.full(len(y), side * a), y, np.full(len(y), z)])]
+    for patch in standard.patches:
+        a, b = patch.half_size
+        uv = plate(a, b, 0.0)[:, :2]
+        points.append(patch.point(uv))
+        rim = uv[(np.abs(uv[:, 0]) == a) | (np.abs(uv[:, 1]) == b)]
+        top = patch.height(rim)
+        for share in np.linspace(0.0, 1.0, int((top.max() + patch.depth) / CLOUD)):
+            z = -patch.depth + share * (top + patch.depth)
+            points.append(apply(patch.T_artefact_patch, np.column_stack([rim, z])))
+    for s in standard.spheres:
+        for latitude in np.arange(-0.5 * np.pi, 0.5 * np.pi, CLOUD / s.radius):
+            on_ball = ring(s.radius * np.cos(latitude), s.radius * np.sin(latitude))
+            points.append(s.centre + on_ball)
+        for z in np.arange(base.thickness, s.centre[2], CLOUD):
+            points.append(ring(s.stem_radius, z) + np.append(s.centre[:2], 0.0))
+    table = [ring(r, 0.0) for r in np.arange(CLOUD, table_radius + CLOUD, CLOUD)]
+    return np.concatenate([apply(setup.T_table_artefact, np.concatenate(points)), *table])
+
+
+def cylinder_gap(points, centre, axis, probe):
+    """Smallest distance of points (K, 3) from the tool above its ball, exact, mm."""
+    along = (points - centre) @ axis
+    across = np.linalg.norm(points - centre - along[:, None] * axis, axis=1)
+    low = 0.0
+    gaps = []
+    for high, radius in (
+        (probe.stylus_length, probe.stylus_radius),
+        (probe.length, probe.body_radius),
+        (probe.length + NOSE_HEIGHT, probe.nose_radius),
+    ):
+        beyond = np.maximum(np.maximum(low - along, along - high), 0.0)
+        gaps.append(np.hypot(np.maximum(across - radius, 0.0), beyond).min())
+        low = high
+    return min(gaps)
+
+
+def gap_at(points, chain, q, probe):
+    centre = tip(chain, q[None], probe.length)[0]
+    return cylinder_gap(points, centre, table_to_tool(chain, q[None])[0, :3, 2], probe)
+
+
+@pytest.fixture(scope="module")
+def wide(golden, small, chain):
+    """The golden touches, planned for the wide probe."""
+    wanted = golden.requests(small, each=4)
+    options = PlanOptions(tolerated=len(wanted))
+    return plan_touches(small, chain, WIDE, golden.setup(), wanted, options)
+
+
+@pytest.fixture(scope="module")
+def points(wide, small):
+    return cloud(small, wide.setup, wide.options.table_radius)
+
+
+def test_every_touch_keeps_its_gap_or_is_refused_by_name(wide, points, golden, small, chain):
+    assert len(wide.refused) >= 3
+    assert np.sum(wide.request >= 0) > 40
+    done = {*wide.request[wide.request >= 0].tolist(), *(r.request for r in wide.refused)}
+    assert done - {-1} == set(range(len(golden.requests(small, each=4))))
+    for refusal in wide.refused:
+        assert refusal.feature in str(refusal)
+        assert len(refusal.reason) > 10
+    for q in np.concatenate([wide.start, wide.contact]):
+        assert gap_at(points, chain, q, WIDE) > wide.options.smallest_gap
+
+
+def test_what_is_refused_for_want_of_room_has_none(wide, points, golden, small, chain):
+    """The other way round: refusals are no false alarms by more than two covers' thickness."""
+    tight = [r for r in wide.refused if "between probe and" in r.reason and r.request >= 0]
+    assert len(tight) >= 2
+    wanted = golden.requests(small, each=4)
+    clearance = ToolClearance(chain, small, wide.setup, WIDE, wide.options.table_radius)
+    probing = ProbeReach(chain, wide.setup, WIDE.shape, WIDE.length)
+    for refusal in tight:
+        one = wanted[np.array([refusal.request])]
+        ends = [probing.readings(one, gap)[0] for gap in (0.0, wide.options.standoff)]
+        assert min(gap_at(points, chain, q, WIDE) for q in ends) < 4.0 + MISSED
+        assert min(clearance.gap(np.array(ends))[0]) < 1.0 + 1e-9
+
+
+def test_every_move_of_the_program_keeps_clear(wide, points, small, chain):
+    """The whole tool every six millimetres, from the text of the first program."""
+    made = make_programs(wide, feeds=Feeds(touches_per_file=25))
+    z = chain.axis_index("Z")
+    highest = points[:, 2].max()
+    program = made.programs[0]
+    path = Path(f"{program.name}.H")
+    read = interpret(program.text.encode("ascii"), path, made.masks.get, chain)
+    assert read.heading.probe == WIDE
+    check_moves(read, small, chain)
+    here = None
+    seen = set()
+    for step in read.steps:
+        if not isinstance(step, Move | ProbeStep):
+            continue
+        there = np.nan_to_num(step.q)
+        way = None if here is None else there - here
+        if isinstance(step, ProbeStep):
+            here, way = there, step.back * step.direction
+        if way is not None and not np.any(way[[chain.axis_index(a) for a in "BC"]]):
+            ends = (tuple(np.round(here, 4)), tuple(np.round(here + way, 4)))
+            low = min(here[z], here[z] + way[z])
+            if frozenset(ends) not in seen and low < WIDE.length + highest - 500.0:
+                seen.add(frozenset(ends))
+                count = int(np.linalg.norm(way) / PITCH) + 1
+                for share in np.linspace(0.0, 1.0, count + 1):
+                    assert gap_at(points, chain, here + share * way, WIDE) > 0.5
+        here = there
+
+
+def test_a_program_for_a_slim_probe_is_refused_with_a_wide_one_in_its_head(programs, small, chain):
+    """The same moves, another probe: the check reads it from the text."""
+    first = programs.programs[0]
+    text = re.sub(
+        r"(;STYLUS L)\S+ R\S+ BODY R\S+", r"\g<1>+25.000000 R+1.500000 BODY R+31.000000", first.text
+    )
+    assert text != first.text
+    read = interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+    with pytest.raises(BadFile, match="a gap of"):
+        check_moves(read, small, chain)
+
+
+def test_a_head_without_probe_and_table_is_refused(programs, chain):
+    first = programs.programs[0]
+    text = re.sub(r"(?m)^\d+ ", "", first.text)
+    text = re.sub(r"(?m)^;(STYLUS|NOSE).*\r\n", "", text)
+    with pytest.raises(BadFile, match="emit the program anew"):
+        interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+
+
+def test_a_heading_states_probe_and_table_and_reads_them_back():
+    heading = Heading("S", Setup("a"), WIDE, 175.0, "4711")
+    back = parse_heading(list(enumerate(heading.lines, start=3)), "A.H")
+    assert (back.probe, back.table_radius, back.serial) == (WIDE, 175.0, "4711")
+    older = [line for line in heading.lines if not line.startswith(("STYLUS", "NOSE"))]
+    earlier = parse_heading(list(enumerate(older, start=3)), "A.H")
+    assert (earlier.table_radius, earlier.serial) == (None, "4711")
+    broken = [*heading.lines[:4], "STYLUS L80", *heading.lines[5:]]
+    with pytest.raises(BadFile, match=r"line 7: .*STYLUS L"):
+        parse_heading(list(enumerate(broken, start=3)), "A.H")
+
+
+def test_a_swing_is_never_higher_than_stated(golden, small, chain):
+    """Against 200 places of a turn of both axes, one after the other in either order."""
+    solid = solid_hull(small, golden.setup(), 160.0)
+    rng = np.random.default_rng(5)
+    low, high = np.array([[-170.0, 170.0], [-100.0, 25.0]]).T * DEG
+    for _ in range(20):
+        start, end = rng.uniform(low, high), rng.uniform(low, high)
+        stated = swing_height(chain, np.array([start, end]), solid, WIDE)[0]
+        share = rng.uniform(0.0, 1.0, (200, 2))
+        between = start + share * (end - start)
+        assert top_height(chain, between, solid, WIDE).max() <= stated
+
+
+def test_a_sideways_move_is_swept_with_the_whole_tool(read, small, chain):
+    """The body meets what the ball passes below: a column beside the way."""
+    first = read[0]
+    setup = first.heading.setup
+    clearance = ToolClearance(
+        chain, small, setup, Probe(stylus_length=20.0, stylus_radius=2.0), 160.0
+    )
+    q = np.nan_to_num(first.touches[0].q)
+    q[[chain.axis_index(a) for a in "BC"]] = 0.0
+    before, after = q.copy(), q.copy()
+    x, y, z = (chain.axis_index(a) for a in "XYZ")
+    # the ball at z = 30 over the base of 20 mm passes beside a sphere's stem at x 72, y 32
+    before[[x, y, z]] = [-140.0, 0.0, 160.0 - 500.0 + 30.0]
+    after[[x, y, z]] = [160.0, 0.0, 160.0 - 500.0 + 30.0]
+    ends, _ = clearance.gap(np.array([before, after]))
+    swept, nearest = clearance.swept_gap(before[None], after[None])
+    assert ends.min() > 0.5
+    assert swept[0] < 0.5
+    assert nearest[0]
+
+
+def test_a_thin_probe_reaches_more_than_a_wide_one(golden, small, chain, wide):
+    wanted = golden.requests(small, each=4)
+    slim = replace(WIDE, stylus_length=80.0, body_radius=20.0, nose_radius=40.0)
+    options = PlanOptions(tolerated=len(wanted))
+    plan = plan_touches(small, chain, slim, golden.setup(), wanted, options)
+    assert len(plan.refused) < len(wide.refused)
