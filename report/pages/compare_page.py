@@ -62,7 +62,7 @@ def write_compare_page(
         remarks=[remark_sentence(r) for r in found.remarks],
         where=region_rows(found.where),
         structure=[{"words": structure_words(s), "p": s.p_value} for s in found.structure],
-        learnt=learnt_lines(found.learnt, told or {}) if found.learnt else [],
+        learnt_lines=learnt_lines(found.learnt, told or {}) if found.learnt else [],
         um=UM,
         on_standard=on_standard,
         pictures=residual_pictures(place, "residual", found.fit, z),
