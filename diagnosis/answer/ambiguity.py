@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.answer.alike import Alike
 from diagnosis.evidence import EffectSet, ScaledEffect, Signatures, addition, projected, score_all
 from diagnosis.search import refined
 from twin.frames import Array
@@ -52,11 +53,14 @@ class ConfusionClass:
         sized: The named one: most evidence, ties broken by what is usual.
         rivals: Not told apart, most likely first.
         told_apart: Next in line, but clearly behind.
+        alike: Of a periodic effect every other period that the run cannot tell from the named one;
+            None where there is none.
     """
 
     sized: ScaledEffect
     rivals: tuple[Rival, ...]
     told_apart: tuple[Rival, ...]
+    alike: Alike | None = None
 
     @property
     def effect(self) -> Effect:

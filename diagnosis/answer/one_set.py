@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.answer.alike import periods_alike
 from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
 from diagnosis.evidence import EffectSet, ScaledEffect, projected
 from diagnosis.search import (
@@ -47,27 +48,47 @@ def told_set(final: SearchState) -> ToldSet:
     Args:
         final: Result of the search; of a set that was chosen by prediction nothing is exchanged.
     """
+    state, tests = _refined(final)
+    classes = []
+    for i, sized in enumerate(state.effects):
+        if sized.effect.name in final.chances:
+            classes.append(ConfusionClass(sized, (), ()))
+            continue
+        found = _class_of(state, i)
+        if not final.is_weighed and found.effect.name != sized.effect.name:
+            state, tests = _tried(state, tests, i, _beside(state, i, found.sized))
+        named, alike = periods_alike(state.effects[i], _others(state, i), _base(state, i))
+        if alike is not None:
+            state, tests = _tried(state, tests, i, named)
+            alike = alike.beside(state.effects[i], named)
+        classes.append(replace(found.headed(state.effects[i]), alike=alike))
+    names = {s.effect.name for s in state.effects}
+    return ToldSet(state, tuple(c.beside(names) for c in classes), tests)
+
+
+def _refined(final: SearchState) -> tuple[SearchState, Mapping[str, Verified]]:
+    """The set with refined inner parameters where it stands so, with its tests."""
     if final.is_weighed:
-        return ToldSet(final, _as_weighed(final), _by_name(final))
+        return final, _by_name(final)
     grid = tuple(ScaledEffect(m.effect, m.scale) for m in final.chosen.members)
     state = placed(final, final.effects)
     tests = _by_name(state)
-    if not _stands(tests):
-        state = placed(state, grid)
-        tests = _by_name(state)
-    classes = []
-    for i in range(len(state.effects)):
-        found = _class_of(state, i)
-        if found.effect.name != state.effects[i].effect.name:
-            other = placed(state, _exchanged(state, i, found.sized))
-            others_tests = _by_name(other)
-            if _stands(others_tests):
-                state, tests = other, others_tests
-            else:
-                state = placed(other, state.effects)
-        classes.append(found.headed(state.effects[i]))
-    names = {s.effect.name for s in state.effects}
-    return ToldSet(state, tuple(c.beside(names) for c in classes), tests)
+    if _stands(tests):
+        return state, tests
+    state = placed(state, grid)
+    return state, _by_name(state)
+
+
+def _tried(
+    state: SearchState, tests: Mapping[str, Verified], i: int, sized: ScaledEffect
+) -> tuple[SearchState, Mapping[str, Verified]]:
+    """The set with another effect for one of it where all stand then, else as it was."""
+    before = state.effects
+    other = placed(state, (*before[:i], sized, *before[i + 1 :]))
+    others_tests = _by_name(other)
+    if state.is_weighed or _stands(others_tests):
+        return other, others_tests
+    return placed(other, before), tests
 
 
 def placed(state: SearchState, effects: Sequence[ScaledEffect]) -> SearchState:
@@ -108,24 +129,16 @@ def _others(state: SearchState, i: int) -> tuple[ScaledEffect, ...]:
     return state.effects[:i] + state.effects[i + 1 :]
 
 
-def _exchanged(state: SearchState, i: int, head: ScaledEffect) -> tuple[ScaledEffect, ...]:
-    """The set with another member for one of it, refined beside the rest."""
+def _base(state: SearchState, i: int) -> EffectSet:
+    """The set without one member."""
     complement = state.pool.complement
     A = projected(complement, _others(state, i))
-    base = EffectSet(complement, A if state.fixed is None else np.hstack([state.fixed, A]))
-    return (*state.effects[:i], refined(base, head.effect)[0], *state.effects[i + 1 :])
+    return EffectSet(complement, A if state.fixed is None else np.hstack([state.fixed, A]))
 
 
-def _as_weighed(final: SearchState) -> tuple[ConfusionClass, ...]:
-    """Classes of a set chosen by prediction; one that rests on left-out blocks has no rivals."""
-    names = {s.effect.name for s in final.effects}
-    out = []
-    for i, sized in enumerate(final.effects):
-        if sized.effect.name in final.chances:
-            out.append(ConfusionClass(sized, (), ()))
-        else:
-            out.append(_class_of(final, i).headed(sized).beside(names))
-    return tuple(out)
+def _beside(state: SearchState, i: int, head: ScaledEffect) -> ScaledEffect:
+    """An effect refined in the place of a member, beside the rest."""
+    return refined(_base(state, i), head.effect)[0]
 
 
 def _by_name(state: SearchState) -> dict[str, Verified]:

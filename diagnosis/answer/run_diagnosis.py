@@ -5,12 +5,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.answer.alike import period_value
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.collinear import check_distinct, not_significant
 from diagnosis.answer.detectable import detectable
 from diagnosis.answer.fault_trial import description_faults
 from diagnosis.answer.learnt_geometry import learnt_geometry
-from diagnosis.answer.next_measurement import Plan, plan
+from diagnosis.answer.next_measurement import (
+    Plan,
+    candidate_targets,
+    candidate_touches,
+    plan,
+)
 from diagnosis.answer.one_set import ToldSet, told_set
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
@@ -49,6 +55,9 @@ from twin.library import ordinary_model
 from twin.model import Effect, Model
 from twin.record import Run, without_copies
 from twin.thermal import ThermalField
+
+PERIODS_PLANNED = 8
+"""Periods that look alike, the longest ones, that a plan of touches tells apart."""
 
 DEPENDENCES = 2
 """Patterns, one after the other, of which `depends_on` tells."""
@@ -286,10 +295,23 @@ def _plans(
     heads = [c.sized for c in classes]
     out = []
     for i, confusion in enumerate(classes):
+
+        def instead(rival: ScaledEffect, i: int = i) -> Fit:
+            return task.fit((*added, *heads[:i], rival, *heads[i + 1 :]), gross)
+
+        name, alike = heads[i].effect.name, confusion.alike
+        if alike is not None:
+            fits = [instead(other) for other in alike.others[:PERIODS_PLANNED]]
+            periods = [f"{p:.4g}" for p in alike.periods[:PERIODS_PLANNED]]
+            own = period_value(heads[i].effect)
+            names = (f"{name}@{own:.4g}", f"{name}@{','.join(periods)}")
+            offers = candidate_targets(task.run, alike.axis, rng)
+            found = plan(instead(heads[i]), fits, names, offers)
+            out += [replace(found, periods_of=name)] if found is not None else []
         for rival in confusion.rivals:
-            instead = [*heads[:i], rival.sized, *heads[i + 1 :]]
-            fits = [task.fit((*added, *effects), gross) for effects in (heads, instead)]
-            found = plan(fits[0], fits[1], (heads[i].effect.name, rival.effect.name), rng)
+            offers = candidate_touches(task.run, rng)
+            names = (name, rival.effect.name)
+            found = plan(instead(heads[i]), [instead(rival.sized)], names, offers)
             if found is not None:
                 out.append(found)
                 break

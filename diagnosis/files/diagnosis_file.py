@@ -159,6 +159,19 @@ def _step(step: Step) -> dict[str, Any]:
         "p_value": step.p_value,
         **errors,
         "cannot_be_told_from": list(dict.fromkeys(r.effect.name for r in rivals)),
+        **_alike(step),
+    }
+
+
+def _alike(step: Step) -> dict[str, Any]:
+    """Periods that the targets cannot tell from the one in `parameters`; nothing for most."""
+    alike = step.confusion.alike if step.confusion else None
+    if alike is None:
+        return {}
+    return {
+        "periods_alike_mm": [_digits(p) for p in alike.periods],
+        "step_mm": alike.step,
+        "pitch_mm": alike.pitch,
     }
 
 

@@ -151,7 +151,7 @@ def _array(key: str, rows: Sequence[Array]) -> str:
 
 def _machine(chain: Chain) -> dict[str, Any]:
     """A machine as in a machine file."""
-    axes = {}
+    axes: dict[str, dict[str, Any]] = {}
     for link in chain.links:
         if link.kind == "fixed":
             continue
@@ -161,6 +161,8 @@ def _machine(chain: Chain) -> dict[str, Any]:
             "point": [float(v) for v in link.point],
             "direction": [float(v) for v in link.direction],
         }
+        if link.pitch is not None:
+            axes[link.name]["pitch"] = link.pitch
     origin = [float(v) for v in chain.table_origin]
     return {
         "name": chain.name,

@@ -6,22 +6,30 @@ A new test is a module beside `waves` and `crowds`, called by `structure`.
 """
 
 from diagnosis.residual.failing_regions import Condition, Region, Side, regions
+from diagnosis.residual.mean_displacements import has_poses, pose_vectors
 from diagnosis.residual.partial_residuals import SEES, Partial, partial
 from diagnosis.residual.patterns import directions, groups, variables
+from diagnosis.residual.ranked_variables import RankedVariable, binned, rank_variables, standardised
 from diagnosis.residual.structure import Shape, Structure, find_structure
 
 __all__ = [
     "SEES",
     "Condition",
     "Partial",
+    "RankedVariable",
     "Region",
     "Shape",
     "Side",
     "Structure",
+    "binned",
     "directions",
     "find_structure",
     "groups",
+    "has_poses",
     "partial",
+    "pose_vectors",
+    "rank_variables",
     "regions",
+    "standardised",
     "variables",
 ]

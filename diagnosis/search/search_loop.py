@@ -24,8 +24,8 @@ from diagnosis.evidence import (
     ScaledEffect,
     Signatures,
     quiet,
+    scanned_grids,
     signatures,
-    whole_grids,
 )
 from diagnosis.fit import Fit, GrossErrors, Memory, Prior, fit_run
 from diagnosis.residual import Structure, find_structure
@@ -152,7 +152,7 @@ def refined_named(
     if not named:
         return ()
     complement = ResidualSpace.of(task.fit())
-    grids = whole_grids(named, task.run.touches)
+    grids = scanned_grids(named, complement)
     search = Search(signatures(complement, grids, len(grids), progress))
     chosen = search.evaluate(())
     for _ in named:

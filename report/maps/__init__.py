@@ -6,7 +6,6 @@ draws. A new map goes into the list in `study_maps.draw_maps`.
 
 from report.maps.correlation_picture import draw_ties
 from report.maps.regions_picture import draw_regions
-from report.maps.rotary_picture import level
 from report.maps.study_maps import draw_maps
 from report.maps.trajectory_pictures import draw_path
 
@@ -15,5 +14,4 @@ __all__ = [
     "draw_path",
     "draw_regions",
     "draw_ties",
-    "level",
 ]

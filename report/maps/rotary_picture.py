@@ -6,97 +6,24 @@ workpiece; where their travel does not let them, nothing is drawn.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from report.style import LINE, figure, nothing, reading_label
-from sensitivity.first_order import Workspace, covariance, normal_length, sensitivity
-from sensitivity.study import Study, has_volume
+from sensitivity.first_order import covariance, normal_length, sensitivity
+from sensitivity.study import PointOverRotary, Study, points_over_rotary
 from twin.frames import Array
-from twin.machine import Symbol, inverse_linear, tip
+from twin.machine import Symbol
 from twin.units import UM, URAD
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_VALUES = 61  # of each rotary reading
 _SHOWN = 4  # maps in a row
 _STILL = 0.02  # relative range of S below which its map would be one colour
 _ALIKE = 0.98  # correlation of two maps of S that show the same
-_SLACK = 1e-9  # mm
 _BEYOND = LINE
-
-
-@dataclass(frozen=True, eq=False)
-class PointOverRotary:
-    """One point of the workpiece while the table turns.
-
-    Attributes:
-        words: Where it is: linear readings with the rotary axes next to zero.
-        axes: Names of the rotary axes shown, one or two.
-        readings: Their values, an array each, rad.
-        q: Readings with the tool point there, (N, A), the second rotary reading fastest.
-        reached: Whether the travels of the linear axes allow it, (N,).
-    """
-
-    words: str
-    axes: tuple[str, ...]
-    readings: tuple[Array, ...]
-    q: Array
-    reached: Array
-
-    def shown(self, values: Array) -> Array:
-        """Values (N,) on the grid of readings, not a number where out of reach."""
-        return np.where(self.reached, values, np.nan).reshape([len(r) for r in self.readings])
-
-
-def level(workspace: Workspace) -> dict[str, float]:
-    """Rotary readings next to zero within the limits, rad: the table as a workpiece is set up."""
-    return {
-        name: float(np.clip(0.0, *workspace.limit(name))) for name in workspace.chain.rotary_axes
-    }
-
-
-def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
-    """Four points of the workpiece over the one or two rotary axes that move: middle, top, corners.
-
-    Args:
-        workspace: Limits; the points are those of its linear readings with the table level.
-
-    Returns:
-        None where no rotary axis moves, or there are not three linear axes with room.
-    """
-    chain = workspace.chain
-    turning = sorted(a for a in workspace.open_axes if a in chain.rotary_axes)[:2]
-    if not turning or not has_volume(workspace):
-        return ()
-    base = workspace.centre
-    for name, reading in level(workspace).items():
-        base[chain.axis_index(name)] = reading
-    linear = sorted(chain.linear_axes)
-    each = tuple(np.linspace(*workspace.limit(a), _VALUES) for a in turning)
-    mesh = [m.ravel() for m in np.meshgrid(*each, indexing="ij")]
-    out = []
-    for ends in ((0, 0, 0), (0, 0, 1), (1, 0, 0), (1, 1, -1)):
-        start, words = base.copy(), []
-        for name, end in zip(linear, ends, strict=True):
-            low, high = workspace.limit(name)
-            start[chain.axis_index(name)] = 0.5 * (low + high) + 0.5 * end * (high - low)
-            words.append(f"{name} {start[chain.axis_index(name)]:.0f}")
-        target = tip(chain, start[None], workspace.length)
-        q = np.tile(base, (len(mesh[0]), 1))
-        for name, values in zip(turning, mesh, strict=True):
-            q[:, chain.axis_index(name)] = values
-        q = inverse_linear(chain, np.repeat(target, len(q), axis=0), q, workspace.length)
-        reached = np.ones(len(q), dtype=bool)
-        for name in linear:
-            first, last = chain.link(name).range
-            follows = q[:, chain.axis_index(name)]
-            reached &= (follows >= first - _SLACK) & (follows <= last + _SLACK)
-        out.append(PointOverRotary(", ".join(words), tuple(turning), each, q, reached))
-    return tuple(out)
 
 
 def draw_rotary(study: Study) -> Figure:
@@ -115,7 +42,8 @@ def draw_rotary(study: Study) -> Figure:
     span = (min(np.nanmin(v) for v in p95), max(np.nanmax(v) for v in p95))
     for axes, point, values in zip(grid[0], points, p95, strict=True):
         mesh = _map(axes, study, point, values, span)
-        axes.set_title(f"point at {point.words}", fontsize=9)
+        at = ", ".join(f"{name} {reading:.0f}" for name, reading in point.linear.items())
+        axes.set_title(f"point at {at}", fontsize=9)
     if mesh is not None:
         bar = drawn.colorbar(mesh, ax=grid[0], pad=0.01)
         bar.set_label("95 % quantile in µm", fontsize=9)

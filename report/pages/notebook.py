@@ -16,10 +16,11 @@ import numpy as np
 from artefact.compare import IdentifiabilityReport
 from diagnosis.answer import Comparison, Diagnosis
 from diagnosis.fit import Fit
+from diagnosis.residual import rank_variables
 from report.identifiability import gist
 from report.maps import draw_regions
 from report.pages.page import picture
-from report.plots import draw_fall, draw_over_variables, ranked_variables
+from report.plots import draw_fall, draw_over_variables
 from report.style import save
 from report.words import comparison_sentence, microns, study_words, verdict_sentence
 from sensitivity.shares import regions
@@ -82,7 +83,7 @@ def drawing(result: object) -> Callable[[Path], None] | None:
 
 @drawing.register
 def _over_variables(found: Comparison) -> Callable[[Path], None]:
-    return lambda path: draw_over_variables(path, found.fit, ranked_variables(found.fit))
+    return lambda path: draw_over_variables(path, found.fit, rank_variables(found.fit))
 
 
 @drawing.register

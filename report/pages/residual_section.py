@@ -7,15 +7,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from diagnosis.fit import Fit
-from diagnosis.residual import Region, Structure
+from diagnosis.residual import Region, Structure, has_poses, rank_variables
 from report.pages.page import p_value
 from report.plots import (
     draw_normal_plot,
     draw_over_variables,
     draw_pattern,
     draw_pose_arrows,
-    has_poses,
-    ranked_variables,
 )
 from report.words import microns, region_words, stated_noise, structure_words
 from twin.frames import Array
@@ -56,7 +54,7 @@ def residual_pictures(place: Path, name: str, fit: Fit, z: Array | None = None) 
         z: Residuals over their standard uncertainty where that is more than the touch's own, (N,).
     """
     out = []
-    panels = ranked_variables(fit)
+    panels = rank_variables(fit)
     for part, word in ((panels[:FIRST], "over"), (panels[FIRST:WHOLE], "over_more")):
         if part:
             file = f"{name}_{word}.png"

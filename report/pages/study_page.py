@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from report.maps import level
 from report.pages.page import write_page
 from report.scenes import Scene, draw_volumes
 from report.words import dominant_words, place_words, sampling_words, unsampled
 from sensitivity.shares import regions
-from sensitivity.study import Study, Volume, has_volume, volume
+from sensitivity.study import Study, Volume, has_volume, level, volume
 from twin.errors import DesignError
 from twin.frames import Array
 from twin.machine import Family, Symbol

@@ -10,8 +10,8 @@ from report.plots.pattern_pictures import draw_pattern
 from report.plots.plan_pictures import write_order_picture, write_touches_picture
 from report.plots.proof_picture import write_proof_picture
 from report.plots.reach_picture import draw_reach
-from report.plots.residual_pictures import draw_normal_plot, draw_over_variables, ranked_variables
-from report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, has_poses, is_spread
+from report.plots.residual_pictures import draw_normal_plot, draw_over_variables
+from report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, is_spread
 from report.plots.touch_curve_picture import draw_touch_curves
 
 __all__ = [
@@ -27,10 +27,8 @@ __all__ = [
     "draw_reach",
     "draw_rivals",
     "draw_touch_curves",
-    "has_poses",
     "is_form",
     "is_spread",
-    "ranked_variables",
     "write_order_picture",
     "write_proof_picture",
     "write_touches_picture",

@@ -7,8 +7,8 @@ import numpy as np
 
 from diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
 from diagnosis.fit import BoolArray, Fit
-from diagnosis.residual import Partial, partial
-from report.plots.residual_pictures import binned, kept
+from diagnosis.residual import Partial, binned, partial
+from report.plots.residual_pictures import kept
 from report.style import (
     BLUE,
     FAINT,

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from diagnosis.fit import Fit
-from diagnosis.residual import SEES, Structure, directions, groups, variables
+from diagnosis.residual import SEES, Structure, binned, directions, groups, variables
 from report.numbers import span, time_unit
-from report.plots.residual_pictures import binned, kept
+from report.plots.residual_pictures import kept
 from report.style import (
     BLUE,
     DIVERGING,

@@ -1,14 +1,13 @@
 """Pictures of a residual as a sample: over every variable, and against the normal distribution."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from diagnosis.fit import Fit
-from diagnosis.residual import variables
+from diagnosis.residual import RankedVariable, binned, standardised
 from report.style import (
     BLUE,
     FAINT,
@@ -23,17 +22,8 @@ from report.style import (
     save,
 )
 from twin.frames import Array
-from twin.record import IntArray, Touches
+from twin.record import IntArray
 from twin.units import UM
-
-MOST_BINS = 12
-"""Bins of a variable, of equally many touches each."""
-
-FEWEST = 6
-"""Touches of a bin, at least."""
-
-MOST_LABELS = 16
-"""Labels of a feature that are shown one by one."""
 
 MOST_DRAWN = 4000
 """Touches that are drawn as points; means are always over all."""
@@ -41,93 +31,12 @@ MOST_DRAWN = 4000
 COLUMNS = 4
 
 
-def standardised(fit: Fit) -> Array:
-    """Residuals over their own standard deviation with the noise as stated, (N,).
-
-    A row that the fit rests upon has ``u sqrt(1 - h)`` with its leverage h, since it drew the fit
-    towards itself; a row left out has ``u sqrt(1 + s^2)`` with the uncertainty s of its prediction.
-    If the model is right and the noise as stated they are standard normal.
-    """
-    own = (fit.solution.spread(fit.X) ** 2).sum(axis=1)
-    variance = np.where(fit.used, 1.0 - own, 1.0 + own)
-    return np.asarray(fit.residual / (fit.run.u * np.sqrt(np.maximum(variance, 1e-6))))
-
-
 def kept(n: int) -> IntArray:
     """Rows that are drawn, evenly chosen where there are many."""
     return np.unique(np.linspace(0, n - 1, min(n, MOST_DRAWN)).astype(int))
 
 
-def binned(
-    values: Array, r: Array, weight: Array, most: int = MOST_BINS
-) -> tuple[Array, Array, Array]:
-    """Means of residuals in bins of a variable that hold equally many touches.
-
-    Values that occur often keep a bin of their own. The standard error is that of the scatter
-    within the bin.
-
-    Args:
-        values: Of the variable, (N,).
-        r: Residuals, (N,).
-        weight: Of each, such as one over its variance, (N,).
-        most: Number of bins.
-
-    Returns:
-        Mean value, mean residual and its standard error of every bin, (B,) each.
-    """
-    distinct = np.unique(values)
-    if len(distinct) <= most:
-        label = np.searchsorted(distinct, values)
-    else:
-        count = int(np.clip(len(values) // FEWEST, 1, most))
-        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, count + 1)[1:-1]))
-        label = np.searchsorted(edges, values, side="right")
-    w = np.bincount(label, weight)
-    n = np.bincount(label)
-    full = n >= 2
-    with np.errstate(invalid="ignore", divide="ignore"):
-        x = np.bincount(label, weight * values) / w
-        mean = np.bincount(label, weight * r) / w
-        squares = np.bincount(label, weight * (r - mean[label]) ** 2) / w
-        error = np.sqrt(squares / np.maximum(n - 1, 1))
-    return x[full], mean[full], error[full]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Panel:
-    """A variable of a run with what the residual does over it.
-
-    Attributes:
-        name: Column of the run file, or what parts the touches.
-        values: Of the touches in use, (N,).
-        labels: Names of the values 0, 1, ... of a variable that parts touches in few groups.
-        strength: Mean squared ratio of a bin's mean to its standard error; 1 in pure noise.
-    """
-
-    name: str
-    values: Array
-    labels: tuple[str, ...] | None
-    strength: float
-
-
-def ranked_variables(fit: Fit) -> tuple[Panel, ...]:
-    """Everything that was recorded and varies, the one on which the residual depends most first."""
-    rows = fit.used
-    r, weight = fit.residual[rows], 1.0 / fit.run.u[rows] ** 2
-    known: list[tuple[str, Array, tuple[str, ...] | None]] = [
-        (k, v[rows], None) for k, v in variables(fit.run.touches).items()
-    ]
-    known += [(k, v[rows], names) for k, v, names in labelled(fit.run.touches)]
-    out = []
-    for name, values, labels in known:
-        if np.ptp(values) > 0.0:
-            _, mean, error = binned(values, r, weight)
-            strength = float(np.mean((mean / np.maximum(error, 1e-12)) ** 2)) if len(mean) else 0.0
-            out.append(Panel(name, values, labels, strength))
-    return tuple(sorted(out, key=lambda p: -p.strength))
-
-
-def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[Panel]) -> None:
+def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[RankedVariable]) -> None:
     """Residual against variables: small multiples with one scale.
 
     Grey points are touches, blue ones means with their standard errors; the right-hand scale is in
@@ -137,7 +46,7 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[Panel]) -> 
     Args:
         path: PNG.
         fit: Any fit.
-        panels: Some of `ranked_variables(fit)`.
+        panels: Some of `rank_variables(fit)`.
     """
     rows = fit.used
     r, weight = fit.residual[rows] / UM, 1.0 / fit.run.u[rows] ** 2
@@ -161,26 +70,6 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[Panel]) -> 
     last = [row[min(COLUMNS, len(panels) - k * COLUMNS) - 1] for k, row in enumerate(axes)]
     _normalised_scale(last, fit)
     save(drawn, path)
-
-
-def labelled(touches: Touches) -> list[tuple[str, Array, tuple[str, ...] | None]]:
-    """What parts the touches in groups: last motion of every axis, feature, set-up, pose.
-
-    Returns:
-        Name, number of the group of every touch (N,), and the names of few enough groups.
-    """
-    known = [(f"last move of {a}", np.sign(touches.last_move(a))) for a in touches.chain.axes]
-    out: list[tuple[str, Array, tuple[str, ...] | None]] = []
-    for name, sign in known:
-        present, label = np.unique(sign, return_inverse=True)
-        words = tuple({-1.0: "minus", 0.0: "unknown", 1.0: "plus"}[s] for s in present)
-        out.append((name, label.astype(float), words))
-    names, label = np.unique(touches.feature, return_inverse=True)
-    shown = tuple(str(n) for n in names) if len(names) <= MOST_LABELS else None
-    out.append(("feature", label.astype(float), shown))
-    out.append(("set-up", touches.setup.astype(float), tuple(s.name for s in touches.setups)))
-    out.append(("pose", touches.pose.astype(float), None))
-    return out
 
 
 def _panel(ax: Any, values: Array, r: Array, weight: Array, limit: float) -> None:

@@ -14,6 +14,9 @@ from twin.words import listed
 
 _WORDS = {"tau": "time constant"}
 
+PERIODS_TOLD = 4
+"""Periods that look alike that are told one by one, the longest ones."""
+
 ALL_TOLD = 7
 """Numbers of an effect that are told one by one; of more only the size is."""
 
@@ -141,8 +144,40 @@ def _fall(diagnosis: Diagnosis) -> str:
     )
 
 
-def _added(step: Step, most: int) -> str:
-    """An effect with its leading numbers, and whether another name would do as well."""
+def _alike(step: Step, places: Sequence[float]) -> str:
+    """What a period cannot be told from, and where to measure to tell them apart.
+
+    Args:
+        step: With an effect whose period others look like; others have nothing said.
+        places: Readings of the axis that would tell them apart, mm; empty for none on offer.
+    """
+    alike = step.confusion.alike if step.confusion else None
+    if alike is None:
+        return ""
+    longest = [f"{p:.4g}" for p in alike.periods[:PERIODS_TOLD]]
+    more = len(alike.periods) - len(longest)
+    shorter = f" or one of {more} shorter ones" if more > 0 else ""
+    told = f"{', '.join(longest)} mm{shorter}" if more > 0 else f"{listed(longest, 'or')} mm"
+    at = f"with steps of {alike.step:g} mm" if alike.step else "with targets that stand so"
+    why = f" (named for the stated pitch of {alike.pitch:g} mm)" if alike.pitch else ""
+    where = listed([f"{p:g}" for p in places])
+    what = f": measure at {alike.axis} {where} mm" if places else ""
+    return f"{at} it could as well be {told}{why}{what}"
+
+
+def _places(diagnosis: Diagnosis, step: Step) -> list[float]:
+    """Three readings, far from one another, of the plan that tells the periods of an effect."""
+    alike = step.confusion.alike if step.confusion else None
+    name = step.effect.name if step.effect is not None else ""
+    for plan in diagnosis.plans if alike is not None else ():
+        if plan.periods_of == name and alike is not None:
+            readings = sorted({float(q) for q in plan.touches.reading(alike.axis)})
+            return sorted({readings[0], readings[len(readings) // 2], readings[-1]})
+    return []
+
+
+def _added(diagnosis: Diagnosis, step: Step, most: int) -> str:
+    """An effect with its leading numbers, and whether another one would do as well."""
     name = step.effect.name if step.effect is not None else ""
     rivals = step.confusion.rivals if step.confusion else ()
     told = [sizes(step, most)] if most and step.reported else []
@@ -150,7 +185,8 @@ def _added(step: Step, most: int) -> str:
         told.append(f"or {rivals[0].effect.name}")
     elif rivals:
         told.append(f"or one of {len(rivals)} effects that look the same")
-    return f"{name} ({', '.join(told)})" if told else name
+    clauses = [c for c in (", ".join(told), _alike(step, _places(diagnosis, step))) if c]
+    return f"{name} ({'; '.join(clauses)})" if clauses else name
 
 
 def _them(steps: Sequence[Step]) -> str:
@@ -161,8 +197,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     """The verdict in one plain sentence, with numbers and standard uncertainties."""
     most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
     steps = diagnosis.steps[1:]
-    named = [_added(s, most) for s in steps if s.is_named]
-    found = [_added(s, most) for s in steps if not s.is_named]
+    named = [_added(diagnosis, s, most) for s in steps if s.is_named]
+    found = [_added(diagnosis, s, most) for s in steps if not s.is_named]
     also = f" Added by name: {'; '.join(named)}." if named else ""
     if diagnosis.verdict is Verdict.MISSING:
         what = "one effect" if len(found) == 1 else f"{len(found)} effects"

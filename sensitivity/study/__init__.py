@@ -4,18 +4,22 @@
 """
 
 from sensitivity.study.machine_study import Study, run_study
+from sensitivity.study.points_of_table import PointOverRotary, level, points_over_rotary
 from sensitivity.study.study_file import write_study
 from sensitivity.study.trajectory import AlongPath, Trajectory, along_path, paper_trajectory
 from sensitivity.study.volume_map import Volume, has_volume, volume
 
 __all__ = [
     "AlongPath",
+    "PointOverRotary",
     "Study",
     "Trajectory",
     "Volume",
     "along_path",
     "has_volume",
+    "level",
     "paper_trajectory",
+    "points_over_rotary",
     "run_study",
     "volume",
     "write_study",

@@ -146,7 +146,7 @@ def test_limits_and_regions_of_the_contract(table) -> None:
     assert all(0 < w["touches"] <= 780 and w["region"] for w in table["where"])
     # a machine that warms up in minutes fails in the first of them
     assert any("time_s <" in w["region"] for w in table["where"])
-    assert max(abs(w["mean_um"]) for w in table["where"]) > table["u_um"]
+    assert any(abs(w["mean_um"]) > 3.0 * w["mean_u_um"] for w in table["where"])
 
 
 def test_next_measurement_is_a_run_plan(table, case) -> None:

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from machines import LENGTH
 
-from report.maps.rotary_picture import draw_rotary, level, points_over_rotary
+from report.maps.rotary_picture import draw_rotary
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study
+from sensitivity.study.points_of_table import level, points_over_rotary
 from sensitivity.study.volume_map import has_volume, volume
 from twin.errors import NotReachable
 from twin.frames import apply
@@ -91,11 +92,11 @@ def test_a_machine_without_three_linear_axes_has_no_volume():
 
 def test_a_point_of_the_workpiece_stays_where_it_is_while_the_table_turns(workspace, chain):
     points = points_over_rotary(workspace)
-    assert [p.words for p in points] == [
-        "X 0, Y 0, Z -275",
-        "X 0, Y 0, Z -150",
-        "X 150, Y 0, Z -275",
-        "X 150, Y 150, Z -400",
+    assert [p.linear for p in points] == [
+        {"X": 0.0, "Y": 0.0, "Z": -275.0},
+        {"X": 0.0, "Y": 0.0, "Z": -150.0},
+        {"X": 150.0, "Y": 0.0, "Z": -275.0},
+        {"X": 150.0, "Y": 150.0, "Z": -400.0},
     ]
     for point in points:
         p = tip(chain, point.q, LENGTH)

@@ -11,6 +11,7 @@ from twin.library.ordinary import ordinary_model
 from twin.machine.contribution import Contribution
 from twin.model.effect import Effect, Tunable, contribution
 from twin.model.model import Model, columns
+from twin.thermal.thermal_field import field
 from twin.thermal.thermal_lag import first_order_lag
 from twin.units import NM
 
@@ -20,7 +21,11 @@ RELATIVE_ROUNDING = 1e-9
 
 
 RUNS = {label: made_up(label) for label in MACHINES}
-ALL = [(label, e) for label, touches in RUNS.items() for e in proposals(touches)]
+ALL = [
+    (label, e)
+    for label, touches in RUNS.items()
+    for e in (*proposals(touches), field(touches))  # a field is weighed against what is proposed
+]
 # thirty of a kind on a machine are the same code: every one that differs in kind and in axis
 SOME = list(
     {
@@ -117,12 +122,14 @@ def test_inner_parameters_have_ascending_grids_and_can_be_set(label: str) -> Non
         inner = effect.inner(touches)
         assert list(effect.tuning) == [i.name for i in inner]
         for i in inner:
-            assert len(i.grid) >= 2
+            assert len(i.grid) >= (2 if i.continuous else 1)
             assert np.all(np.diff(i.grid) > 0.0)
         values = [float(i.grid[len(i.grid) // 2]) for i in inner]
         tuned = effect.tuned(*values)
         assert list(tuned.tuning.values()) == values
         assert tuned.name == effect.name
+        if all(len(i.grid) == 1 for i in inner):
+            continue
         # another tuning is another signature
         other = effect.tuned(*(float(i.grid[0]) for i in inner))
         assert not np.allclose(columns([tuned], touches), columns([other], touches))
