@@ -6,7 +6,7 @@ explains the run as well is told. Which one is named says nothing, unless a pitc
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,6 +65,14 @@ class Alike:
     def periods(self) -> tuple[float, ...]:
         """The other periods, longest first, mm."""
         return tuple(period_value(o.effect) for o in self.others)
+
+    def beside(self, told: ScaledEffect, named: ScaledEffect) -> "Alike":
+        """The same where another period than the one to be named is told after all."""
+        own = period_value(told.effect)
+        if own == period_value(named.effect):
+            return self
+        others = [o for o in self.others if abs(period_value(o.effect) - own) > 1e-3 * own]
+        return replace(self, others=(named, *others), pitch=None)
 
 
 def periods_alike(

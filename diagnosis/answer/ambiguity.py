@@ -1,6 +1,6 @@
 """What cannot be told apart: effects that explain the same touches equally well."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -77,6 +77,14 @@ class ConfusionClass:
             sized=sized,
             rivals=tuple(r for r in own if r.effect.name != sized.effect.name),
             told_apart=tuple(r for r in self.told_apart if r.effect.name != sized.effect.name),
+        )
+
+    def beside(self, names: Collection[str]) -> "ConfusionClass":
+        """The class without effects that are in the set already, under these names."""
+        return replace(
+            self,
+            rivals=tuple(r for r in self.rivals if r.effect.name not in names),
+            told_apart=tuple(r for r in self.told_apart if r.effect.name not in names),
         )
 
 

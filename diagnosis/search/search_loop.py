@@ -90,18 +90,13 @@ class DiagnosisTask:
         self,
         effects: Sequence[ScaledEffect] = (),
         gross: GrossErrors | None = None,
-        free_inner: bool = False,
     ) -> Fit:
-        """The model with further effects, fitted; twice where inner parameters are set free."""
+        """The model with further effects, fitted."""
         model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
         prior = self.prior
         for sized in effects:
             prior = prior.joined(self.found_prior(sized))
-        fit = fit_run(self.run, model, prior, gross=gross, memory=self.memory)
-        if not free_inner or not effects:
-            return fit
-        theta = fit.theta[: len(model.parameters)]
-        return fit_run(self.run, model, prior, theta, fit.gross, self.memory)
+        return fit_run(self.run, model, prior, gross=gross, memory=self.memory)
 
     def found_prior(self, sized: ScaledEffect) -> Prior:
         """Of the parameters of an effect that was added."""
@@ -123,6 +118,7 @@ class SearchState:
         nameless: Patterns without a name that had to be put beside them.
         chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
         is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
+        is_ended: Whether the search was ended by its limit of sets.
     """
 
     base: Fit
@@ -135,6 +131,7 @@ class SearchState:
     nameless: tuple[Structure, ...]
     chances: Mapping[str, float] = field(default_factory=dict)
     is_weighed: bool = False
+    is_ended: bool = False
 
     @property
     def pool(self) -> Signatures:
@@ -271,6 +268,7 @@ def _with_structure(
         at_start=tuple(at_start),
         left=tuple(left),
         nameless=tuple(nameless),
+        is_ended=search.budget.is_spent,
     )
 
 

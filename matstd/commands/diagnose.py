@@ -142,7 +142,8 @@ def _write(
     made_with = f"material-standard {versions()['material-standard']}"
     promised = result.choice.best.error if fit is result.fit and result.choice else None
     name = Path(args.run_file).name
-    write_model(folder / "model.toml", fit, name, before, made_with, promised)
+    told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
+    write_model(folder / "model.toml", fit, name, before, made_with, promised, told)
     for i, plan in enumerate(result.plans, start=1):
         write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
 

@@ -1,29 +1,16 @@
 """What is said of a run: verdicts with numbers, sizes with uncertainties, what is left."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from diagnosis.answer import Comparison, Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Condition, Shape, Side, Structure
-from report.numbers import condition, digits, noun, span, with_uncertainty
+from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
 from report.words.remark_words import memory_words
 from twin.record import Run
 from twin.units import UM
 from twin.words import listed
-
-_UNITS = {
-    "um_per_m_K": "µm/(m K)",
-    "urad_per_K": "µrad/K",
-    "um_per_K": "µm/K",
-    "um_per_h": "µm/h",
-    "urad_per_h": "µrad/h",
-    "um_per_N": "µm/N",
-    "urad": "µrad",
-    "um": "µm",
-    "deg": "°",
-}
-"""Units as files spell them, with what a reader sees where that is another word."""
 
 _WORDS = {"tau": "time constant"}
 
@@ -36,11 +23,6 @@ ALL_TOLD = 7
 
 _NUMBERS = {1: 3, 2: 2, 3: 1}
 """Numbers of an effect in the verdict by the number of effects; of more effects only the names."""
-
-
-def unit_words(unit: str) -> str:
-    """A unit as a reader sees it, from the spelling of files: `um_per_K` is µm/K."""
-    return _UNITS.get(unit, unit)
 
 
 def named_value(reported: Reported) -> tuple[str, str]:
@@ -71,7 +53,12 @@ def values(step: Step) -> list[tuple[str, str]]:
 
     Of an effect with many coefficients only what sums them up and its inner parameters are told.
     """
-    told = sorted(step.reported, key=lambda r: _ORDER.index(r.role))
+    return number_words(step.reported)
+
+
+def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
+    """The same of the numbers themselves, as a model file keeps them."""
+    told = sorted(reported, key=lambda r: _ORDER.index(r.role))
     if len(told) > ALL_TOLD:
         told = [r for r in told if r.role is not Role.COEFFICIENT]
     return [named_value(r) for r in told]
@@ -270,6 +257,27 @@ def promise_sentence(found: Comparison, promised: float) -> str:
         f"That is {word} was promised: {microns(found.rms)} beside {microns(promised)}, the error "
         "of rows that the model had not seen when it was made."
     )
+
+
+def figures(fit: Fit) -> tuple[str, str, str]:
+    """Fitted and held-out error, µm, and chi-square per degree of freedom, as in all tables."""
+    return f"{fit.rms / UM:.3f}", f"{fit.test_rms / UM:.3f}", digits(fit.noise.chi2_ratio)
+
+
+def learnt_lines(fit: Fit, told: Mapping[str, Sequence[Reported]]) -> list[str]:
+    """What was told of the fit that a model was learnt by: its figures, then its effects.
+
+    Args:
+        fit: Made again from the model.
+        told: Numbers of effects as the model file keeps them, by name.
+    """
+    rms, held_out, chi2 = figures(fit)
+    first = (
+        f"As it was learnt from these very rows: fitted {rms} µm, held out {held_out} µm, "
+        f"chi-square per degree of freedom {chi2}."
+    )
+    sizes = {name: ", ".join(" ".join(v) for v in number_words(r)) for name, r in told.items()}
+    return [first, *(f"{name}: {words}" for name, words in sizes.items() if words)]
 
 
 def _memory(fit: Fit) -> str:
