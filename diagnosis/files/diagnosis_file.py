@@ -29,7 +29,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         result: The diagnosis.
         remarks: Its remarks as sentences.
     """
-    choice = {} if result.choice is None else {"choice": _choice(result.choice)}
+    choice = {} if result.choice is None else {"choice": choice_table(result.choice)}
     return {
         "format": FORMAT,
         "touches": len(result.run),
@@ -175,7 +175,7 @@ def _alike(step: Step) -> dict[str, Any]:
     }
 
 
-def _choice(choice: Choice) -> dict[str, Any]:
+def choice_table(choice: Choice) -> dict[str, Any]:
     """Ways of choosing that were tried, each with its plain error of blocks left out."""
     return {
         "chosen": choice.best.name,

@@ -11,12 +11,16 @@ from diagnosis.answer import one_set
 from diagnosis.answer.ambiguity import ConfusionClass, Rival
 from diagnosis.answer.collinear import left_by
 from diagnosis.answer.one_set import placed, told_set
+from diagnosis.choice.following import ways_tried
+from diagnosis.choice.prediction import SETS, Choice, Way
+from diagnosis.files.diagnosis_file import choice_table
 from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.learnt_fit import Learnt
 from diagnosis.fit.memory import Memory
 from diagnosis.fit.prior import Prior
+from diagnosis.remarks.run_remarks import SearchEnded
 from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
 from matstd.cli import main
 from report.words.diagnosis_words import figures, number_words
@@ -24,6 +28,7 @@ from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.model.model import Model
 from twin.record.copies import without_copies
+from twin.units import UM
 
 LAG = (5, "hsm600u", ("thermal-lag(EXC)",))
 COLLINEAR = ("thermal-static(EXX,ambient)", "thermal-static(EXB,ambient)")
@@ -227,3 +232,20 @@ def test_an_addition_that_is_not_significant_is_commented(folder, tmp_path, caps
     strong = ["--only", "backlash", "--add", "thermal-lag(EXC)"]
     assert main(["diagnose", run, *strong, "--no-report", "-o", str(tmp_path / "e")]) == 0
     assert "not significant" not in flat(capsys.readouterr().out)
+
+
+# --- a choice by prediction ---------------------------------------------------------------------
+
+
+def test_ways_of_a_choice_are_told_with_the_limit_that_was_met() -> None:
+    nothing = Way("nothing", (), np.array([3.0, 4.0]) * UM, np.array([10, 30]))
+    way = Way("single effects", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
+    choice = Choice((nothing, way), way, 2, None, is_ended=True)
+    told, ended = ways_tried(choice)
+    plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
+    assert [error / UM for _, error in told.ways] == pytest.approx([plain, 1.0])
+    assert ended == SearchEnded(SETS)
+    assert len(ways_tried(replace(choice, is_ended=False))) == 1
+    table = choice_table(choice)
+    assert (table["chosen"], table["blocks"]) == ("single effects", 2)
+    assert [w["held_out_um"] for w in table["ways"]] == pytest.approx([plain, 1.0], rel=1e-5)
