@@ -63,6 +63,29 @@ def read_inputs(
     return run, saved
 
 
+def with_pitches(run: Run, stated: Iterable[str]) -> Run:
+    """A run on a machine whose pitches are stated, `X=10`, in mm.
+
+    Raises:
+        DesignError: No axis and number, an axis given twice, an axis without a pitch.
+        UnknownAxis: The machine has no such axis.
+    """
+    chain = run.touches.chain
+    given: set[str] = set()
+    for text in stated:
+        axis, _, number = (part.strip() for part in text.partition("="))
+        try:
+            pitch = float(number)
+        except ValueError:
+            expected = "expected an axis and its pitch in mm, such as X=10"
+            raise DesignError(f"--pitch {text}: {expected}") from None
+        if axis in given:
+            raise DesignError(f"--pitch {text}: {axis} is given twice, expected every axis once")
+        given.add(axis)
+        chain = chain.with_pitch(axis, pitch)
+    return replace(run, touches=replace(run.touches, chain=chain))
+
+
 def _read(run_file: str) -> Run:
     """The run; a refusal for its deviations says which mistake in the description makes it fit."""
     try:

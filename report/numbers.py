@@ -21,6 +21,24 @@ _SHOWN = {"mm": ("µm", UM), "rad": ("µrad", URAD)}
 
 _UNITS = (("_mm", "mm"), ("_deg", "deg"), ("_degC", "°C"), ("_N", "N"), ("_rpm", "1/min"))
 
+_SPELT = {
+    "um_per_m_K": "µm/(m K)",
+    "urad_per_K": "µrad/K",
+    "um_per_K": "µm/K",
+    "um_per_h": "µm/h",
+    "urad_per_h": "µrad/h",
+    "um_per_N": "µm/N",
+    "urad": "µrad",
+    "um": "µm",
+    "deg": "°",
+}
+"""Units as files spell them, with what a reader sees where that is another word."""
+
+
+def unit_words(unit: str) -> str:
+    """A unit as a reader sees it, from the spelling of files: `um_per_K` is µm/K."""
+    return _SPELT.get(unit, unit)
+
 
 def digits(value: float | None, significant: int = 3) -> str:
     """A number with so many significant digits, without an exponent where it is readable.

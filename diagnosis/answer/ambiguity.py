@@ -1,10 +1,11 @@
 """What cannot be told apart: effects that explain the same touches equally well."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.answer.alike import Alike
 from diagnosis.evidence import EffectSet, ScaledEffect, Signatures, addition, projected, score_all
 from diagnosis.search import refined
 from twin.frames import Array
@@ -52,11 +53,14 @@ class ConfusionClass:
         sized: The named one: most evidence, ties broken by what is usual.
         rivals: Not told apart, most likely first.
         told_apart: Next in line, but clearly behind.
+        alike: Of a periodic effect every other period that the run cannot tell from the named one;
+            None where there is none.
     """
 
     sized: ScaledEffect
     rivals: tuple[Rival, ...]
     told_apart: tuple[Rival, ...]
+    alike: Alike | None = None
 
     @property
     def effect(self) -> Effect:
@@ -73,6 +77,14 @@ class ConfusionClass:
             sized=sized,
             rivals=tuple(r for r in own if r.effect.name != sized.effect.name),
             told_apart=tuple(r for r in self.told_apart if r.effect.name != sized.effect.name),
+        )
+
+    def beside(self, names: Collection[str]) -> "ConfusionClass":
+        """The class without effects that are in the set already, under these names."""
+        return replace(
+            self,
+            rivals=tuple(r for r in self.rivals if r.effect.name not in names),
+            told_apart=tuple(r for r in self.told_apart if r.effect.name not in names),
         )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from diagnosis.answer.fault_trial import DescriptionFault, description_faults
 from diagnosis.answer.learnt_geometry import LearntGeometry, learnt_geometry
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from diagnosis.fit import BoolArray, Fit, Prior, fit_run, solve
+from diagnosis.fit import BoolArray, Fit, Learnt, Prior, fit_run, solve
 from diagnosis.remarks import Remark, remarks
 from diagnosis.residual import Region, Structure, find_structure, regions
 from twin.compute import one_blas_thread
@@ -56,6 +56,8 @@ class Comparison(Tabular):
             model was made, if it is one of an earlier run.
         faults: Mistakes in the description that would make the run fit.
         remarks: What else a user should know.
+        learnt: The fit that the model was learnt by, where that was from this very run: its
+            figures are those that were told then.
     """
 
     fit: Fit
@@ -66,6 +68,7 @@ class Comparison(Tabular):
     geometry: LearntGeometry
     faults: tuple[DescriptionFault, ...]
     remarks: tuple[Remark, ...]
+    learnt: Fit | None = None
 
     number_format = ".4f"  # a tenth of a nanometre
 
@@ -167,6 +170,7 @@ def compare(
     model: Model | None = None,
     estimates: Prior | None = None,
     progress: Progress = quiet,
+    learnt: Learnt | None = None,
 ) -> Comparison:
     """Measured against predicted deviations.
 
@@ -176,6 +180,7 @@ def compare(
         estimates: Of the model's parameters, from an earlier run; then nothing but where the
             standard stands is learnt from this one. None fits the whole model to this run.
         progress: Told of the tests.
+        learnt: What a model file kept of the fit to this very run; None where it was another run.
 
     Raises:
         NotEnoughData: So few touches that nothing can be said.
@@ -199,6 +204,7 @@ def compare(
         geometry=learnt_geometry(fit, estimates),
         faults=description_faults(fit, progress),
         remarks=remarks(fit),
+        learnt=None if learnt is None else learnt.again(run, model),
     )
 
 

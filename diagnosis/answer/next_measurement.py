@@ -1,5 +1,6 @@
 """What to measure next: the touches that would tell two effects apart, as a run plan."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -23,6 +24,9 @@ PACE = 15.0
 LEAST = 1.0
 """A plan that separates by fewer standard deviations than this is none."""
 
+TARGET_DIGITS = 2
+"""Targets are offered to a hundredth of a millimetre."""
+
 DRAWN = 8
 """Combinations drawn for every touch offered; most are out of reach."""
 
@@ -43,11 +47,13 @@ class Plan:
         touches: What to touch, in the order of probing.
         separation: Expected difference of the two explanations after these touches, in standard
             deviations; before them it was nearly none.
+        periods_of: The effect whose periods are told apart; empty where two effects are.
     """
 
     tells_apart: tuple[str, str]
     touches: Touches
     separation: float
+    periods_of: str = ""
 
 
 def candidate_touches(run: Run, rng: np.random.Generator) -> Touches:
@@ -117,31 +123,57 @@ def _known_side(known: Touches, offers: Touches) -> BoolArray:
     return out
 
 
-def plan(first: Fit, second: Fit, names: tuple[str, str], rng: np.random.Generator) -> Plan | None:
-    """The touches that would separate two explanations of a run best.
+def candidate_targets(run: Run, axis: str, rng: np.random.Generator) -> Touches:
+    """Touches at new readings of one axis, all else as in touches of the run.
+
+    Args:
+        run: Of an instrument that reads anywhere along the axis, or a ball on a standard: then only
+            known points are offered.
+        axis: Whose readings are drawn, over the travel that was measured.
+        rng: Draws the readings.
+    """
+    t = run.touches
+    if t.instrument.is_ball_on_standard and bool(np.any(t.radius > 0.0)):
+        return candidate_touches(run, rng)
+    picked = t[rng.integers(len(t), size=OFFERED)]
+    q = picked.q.copy()
+    reading = t.reading(axis)
+    drawn = rng.uniform(reading.min(), reading.max(), len(q))
+    q[:, t.chain.axis_index(axis)] = np.round(drawn, TARGET_DIGITS)
+    moved = replace(picked, q=q)
+    return replace(moved, point=picked.point + moved.ball_artefact - picked.ball_artefact)
+
+
+def plan(
+    first: Fit,
+    rivals: Sequence[Fit],
+    names: tuple[str, str],
+    offers: Touches,
+) -> Plan | None:
+    """The touches that would separate explanations of a run best.
 
     Greedy: the next touch is the one at which the two fitted models differ most, measured against
     noise and against what the uncertainty of the first could make up for; it then learns from it.
+    Of several rivals it serves the one that is told apart least so far.
 
     Args:
         first: The model with one of the effects.
-        second: The model with the other one instead.
-        names: Of the two effects.
-        rng: Draws the offers.
+        rivals: The model with each of the others instead.
+        names: Of the effect and of its rivals.
+        offers: Touches that could be made.
 
     Returns:
         None where the run gives no touches to choose from, or they all agree.
     """
     run = first.run
-    offers = candidate_touches(run, rng)
     if len(offers) < WANTED:
         return None
     offers = _later(run.touches, offers)
     whole = _joined(run.touches, offers)
     u = float(np.median(first.u))
     own = columns(first.effects, whole)[len(run) :]
-    other = columns(second.effects, whole)[len(run) :]
-    difference = (own @ first.theta - other @ second.theta) / u
+    others = [columns(f.effects, whole)[len(run) :] @ f.theta for f in rivals]
+    difference = (own @ first.theta - np.array(others)) / u
     chosen, gained = _greedy(difference, own @ first.spread / u)
     if gained <= LEAST**2:
         return None
@@ -154,24 +186,28 @@ def plan(first: Fit, second: Fit, names: tuple[str, str], rng: np.random.Generat
 
 
 def _greedy(difference: Array, spread: Array) -> tuple[list[int], float]:
-    """Choice of touches with the largest ``d^T (1 + S S^T)^-1 d``, and that value."""
+    """Choice of touches with the largest ``d^T (1 + S S^T)^-1 d``, and that value.
+
+    Args:
+        difference: Of every rival at every touch, (R, N).
+        spread: Root of the covariance of the prediction, (N, P).
+    """
     d, S = difference.copy(), spread.copy()
     chosen: list[int] = []
-    gained = 0.0
-    free = np.ones(len(d), dtype=bool)
-    for _ in range(min(WANTED, len(d))):
+    gained = np.zeros(len(d))
+    free = np.ones(d.shape[1], dtype=bool)
+    for _ in range(min(WANTED, d.shape[1])):
         variance = 1.0 + np.einsum("np,np->n", S, S)
-        gain = np.where(free, d**2 / variance, -1.0)
-        i = int(np.argmax(gain))
-        gained += float(gain[i])
+        i = int(np.argmax(np.where(free, d[int(np.argmin(gained))] ** 2 / variance, -1.0)))
+        gained += d[:, i] ** 2 / variance[i]
         chosen.append(i)
         free[i] = False
         # what the touch teaches: covariance and expected difference of all others given this one
         along = S @ S[i] / variance[i]
-        d = d - along * d[i]
+        d = d - d[:, i][:, None] * along
         root = 1.0 / (1.0 + np.sqrt(1.0 / variance[i]))
         S = S - np.outer(along, S[i]) * root
-    return chosen, gained
+    return chosen, float(gained.min())
 
 
 def _pace(touches: Touches) -> float:

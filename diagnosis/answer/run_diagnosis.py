@@ -5,11 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
+from diagnosis.answer.alike import period_value
+from diagnosis.answer.ambiguity import ConfusionClass
+from diagnosis.answer.collinear import check_distinct, not_significant
 from diagnosis.answer.detectable import detectable
 from diagnosis.answer.fault_trial import description_faults
 from diagnosis.answer.learnt_geometry import learnt_geometry
-from diagnosis.answer.next_measurement import Plan, plan
+from diagnosis.answer.next_measurement import (
+    Plan,
+    candidate_targets,
+    candidate_touches,
+    plan,
+)
+from diagnosis.answer.one_set import ToldSet, told_set
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from diagnosis.choice import (
@@ -38,7 +46,6 @@ from diagnosis.search import (
     DiagnosisTask,
     Search,
     SearchState,
-    Verified,
     most_evident,
     refined_named,
     search_until_stable,
@@ -48,6 +55,9 @@ from twin.library import ordinary_model
 from twin.model import Effect, Model
 from twin.record import Run, without_copies
 from twin.thermal import ThermalField
+
+PERIODS_PLANNED = 8
+"""Periods that look alike, the longest ones, that a plan of touches tells apart."""
 
 DEPENDENCES = 2
 """Patterns, one after the other, of which `depends_on` tells."""
@@ -76,6 +86,7 @@ def diagnose(
 
     Raises:
         NotEnoughData: So few touches that nothing can be said.
+        DesignError: Named effects that these touches cannot tell from one another.
 
     Example:
         ``diagnose(read_run("run.csv")).verdict`` is one of three phrases.
@@ -86,6 +97,8 @@ def diagnose(
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
     library = offered(run.touches) if candidates is None else list(candidates)
     added = refined_named(task, named, progress)
+    if len(added) > 1:
+        check_distinct(ResidualSpace.of(task.fit()), added)
     known = {e.name for e in (*start.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
@@ -98,7 +111,7 @@ def diagnose(
     if choice is None:
         return result
     fields = [e for e in result.found if isinstance(e, ThermalField)]
-    told: tuple[Remark, ...] = (ways_tried(choice), *(field_shares(result.fit, e) for e in fields))
+    told: tuple[Remark, ...] = (*ways_tried(choice), *(field_shares(result.fit, e) for e in fields))
     return replace(result, choice=choice, remarks=(*told, *result.remarks))
 
 
@@ -110,10 +123,10 @@ def _result(
     rng: np.random.Generator | None,
 ) -> Diagnosis:
     """Everything that is told of the last round."""
-    classes, verified = _classes(final), {v.member.effect.name: v for v in final_tests(final)}
-    gross = final.base.gross
     progress(0.5, "what cannot be told apart")
-    steps = _steps(task, added, final, classes, verified, gross)
+    tested = told_set(final)
+    final, classes, gross = tested.state, tested.classes, final.base.gross
+    steps = _steps(task, added, tested, gross)
     unexplained = bool(final.nameless or final.left)
     verdict = (
         Verdict.UNEXPLAINED
@@ -144,14 +157,14 @@ def _result(
             steps[0].fit if len(steps) > 1 else None,
         ),
         faults=description_faults(steps[0].fit, progress),
-        remarks=_remarks(steps[-1].fit, final),
+        remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
     )
 
 
 def _remarks(fit: Fit, final: SearchState) -> tuple[Remark, ...]:
     """What else a user should know, the search's own limit included."""
     out = remarks(fit)
-    if not final.search.budget.is_spent:
+    if not final.is_ended:
         return out
     return (*out, SearchEnded(MOST_SETS))
 
@@ -164,44 +177,24 @@ def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
     return regions(first, last if len(steps) > 1 else None)
 
 
-def final_tests(final: SearchState) -> list[Verified]:
-    """Tests of the chosen members with one another in place."""
-    return final.search.verify(final.chosen)
-
-
-def _classes(final: SearchState) -> list[ConfusionClass]:
-    """Confusion class of every found effect, in the order found."""
-    out = []
-    for i, effect in enumerate(final.effects):
-        others = final.effects[:i] + final.effects[i + 1 :]
-        if effect.effect.name in final.chances:
-            out.append(ConfusionClass(effect, (), ()))
-            continue
-        found = confusion_class(final.pool, effect, others, final.fixed)
-        out.append(found.headed(effect) if final.is_weighed else found)
-    return out
-
-
 def _steps(
     task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
-    final: SearchState,
-    classes: Sequence[ConfusionClass],
-    verified: dict[str, Verified],
+    tested: ToldSet,
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""
-    names = [m.effect.name for m in final.chosen.members]
-    p_values = [final.chances.get(n, verified[n].p_value) for n in names]
+    final, classes = tested.state, tested.classes
+    names = [s.effect.name for s in final.effects]
+    p_values = [final.chances.get(n, tested.tests[n].p_value) for n in names]
     order = _by_worth(final)
-    heads = [classes[i].sized for i in order]
-    effects = [*added, *heads]
-    last = task.fit(effects, gross, free_inner=True)
+    effects: Sequence[ScaledEffect] = [*added, *(final.effects[i] for i in order)]
     first = task.fit((), gross)
-    told = sizes(task, effects, gross, ResidualSpace.of(first))
+    # the inner parameters that are told are those that are drawn and saved
+    told, effects = sizes(task, effects, gross, ResidualSpace.of(first))
     out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
     for k, sized in enumerate(effects):
-        fit = last if k + 1 == len(effects) else task.fit(effects[: k + 1], gross)
+        fit = task.fit(effects[: k + 1], gross)
         i = order[k - len(added)] if k >= len(added) else -1
         p = p_values[i] if i >= 0 else _named_probability(out[-1].fit, fit)
         confusion = classes[i] if i >= 0 else None
@@ -302,10 +295,23 @@ def _plans(
     heads = [c.sized for c in classes]
     out = []
     for i, confusion in enumerate(classes):
+
+        def instead(rival: ScaledEffect, i: int = i) -> Fit:
+            return task.fit((*added, *heads[:i], rival, *heads[i + 1 :]), gross)
+
+        name, alike = heads[i].effect.name, confusion.alike
+        if alike is not None:
+            fits = [instead(other) for other in alike.others[:PERIODS_PLANNED]]
+            periods = [f"{p:.4g}" for p in alike.periods[:PERIODS_PLANNED]]
+            own = period_value(heads[i].effect)
+            names = (f"{name}@{own:.4g}", f"{name}@{','.join(periods)}")
+            offers = candidate_targets(task.run, alike.axis, rng)
+            found = plan(instead(heads[i]), fits, names, offers)
+            out += [replace(found, periods_of=name)] if found is not None else []
         for rival in confusion.rivals:
-            instead = [*heads[:i], rival.sized, *heads[i + 1 :]]
-            fits = [task.fit((*added, *effects), gross) for effects in (heads, instead)]
-            found = plan(fits[0], fits[1], (heads[i].effect.name, rival.effect.name), rng)
+            offers = candidate_touches(task.run, rng)
+            names = (name, rival.effect.name)
+            found = plan(instead(heads[i]), [instead(rival.sized)], names, offers)
             if found is not None:
                 out.append(found)
                 break

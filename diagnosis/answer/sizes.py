@@ -15,7 +15,6 @@ from diagnosis.fit import (
     PRIOR_DOF,
     Fit,
     GrossErrors,
-    InstantEstimate,
     Reported,
     continuous_inner,
     fit_run,
@@ -49,8 +48,8 @@ def sizes(
     effects: Sequence[ScaledEffect],
     gross: GrossErrors,
     complement: ResidualSpace,
-) -> tuple[tuple[Reported, ...], ...]:
-    """Parameters of every effect as a user reads them, with their uncertainties.
+) -> tuple[tuple[tuple[Reported, ...], ...], tuple[ScaledEffect, ...]]:
+    """Parameters of every effect as a user reads them, and the effects at their inner parameters.
 
     Args:
         task: What is diagnosed.
@@ -59,16 +58,16 @@ def sizes(
         complement: What the model to begin with leaves.
     """
     if not effects:
-        return ()
+        return (), ()
     fit, at = _settled(task, effects, gross)
     dof = fit.solution.dof + PRIOR_DOF
     # the scale of the noise is itself found: Student's distribution is a little wider
     wider = float(np.sqrt(dof / max(dof - 2.0, 0.5)))
+    moved = tuple(ScaledEffect(e, s.scale) for e, s in zip(at, effects, strict=True))
     out = []
     for i, effect in enumerate(at):
-        moved = [ScaledEffect(e, s.scale) for e, s in zip(at, effects, strict=True)]
         out.append(reported(fit, effect, wider, _instants(complement, moved, i)))
-    return tuple(out)
+    return tuple(out), moved
 
 
 def _settled(
@@ -115,14 +114,14 @@ def _stepped(fit: Fit, effects: Sequence[Effect]) -> list[Effect] | None:
 
 def _instants(
     complement: ResidualSpace, effects: Sequence[ScaledEffect], which: int
-) -> Mapping[int, InstantEstimate]:
+) -> Mapping[int, tuple[float, float]]:
     """Mean and standard deviation of inner parameters that act by jumps, by their index.
 
     Between two touches every instant is as good as every other; each such interval is weighed by
     its evidence and its length.
     """
     effect = effects[which].effect
-    out: dict[int, InstantEstimate] = {}
+    out: dict[int, tuple[float, float]] = {}
     if not isinstance(effect, Tunable):
         return out
     others = [s for k, s in enumerate(effects) if k != which]
@@ -145,7 +144,7 @@ def _jumps(complement: ResidualSpace, inner: Inner, value: float) -> Array:
     return np.concatenate([[low], inside, [high]]) if len(inside) < len(near) else inside
 
 
-def _weighed(base: EffectSet, effect: Tunable, index: int, edges: Array) -> InstantEstimate:
+def _weighed(base: EffectSet, effect: Tunable, index: int, edges: Array) -> tuple[float, float]:
     """Mean and deviation of an instant over the intervals between some edges."""
     middle, length = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     value = list(effect.tuning.values())[index]
@@ -161,4 +160,4 @@ def _weighed(base: EffectSet, effect: Tunable, index: int, edges: Array) -> Inst
     weight /= weight.sum()
     mean = float(weight @ middle)
     variance = float(weight @ ((middle - mean) ** 2 + length**2 / 12.0))
-    return InstantEstimate(mean, float(np.sqrt(variance)))
+    return mean, float(np.sqrt(variance))

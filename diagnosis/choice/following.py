@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import ttest_1samp
 
-from diagnosis.choice.prediction import Choice, Way
+from diagnosis.choice.prediction import SETS, Choice, Way
 from diagnosis.choice.remembering import LOUDEST
 from diagnosis.evidence import (
     Grid,
@@ -18,7 +18,7 @@ from diagnosis.evidence import (
     signatures,
 )
 from diagnosis.fit import Fit, Memory
-from diagnosis.remarks import ChosenByPrediction, FieldShares
+from diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
 from diagnosis.residual import find_structure
 from diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
 from twin.model import Effect, columns
@@ -76,6 +76,7 @@ def followed(
         (),
         shrunk,
         is_weighed=True,
+        is_ended=final.is_ended,
     )
 
 
@@ -132,7 +133,8 @@ def field_shares(fit: Fit, effect: ThermalField) -> FieldShares:
     return FieldShares(effect.axis, tuple(ranked[:LISTED]))
 
 
-def ways_tried(choice: Choice) -> ChosenByPrediction:
-    """Every way of a choice with its plain error of blocks left out."""
+def ways_tried(choice: Choice) -> tuple[Remark, ...]:
+    """Every way of a choice with its plain error of blocks left out, and a limit that was met."""
     ways = tuple((w.name, w.error) for w in choice.ways)
-    return ChosenByPrediction(choice.best.name, choice.blocks, ways)
+    told = ChosenByPrediction(choice.best.name, choice.blocks, ways)
+    return (told, SearchEnded(SETS)) if choice.is_ended else (told,)

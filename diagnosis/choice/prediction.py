@@ -74,12 +74,14 @@ class Choice:
         best: The one to follow.
         blocks: Number of blocks that were left out, one after the other.
         memory: Of what is left with it; None where it is white.
+        is_ended: Whether a search for single effects was ended by its limit, `SETS`.
     """
 
     ways: tuple[Way, ...]
     best: Way
     blocks: int
     memory: Memory | None
+    is_ended: bool = False
 
 
 Chooser = Callable[[DiagnosisTask, GrossErrors], tuple[ScaledEffect, ...]]
@@ -113,7 +115,8 @@ def chosen_by_prediction(
     task = thinned(task, fit)
     fit = task.fit((*added, *final.effects), final.base.gross)
     groups = blocks(fit, memory_of(fit)[0])
-    choosers = _choosers(added, candidates, groups)
+    budgets: list[Budget] = []
+    choosers = _choosers(added, candidates, groups, budgets)
     gross = final.base.gross
     ways = []
     for done, (name, chooser) in enumerate(choosers.items()):
@@ -125,7 +128,13 @@ def chosen_by_prediction(
         if way.error < PLAINLY * best.error:
             best = way
     left = memory_of(task.fit((*added, *best.effects), gross))
-    return Choice(tuple(ways), best, len(groups), left[0] if left[1] >= CLEARLY else None)
+    return Choice(
+        ways=tuple(ways),
+        best=best,
+        blocks=len(groups),
+        memory=left[0] if left[1] >= CLEARLY else None,
+        is_ended=any(b.is_spent for b in budgets),
+    )
 
 
 def offered(touches: Touches) -> list[Effect]:
@@ -135,16 +144,21 @@ def offered(touches: Touches) -> list[Effect]:
 
 
 def _choosers(
-    added: tuple[ScaledEffect, ...], candidates: Sequence[Effect], groups: Sequence[IntArray]
+    added: tuple[ScaledEffect, ...],
+    candidates: Sequence[Effect],
+    groups: Sequence[IntArray],
+    budgets: list[Budget],
 ) -> dict[str, Chooser]:
-    """The ways that the candidates leave open, the simplest first."""
+    """The ways that the candidates leave open, the simplest first; budgets of searches are kept."""
     single = [e for e in candidates if not getattr(e, "is_shrunk", False)]
     warm = next((e for e in candidates if getattr(e, "is_shrunk", False)), None)
     out: dict[str, Chooser] = {"nothing": lambda task, gross: ()}
     if {"thermal-lag", "thermal-static"} <= {e.kind for e in single}:
         out["two time constants"] = lambda task, gross: bodies(task, added, gross)
     if single:
-        out["single effects"] = lambda task, gross: named(task, added, gross, single, groups)
+        out["single effects"] = lambda task, gross: named(
+            task, added, gross, single, groups, budgets
+        )
     if warm is not None:
         out["thermal field"] = lambda task, gross: (sized_field(task, added, gross, warm, groups),)
     return out
@@ -190,6 +204,7 @@ def named(
     gross: GrossErrors,
     candidates: Sequence[Effect],
     groups: Sequence[IntArray],
+    budgets: list[Budget],
 ) -> tuple[ScaledEffect, ...]:
     """Single effects by search, then those with inner parameters once more beside themselves.
 
@@ -199,13 +214,15 @@ def named(
         gross: Gross errors, as they were found.
         candidates: Effects that may be found.
         groups: Rows of the run in every block; each effect must lower the error of blocks left out.
+        budgets: Those of its searches join them, for whoever asks whether a limit was met.
     """
     complement = ResidualSpace.of(task.fit(added, gross))
     found: list[ScaledEffect] = []
     more: list[Effect] = []
     for _ in range(2):
         library = Library.of(complement, [*candidates, *more])
-        chosen = searched(library, [s.effect.name for s in found], Budget(SETS))
+        budgets.append(Budget(SETS))
+        chosen = searched(library, [s.effect.name for s in found], budgets[-1])
         found = list(refined_set(complement, chosen))
         more = [a for s in found if (a := again(s.effect)) is not None]
         if not more:

@@ -29,6 +29,7 @@ from diagnosis.evidence.evidence import (
     score_all,
     screen,
 )
+from diagnosis.evidence.periods import period_of, scanned_grids, strongest
 
 __all__ = [
     "SCALES",
@@ -43,12 +44,15 @@ __all__ = [
     "blocks",
     "f_probability",
     "log_evidence",
+    "period_of",
     "projected",
     "quiet",
     "reduced",
+    "scanned_grids",
     "score_all",
     "screen",
     "signatures",
+    "strongest",
     "tuned_variants",
     "whole_grids",
 ]

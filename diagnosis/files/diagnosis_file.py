@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResidual, Plan, Step
+from diagnosis.choice import Choice
 from diagnosis.files.fault_table import fault_table
 from diagnosis.files.geometry_table import geometry_table
-from diagnosis.fit import file_unit
+from diagnosis.fit import Fit, file_unit
 from diagnosis.residual import Condition, Region, Side
 from twin.files import reading_columns, write_whole
 from twin.record import Touches
@@ -28,6 +29,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         result: The diagnosis.
         remarks: Its remarks as sentences.
     """
+    choice = {} if result.choice is None else {"choice": choice_table(result.choice)}
     return {
         "format": FORMAT,
         "touches": len(result.run),
@@ -51,6 +53,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         "geometry": geometry_table(result.geometry),
         "description_faults": fault_table(result.faults),
         "remarks": list(remarks),
+        **choice,
     }
 
 
@@ -71,6 +74,7 @@ def comparison_table(
     """
     worst = found.worst
     noise = found.fit.noise
+    learnt = {} if found.learnt is None else {"learnt": _errors(found.learnt)}
     return {
         "format": COMPARISON,
         "touches": len(found.run),
@@ -100,6 +104,7 @@ def comparison_table(
         "geometry": geometry_table(found.geometry),
         "description_faults": fault_table(found.faults),
         "remarks": list(remarks),
+        **learnt,
     }
 
 
@@ -131,13 +136,18 @@ def _um(value: float) -> float:
     return _digits(value / UM)
 
 
+def _errors(fit: Fit) -> dict[str, float]:
+    """Figures by which a fit is judged."""
+    return {
+        "rms_um": _um(fit.rms),
+        "test_rms_um": _um(fit.test_rms),
+        "chi2_ratio": _digits(fit.noise.chi2_ratio),
+    }
+
+
 def _step(step: Step) -> dict[str, Any]:
     """One step in which the error falls."""
-    errors = {
-        "rms_um": _um(step.fit.rms),
-        "test_rms_um": _um(step.fit.test_rms),
-        "chi2_ratio": _digits(step.fit.noise.chi2_ratio),
-    }
+    errors = _errors(step.fit)
     if step.effect is None:
         return {"effect": None, **errors}
     rivals = step.confusion.rivals if step.confusion else ()
@@ -149,6 +159,35 @@ def _step(step: Step) -> dict[str, Any]:
         "p_value": step.p_value,
         **errors,
         "cannot_be_told_from": list(dict.fromkeys(r.effect.name for r in rivals)),
+        **_alike(step),
+    }
+
+
+def _alike(step: Step) -> dict[str, Any]:
+    """Periods that the targets cannot tell from the one in `parameters`; nothing for most."""
+    alike = step.confusion.alike if step.confusion else None
+    if alike is None:
+        return {}
+    return {
+        "periods_alike_mm": [_digits(p) for p in alike.periods],
+        "step_mm": alike.step,
+        "pitch_mm": alike.pitch,
+    }
+
+
+def choice_table(choice: Choice) -> dict[str, Any]:
+    """Ways of choosing that were tried, each with its plain error of blocks left out."""
+    return {
+        "chosen": choice.best.name,
+        "blocks": choice.blocks,
+        "ways": [
+            {
+                "way": way.name,
+                "held_out_um": _um(way.error),
+                "effects": [s.effect.name for s in way.effects],
+            }
+            for way in choice.ways
+        ],
     }
 
 

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
-from diagnosis.fit import Prior, file_unit
+from diagnosis.fit import Learnt, Memory, Prior, Reported, Role, file_unit
 from twin.errors import BadFile, DesignError
 from twin.files import (
     MachineTables,
@@ -21,7 +22,8 @@ from twin.frames import Array
 from twin.library import parse_effect
 from twin.machine import Chain
 from twin.model import Effect, Model, Tunable
-from twin.units import DEG
+from twin.record import Run
+from twin.units import DEG, UM
 
 FORMAT = "model/1"
 
@@ -33,12 +35,37 @@ ROUNDED = 1e-6
 """By so much rounding may leave correlations of a file beyond one, or variances below zero."""
 
 
+class ToldEntry(Table):
+    """`[[effect.told]]`: one number of an effect, in the unit that it states."""
+
+    quantity: str
+    unit: str = ""
+    value: float
+    u: float | None = Field(default=None, ge=0.0)
+    role: Literal["size", "inner parameter", "coefficient"] = "size"
+    bound: Literal[-1, 0, 1] = 0
+
+
 class EffectEntry(Table):
-    """`[[effect]]`: its name, its inner parameters, and the estimates of the others."""
+    """`[[effect]]`: its name, its inner parameters, and the estimates of the others.
+
+    `told` are its numbers as they were told of the run, which rest on the touches alone where the
+    estimates lean on what is usual.
+    """
 
     name: str
     inner: dict[str, float] = Field(default_factory=dict)
     estimate: dict[str, float]
+    told: list[ToldEntry] = Field(default_factory=list)
+
+
+class MemoryEntry(Table):
+    """`[source.memory]`: what the noise of the run remembered."""
+
+    correlation: float = Field(gt=0.0, lt=1.0)
+    step_s: float = Field(default=0.0, ge=0.0)
+    by_place: bool = False
+    is_filtered: bool = True
 
 
 class SourceEntry(Table):
@@ -57,6 +84,8 @@ class SourceEntry(Table):
     learnt_from: list[str] = Field(default_factory=list)
     made_with: str = ""
     held_out_um: float = 0.0
+    held_out_gross_errors: list[int] = Field(default_factory=list)
+    memory: MemoryEntry | None = None
 
 
 class ModelTable(Table):
@@ -67,6 +96,7 @@ class ModelTable(Table):
     source: SourceEntry
     effect: list[EffectEntry]
     covariance: list[list[float]]
+    from_inner: list[list[float]] = Field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +107,38 @@ class SavedModel:
         model: Machine and effects.
         estimates: Of the parameters, with their covariance.
         source: The run that they were learnt from.
+        from_inner: Root (P, T) of the part of the covariance that uncertain inner parameters add.
+        told: Numbers of effects as they were told of that run, by name.
     """
 
     model: Model
     estimates: Prior
     source: SourceEntry
+    from_inner: Array
+    told: dict[str, tuple[Reported, ...]]
+
+    def learnt(self, run: Run) -> Learnt | None:
+        """What the fit to a run is made again from; None where the last run was another.
+
+        Args:
+            run: The run, copies of rows set aside.
+        """
+        if not self.source.learnt_from or self.source.learnt_from[-1] != run.fingerprint:
+            return None
+        whole = self.estimates.root @ self.estimates.root.T
+        held = whole - self.from_inner @ self.from_inner.T
+        source = self.source
+        lines = [*source.gross_errors, *source.held_out_gross_errors]
+        m = source.memory
+        return Learnt(
+            estimates=Prior.of_estimates(self.estimates.mean, held),
+            from_inner=self.from_inner,
+            factor=source.noise_um * UM / float(np.median(run.u)),
+            gross=np.isin(run.line, lines),
+            memory=None
+            if m is None
+            else Memory(m.correlation, m.step_s, m.by_place, m.is_filtered),
+        )
 
 
 def parameter_keys(effect: Effect) -> list[tuple[str, float]]:
@@ -134,7 +191,32 @@ def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
         factors += [factor for _, factor in keys]
     covariance = _covariance(table.covariance, np.array(factors), path)
     model = Model(chain, tuple(effects))
-    return SavedModel(model, Prior.of_estimates(np.array(mean), covariance), table.source)
+    return SavedModel(
+        model=model,
+        estimates=Prior.of_estimates(np.array(mean), covariance),
+        source=table.source,
+        from_inner=_from_inner(table.from_inner, np.array(factors), path),
+        told={entry.name: tuple(_reported(t) for t in entry.told) for entry in table.effect},
+    )
+
+
+def _reported(told: ToldEntry) -> Reported:
+    """A number as it was told; one of its unit in the base unit is of no more use."""
+    return Reported(told.quantity, told.unit, told.value, told.u, 1.0, Role(told.role), told.bound)
+
+
+def _from_inner(rows: list[list[float]], factors: Array, path: str | Path) -> Array:
+    """Root of the part of inner parameters in base units, (P, T)."""
+    if not rows:
+        return np.zeros((len(factors), 0))
+    if len(rows) != len(factors) or len({len(row) for row in rows}) > 1:
+        raise BadFile(
+            path,
+            "from_inner",
+            f"{len(rows)} rows",
+            f"a row of equal length a parameter of {len(factors)}",
+        )
+    return np.array(rows, dtype=float) * factors[:, None]
 
 
 def _effect(

@@ -1,12 +1,13 @@
 """Writer of model files ("model/1"): what a fit has learnt, for another day and another run."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys
-from diagnosis.fit import Fit, inner_unit
+from diagnosis.fit import Fit, Learnt, Memory, Reported, inner_unit
 from twin.files import write_whole
 from twin.frames import Array
 from twin.machine import Chain
@@ -21,6 +22,7 @@ def write_model(
     before: SavedModel | None = None,
     made_with: str = "",
     held_out: float | None = None,
+    told: Mapping[str, Sequence[Reported]] | None = None,
 ) -> None:
     """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
 
@@ -31,8 +33,9 @@ def write_model(
         before: Model whose estimates the fit began with; None if it began with none.
         made_with: Name and version of the program, for the same reader.
         held_out: Plain error that is promised for rows not seen, mm; None for that of the fit.
+        told: Sizes of effects as they are told, by name.
     """
-    write_whole(path, model_text(fit, run_name, before, made_with, held_out))
+    write_whole(path, model_text(fit, run_name, before, made_with, held_out, told))
 
 
 def model_text(
@@ -41,12 +44,13 @@ def model_text(
     before: SavedModel | None = None,
     made_with: str = "",
     held_out: float | None = None,
+    told: Mapping[str, Sequence[Reported]] | None = None,
 ) -> str:
     """Text of a model file; arguments as of `write_model`."""
     import tomli_w
 
-    theta, covariance = fit.theta, fit.covariance
-    count = len(fit.model.parameters)
+    learnt = Learnt.of(fit)
+    theta = learnt.estimates.mean
     factors: list[float] = []
     entries = []
     for effect in fit.model.effects:
@@ -58,17 +62,21 @@ def model_text(
             entry["inner"] = inner
         values = theta[start : start + len(keys)]
         entry["estimate"] = {key: float(v) / f for (key, f), v in zip(keys, values, strict=True)}
+        numbers = (told or {}).get(effect.name, ())
+        if numbers:
+            entry["told"] = [_told(r) for r in numbers]
         factors += [factor for _, factor in keys]
         entries.append(entry)
     scale = np.array(factors)
-    shown = covariance[:count, :count] / np.outer(scale, scale)
+    shown = learnt.covariance / np.outer(scale, scale)
     tables = {
         "machine": _machine(fit.model.chain),
         "source": _source(fit, run_name, before, made_with, held_out),
         "effect": entries,
     }
     # top-level keys stand before tables in TOML, so the covariance goes before what it is about
-    return f'format = "{FORMAT}"\n' + _triangle(shown) + tomli_w.dumps(tables)
+    head = f'format = "{FORMAT}"\n' + _triangle(shown) + _root(learnt.from_inner / scale[:, None])
+    return head + tomli_w.dumps(tables)
 
 
 def _source(
@@ -85,6 +93,31 @@ def _source(
         "learnt_from": [*earlier, fit.run.fingerprint],
         "made_with": made_with,
         "held_out_um": float(fit.test_rms if held_out is None else held_out) / UM,
+        "held_out_gross_errors": [int(line) for line in fit.run.line[fit.gross_test_rows]],
+        **({} if fit.memory is None else {"memory": _memory(fit.memory)}),
+    }
+
+
+def _told(number: Reported) -> dict[str, Any]:
+    """A number of an effect as it is told."""
+    u = {} if number.u is None else {"u": number.u}
+    return {
+        "quantity": number.quantity,
+        "unit": number.unit,
+        "value": number.value,
+        **u,
+        "role": number.role.value,
+        "bound": number.bound,
+    }
+
+
+def _memory(memory: Memory) -> dict[str, Any]:
+    """What the noise remembers, as in the file."""
+    return {
+        "correlation": memory.correlation,
+        "step_s": memory.step,
+        "by_place": memory.by_place,
+        "is_filtered": memory.is_filtered,
     }
 
 
@@ -99,17 +132,26 @@ def _inner_values(fit: Fit, effect: Effect) -> dict[str, float]:
 
 def _triangle(covariance: Array) -> str:
     """Lower triangle of a covariance as a TOML array, a line a row."""
-    rows = (
-        "  [" + ", ".join(repr(float(v)) for v in row[: i + 1]) + "],"
-        for i, row in enumerate(covariance)
-    )
     note = "# covariance of the estimates below: lower triangle, a row a parameter, their units\n"
-    return note + "covariance = [\n" + "\n".join(rows) + "\n]\n"
+    return note + _array("covariance", [row[: i + 1] for i, row in enumerate(covariance)])
+
+
+def _root(root: Array) -> str:
+    """The part of inner parameters as a TOML array; nothing where there is none."""
+    if root.shape[1] == 0:
+        return ""
+    note = "# of it that of uncertain inner parameters: root times its transpose\n"
+    return note + _array("from_inner", list(root))
+
+
+def _array(key: str, rows: Sequence[Array]) -> str:
+    lines = ("  [" + ", ".join(repr(float(v)) for v in row) + "]," for row in rows)
+    return f"{key} = [\n" + "\n".join(lines) + "\n]\n"
 
 
 def _machine(chain: Chain) -> dict[str, Any]:
     """A machine as in a machine file."""
-    axes = {}
+    axes: dict[str, dict[str, Any]] = {}
     for link in chain.links:
         if link.kind == "fixed":
             continue
@@ -119,6 +161,8 @@ def _machine(chain: Chain) -> dict[str, Any]:
             "point": [float(v) for v in link.point],
             "direction": [float(v) for v in link.direction],
         }
+        if link.pitch is not None:
+            axes[link.name]["pitch"] = link.pitch
     origin = [float(v) for v in chain.table_origin]
     return {
         "name": chain.name,

@@ -5,11 +5,12 @@ set aside, the size of the noise, and errors of poses that were left out. `estim
 combinations the run determines; `reported` gives parameters as a user reads them.
 """
 
-from diagnosis.fit.describe import InstantEstimate, Reported, Role, file_unit, inner_unit, reported
+from diagnosis.fit.describe import Reported, Role, file_unit, inner_unit, reported
 from diagnosis.fit.estimability import Estimable, estimable
 from diagnosis.fit.gross import GrossErrors
 from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
 from diagnosis.fit.inner import continuous_inner, shifted, spacing
+from diagnosis.fit.learnt_fit import Learnt
 from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
 from diagnosis.fit.memory import CLEARLY, Memory, Whitener, likely_memory
 from diagnosis.fit.noise import PRIOR_DOF
@@ -25,7 +26,7 @@ __all__ = [
     "Estimable",
     "Fit",
     "GrossErrors",
-    "InstantEstimate",
+    "Learnt",
     "LeftOut",
     "Memory",
     "MistakenUnit",

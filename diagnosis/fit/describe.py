@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import NamedTuple
 
 import numpy as np
 
@@ -60,13 +59,6 @@ class Reported:
         return f"{self.quantity}_{self.unit}" if self.unit else self.quantity
 
 
-class InstantEstimate(NamedTuple):
-    """An inner parameter with its standard uncertainty, base unit."""
-
-    value: float
-    u: float
-
-
 def file_unit(unit: str) -> tuple[str, float]:
     """Suffix of a linear parameter in files, and one of it in the base unit.
 
@@ -99,7 +91,7 @@ def reported(
     fit: Fit,
     effect: Effect,
     wider: float = 1.0,
-    settled: Mapping[int, InstantEstimate] | None = None,
+    settled: Mapping[int, tuple[float, float]] | None = None,
 ) -> tuple[Reported, ...]:
     """Inner parameters, the size, and every linear parameter of a fitted effect.
 
@@ -108,7 +100,7 @@ def reported(
             uncertainty is wanted.
         effect: As it stands in the fit.
         wider: Factor on the uncertainties of the fit.
-        settled: Inner parameters that have no tangent, by index.
+        settled: Inner parameters that have no tangent with their standard uncertainties, by index.
     """
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
@@ -198,7 +190,7 @@ def size(
 
 
 def _inner(
-    fit: Fit, effect: Effect, wider: float, settled: Mapping[int, InstantEstimate]
+    fit: Fit, effect: Effect, wider: float, settled: Mapping[int, tuple[float, float]]
 ) -> Sequence[Reported]:
     """Inner parameters with the uncertainty that their tangents give."""
     u = {

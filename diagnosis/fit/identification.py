@@ -125,7 +125,7 @@ class Fit(Shown):
     @property
     def weight(self) -> float:
         """Factor on the uncertainty of a row that counts for less than one observation."""
-        return _weight(self.memory)
+        return row_weight(self.memory)
 
     @cached_property
     def whitener(self) -> Whitener | None:
@@ -266,7 +266,7 @@ def fit_run(
         filter_ = whitener(memory, run.touches, run.u, kept)
         A[kept], y[kept] = filter_.filtered(A[kept]), filter_.filtered(y[kept])
     free = Prior.of_effects((*setups, *moved))
-    factor, widened, weight = 1.0, 1.0, _weight(memory)
+    factor, widened, weight = 1.0, 1.0, row_weight(memory)
     for remaining in reversed(range(PASSES)):
         belief = Prior(machine.mean, machine.root * _widening(model, widened)).joined(free)
         whole = factor * weight
@@ -278,7 +278,7 @@ def fit_run(
             break
         factor, widened = better, max(widened, _widened(solution, len(machine)) * widened)
     used = train & ~found.rows
-    noise = _noise(run, solution, (rest - X @ solution.phi) * whole, used, factor)
+    noise = noise_of(run, solution, (rest - X @ solution.phi) * whole, used, factor)
     return Fit(
         run=run,
         model=model,
@@ -296,14 +296,14 @@ def fit_run(
     )
 
 
-def _weight(memory: Memory | None) -> float:
+def row_weight(memory: Memory | None) -> float:
     """Root of the number of rows that count as one observation."""
     if memory is None or memory.is_filtered:
         return 1.0
     return float(np.sqrt(memory.per_independent))
 
 
-def _noise(run: Run, solution: Solution, z: Array, used: BoolArray, factor: float) -> Noise:
+def noise_of(run: Run, solution: Solution, z: Array, used: BoolArray, factor: float) -> Noise:
     """Noise of a fit; z are its residuals over the stated uncertainty, all rows, (N,)."""
     ratio = float(z[used] @ z[used]) / max(solution.dof, 1e-9)
     replicates, count = replicate_factor(run, z, used)

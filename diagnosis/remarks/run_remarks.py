@@ -141,6 +141,25 @@ class FieldShares:
     sizes: tuple[tuple[str, float], ...]
 
 
+@dataclass(frozen=True, slots=True)
+class NotSignificant:
+    """An effect that was added by name, with its size within twice its uncertainty.
+
+    Attributes:
+        effect: Its name.
+        quantity: What the size is.
+        value: In `unit`.
+        u: Standard uncertainty, in `unit`.
+        unit: As files spell it.
+    """
+
+    effect: str
+    quantity: str
+    value: float
+    u: float
+    unit: str
+
+
 Remark = (
     UnitMistake
     | NoiseRemembers
@@ -157,6 +176,7 @@ Remark = (
     | OutliersLeftOut
     | PriorWidened
     | SearchEnded
+    | NotSignificant
 )
 
 

@@ -6,7 +6,7 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 `screening` what makes long runs affordable, `edges` gross errors that are none.
 """
 
-from diagnosis.search.refine import refined, refined_set
+from diagnosis.search.refine import refined, refined_set, with_moved_points
 from diagnosis.search.screening import Library
 from diagnosis.search.search_loop import (
     FREEDOM,
@@ -47,4 +47,5 @@ __all__ = [
     "refined_set",
     "search_until_stable",
     "searched",
+    "with_moved_points",
 ]

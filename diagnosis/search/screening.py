@@ -25,9 +25,9 @@ from diagnosis.evidence import (
     blocks,
     projected,
     quiet,
+    scanned_grids,
     screen,
     signatures,
-    whole_grids,
 )
 from twin.frames import Array
 from twin.model import Effect
@@ -72,7 +72,7 @@ class Library:
         cls, complement: ResidualSpace, candidates: Sequence[Effect], progress: Progress = quiet
     ) -> "Library":
         """Candidates at every point of their grids, with their signatures."""
-        grids = whole_grids(candidates, complement.touches)
+        grids = scanned_grids(candidates, complement)
         n = len(complement.u)
         seen = complement if n <= WHOLE_BELOW else complement.thinned(WHOLE_BELOW)
         return cls(complement, tuple(grids), signatures(seen, grids, len(grids), progress))

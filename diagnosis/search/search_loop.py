@@ -23,9 +23,10 @@ from diagnosis.evidence import (
     ResidualSpace,
     ScaledEffect,
     Signatures,
+    period_of,
     quiet,
+    scanned_grids,
     signatures,
-    whole_grids,
 )
 from diagnosis.fit import Fit, GrossErrors, Memory, Prior, fit_run
 from diagnosis.residual import Structure, find_structure
@@ -34,12 +35,16 @@ from diagnosis.search.refine import refined_set
 from diagnosis.search.regrid import regridded
 from diagnosis.search.screening import Library, joined_shortlists
 from diagnosis.search.selection import Budget, EffectSubset, Search
+from twin.effects import Again, again
 from twin.frames import Array
 from twin.model import Effect, Model
 from twin.record import Run
 
 ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
+
+PERIODS = 4
+"""Most periods of one component error of one axis."""
 
 NAMELESS = 3
 """Most patterns without a name that are put beside the effects of an unexplained run."""
@@ -85,18 +90,13 @@ class DiagnosisTask:
         self,
         effects: Sequence[ScaledEffect] = (),
         gross: GrossErrors | None = None,
-        free_inner: bool = False,
     ) -> Fit:
-        """The model with further effects, fitted; twice where inner parameters are set free."""
+        """The model with further effects, fitted."""
         model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
         prior = self.prior
         for sized in effects:
             prior = prior.joined(self.found_prior(sized))
-        fit = fit_run(self.run, model, prior, gross=gross, memory=self.memory)
-        if not free_inner or not effects:
-            return fit
-        theta = fit.theta[: len(model.parameters)]
-        return fit_run(self.run, model, prior, theta, fit.gross, self.memory)
+        return fit_run(self.run, model, prior, gross=gross, memory=self.memory)
 
     def found_prior(self, sized: ScaledEffect) -> Prior:
         """Of the parameters of an effect that was added."""
@@ -118,6 +118,7 @@ class SearchState:
         nameless: Patterns without a name that had to be put beside them.
         chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
         is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
+        is_ended: Whether the search was ended by its limit of sets.
     """
 
     base: Fit
@@ -130,6 +131,7 @@ class SearchState:
     nameless: tuple[Structure, ...]
     chances: Mapping[str, float] = field(default_factory=dict)
     is_weighed: bool = False
+    is_ended: bool = False
 
     @property
     def pool(self) -> Signatures:
@@ -155,7 +157,7 @@ def refined_named(
     if not named:
         return ()
     complement = ResidualSpace.of(task.fit())
-    grids = whole_grids(named, task.run.touches)
+    grids = scanned_grids(named, complement)
     search = Search(signatures(complement, grids, len(grids), progress))
     chosen = search.evaluate(())
     for _ in named:
@@ -166,6 +168,40 @@ def refined_named(
 
 
 def search_until_stable(
+    task: DiagnosisTask,
+    added: Sequence[ScaledEffect],
+    candidates: Sequence[Effect],
+    progress: Progress = quiet,
+) -> SearchState:
+    """Search, and again with further periods of what repeats where structure is left.
+
+    A screw and its encoder repeat with two periods. A second one is offered only beside a first,
+    and only where something is left.
+
+    Args:
+        task: What is diagnosed.
+        added: Effects that the user added.
+        candidates: Effects that may be found.
+        progress: Told of every stage.
+    """
+    offered = list(candidates)
+    state = _until_gross_errors_stay(task, added, offered, progress)
+    for number in range(2, PERIODS + 1):
+        before = {s.effect.name for s in state.effects}
+        repeat = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
+        first = [e for e in repeat if not isinstance(e, Again)]
+        further = [a for e in first if (a := again(e, number)) is not None]
+        if not further or not (state.left or state.nameless):
+            break
+        offered += further
+        other = _until_gross_errors_stay(task, added, offered, progress)
+        if not {a.name for a in further} & {s.effect.name for s in other.effects}:
+            break
+        state = other
+    return state
+
+
+def _until_gross_errors_stay(
     task: DiagnosisTask,
     added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
@@ -232,6 +268,7 @@ def _with_structure(
         at_start=tuple(at_start),
         left=tuple(left),
         nameless=tuple(nameless),
+        is_ended=search.budget.is_spent,
     )
 
 

@@ -11,7 +11,7 @@ left out of the fit.
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, count
 
 import numpy as np
 
@@ -45,8 +45,8 @@ OPENED = 8
 REOPENINGS = 3
 """Most turns of growing a set and of taking two members out of it."""
 
-MOST_EFFECTS = 6
-"""Largest number of effects that one run is asked for."""
+USUAL = 6
+"""Effects of a set from which a search is told of as nearly done; it goes on while more stand."""
 
 LISTED = 25
 """Candidates that are told of, best first."""
@@ -230,13 +230,13 @@ class Search:
         ranked = order[np.sort(first)]
         return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
 
-    def extensions(self, chosen: EffectSubset, count: int) -> list[EffectSubset]:
+    def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""
         out: list[EffectSubset] = []
         directions: list[Array] = []
         scores = self.scores(chosen)
-        for variant in self.ranking(chosen)[: 12 * count]:
-            if len(out) >= count or scores.evidence[variant] <= chosen.effects.evidence:
+        for variant in self.ranking(chosen)[: 12 * most]:
+            if len(out) >= most or scores.evidence[variant] <= chosen.effects.evidence:
                 break
             direction = self.explained(chosen, variant)
             if all(abs(direction @ d) < ALIKE for d in directions):
@@ -323,12 +323,12 @@ class Search:
     def grown(self, best: EffectSubset) -> EffectSubset:
         """A set with one member more and more, as long as every member stands."""
         carried = [best]
-        for size in range(len(best.members) + 1, MOST_EFFECTS + 1):
+        for size in count(len(best.members) + 1):
             if self.budget.is_spent:
                 break
             grown = [s for c in carried for s in self.extensions(c, CARRIED)]
             carried = self.kept(self.polished(s) for s in grown[: CARRIED * CARRIED])
-            self.progress(size / MOST_EFFECTS, "sets of effects")
+            self.progress(min(size / USUAL, 1.0), "sets of effects")
             better = [c for c in carried if c.effects.evidence > best.effects.evidence + WORTH]
             standing = next((c for c in better if self.stands(c)), None)
             if standing is None:

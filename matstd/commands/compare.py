@@ -10,6 +10,7 @@ from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_re
 
 if TYPE_CHECKING:
     from diagnosis.answer import Comparison
+    from diagnosis.files import SavedModel
 
 OURS = ("pictures/*.png", *REPORT_FILES)
 """Results that not every comparison leaves."""
@@ -43,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.progress import stages
     from report.words import remark_sentence, structure_words
     from twin.library import ordinary_model
-    from twin.units import UM
+    from twin.record import without_copies
 
     run, saved = read_inputs(
         args.run_file, args.model, args.effects, "so the agreement is optimistic"
@@ -56,6 +57,7 @@ def run(args: argparse.Namespace) -> int:
             model,
             saved.estimates if saved else None,
             lambda share, doing: show(doing, int(100 * share), 100),
+            saved.learnt(without_copies(run)) if saved else None,
         )
         write_comparison(
             folder / "comparison.json",
@@ -69,23 +71,33 @@ def run(args: argparse.Namespace) -> int:
 
             show("report", 0, 1)
             title = Path(args.run_file).name
-            write_compare_page(found, folder, title, np.random.default_rng(0))
+            told = saved.told if saved else None
+            write_compare_page(found, folder, title, np.random.default_rng(0), told)
             print_report(folder, printed_by)
-    _tell(args, found, saved.source.held_out_um * UM if saved else 0.0)
+    _tell(args, found, saved)
     return 0
 
 
-def _tell(args: argparse.Namespace, found: Comparison, promised: float) -> None:
-    """The comparison in words, and beside what the model promised (mm, 0 for nothing)."""
+def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None) -> None:
+    """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
     from report.geometry import fault_sentences, ladder_sentence, noted_lines
     from report.numbers import signed
-    from report.words import comparison_sentence, promise_sentence, region_words, remark_sentence
+    from report.words import (
+        comparison_sentence,
+        learnt_lines,
+        promise_sentence,
+        region_words,
+        remark_sentence,
+    )
     from twin.units import UM
 
     say(comparison_sentence(found), style="bold")
-    if promised > 0.0 and found.is_prediction:
-        say(promise_sentence(found, promised))
+    if found.learnt is not None and saved is not None:
+        for line in learnt_lines(found.learnt, saved.told):
+            say(line)
+    elif saved is not None and saved.source.held_out_um > 0.0:
+        say(promise_sentence(found, saved.source.held_out_um * UM))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")

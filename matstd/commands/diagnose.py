@@ -61,6 +61,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="do not look for effects of these kinds, or of these names",
     )
+    parser.add_argument(
+        "--pitch",
+        metavar="AXIS=MM",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="pitch of the screw or scale of an axis: errors that repeat are looked for at it and "
+        "at its whole fractions, and it is preferred among periods that look alike",
+    )
     parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
     add_pdf(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
@@ -72,11 +81,12 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from matstd.folder import results_folder
-    from matstd.inputs import read_inputs
+    from matstd.inputs import read_inputs, with_pitches
     from matstd.progress import stages
 
     same = "so that its estimates are made anew: no touch counts twice"
     run, saved = read_inputs(args.run_file, args.model, args.effects, same)
+    run = with_pitches(run, args.pitch)
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         result = _diagnosed(
@@ -132,7 +142,8 @@ def _write(
     made_with = f"material-standard {versions()['material-standard']}"
     promised = result.choice.best.error if fit is result.fit and result.choice else None
     name = Path(args.run_file).name
-    write_model(folder / "model.toml", fit, name, before, made_with, promised)
+    told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
+    write_model(folder / "model.toml", fit, name, before, made_with, promised, told)
     for i, plan in enumerate(result.plans, start=1):
         write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
 

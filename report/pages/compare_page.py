@@ -1,10 +1,12 @@
 """The page of a comparison: what a model leaves of a run, where, and what that varies with."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from diagnosis.answer import Comparison
+from diagnosis.fit import Reported
 from report.geometry import fault_sentences
 from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
@@ -17,7 +19,7 @@ from report.pages.residual_section import (
     setting,
 )
 from report.plots import draw_on_standard, is_spread
-from report.words import comparison_sentence, remark_sentence, structure_words
+from report.words import comparison_sentence, learnt_lines, remark_sentence, structure_words
 from twin.units import UM
 
 PAGE = "report.html"
@@ -25,7 +27,11 @@ PICTURES = "pictures"
 
 
 def write_compare_page(
-    found: Comparison, folder: str | Path, title: str, rng: np.random.Generator
+    found: Comparison,
+    folder: str | Path,
+    title: str,
+    rng: np.random.Generator,
+    told: Mapping[str, Sequence[Reported]] | None = None,
 ) -> Path:
     """Draw the pictures of a comparison and write its page, which stands alone.
 
@@ -34,6 +40,7 @@ def write_compare_page(
         folder: Where `report.html` and the folder `pictures` go.
         title: What was compared: the name of the run file.
         rng: Shuffles residuals, to show what chance looks like.
+        told: Numbers of effects as the model file keeps them, by name.
     """
     folder = Path(folder)
     place = folder / PICTURES
@@ -55,6 +62,7 @@ def write_compare_page(
         remarks=[remark_sentence(r) for r in found.remarks],
         where=region_rows(found.where),
         structure=[{"words": structure_words(s), "p": s.p_value} for s in found.structure],
+        learnt_lines=learnt_lines(found.learnt, told or {}) if found.learnt else [],
         um=UM,
         on_standard=on_standard,
         pictures=residual_pictures(place, "residual", found.fit, z),

@@ -10,7 +10,7 @@ import numpy as np
 from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import file_unit
 from report.geometry import fault_sentences
-from report.numbers import digits
+from report.numbers import digits, unit_words
 from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
@@ -36,7 +36,6 @@ from report.words import (
     remark_sentence,
     sizes,
     structure_words,
-    unit_words,
     values,
     verdict_sentence,
 )

@@ -8,6 +8,7 @@ from report.words.artefact_words import alternative_words, comparison_remarks, c
 from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
+    learnt_lines,
     microns,
     promise_sentence,
     region_words,
@@ -15,7 +16,6 @@ from report.words.diagnosis_words import (
     sizes,
     stated_noise,
     structure_words,
-    unit_words,
     values,
     verdict_sentence,
 )
@@ -37,6 +37,7 @@ __all__ = [
     "criterion_words",
     "design_lines",
     "dominant_words",
+    "learnt_lines",
     "microns",
     "ordering_words",
     "place_words",
@@ -50,7 +51,6 @@ __all__ = [
     "stated_noise",
     "structure_words",
     "study_words",
-    "unit_words",
     "unsampled",
     "values",
     "verdict_of_design",

@@ -1,31 +1,21 @@
 """What is said of a run: verdicts with numbers, sizes with uncertainties, what is left."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from diagnosis.answer import Comparison, Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Condition, Shape, Side, Structure
-from report.numbers import condition, digits, noun, span, with_uncertainty
+from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
 from report.words.remark_words import memory_words
 from twin.record import Run
 from twin.units import UM
 from twin.words import listed
 
-_UNITS = {
-    "um_per_m_K": "µm/(m K)",
-    "urad_per_K": "µrad/K",
-    "um_per_K": "µm/K",
-    "um_per_h": "µm/h",
-    "urad_per_h": "µrad/h",
-    "um_per_N": "µm/N",
-    "urad": "µrad",
-    "um": "µm",
-    "deg": "°",
-}
-"""Units as files spell them, with what a reader sees where that is another word."""
-
 _WORDS = {"tau": "time constant"}
+
+PERIODS_TOLD = 4
+"""Periods that look alike that are told one by one, the longest ones."""
 
 ALL_TOLD = 7
 """Numbers of an effect that are told one by one; of more only the size is."""
@@ -33,11 +23,6 @@ ALL_TOLD = 7
 
 _NUMBERS = {1: 3, 2: 2, 3: 1}
 """Numbers of an effect in the verdict by the number of effects; of more effects only the names."""
-
-
-def unit_words(unit: str) -> str:
-    """A unit as a reader sees it, from the spelling of files: `um_per_K` is µm/K."""
-    return _UNITS.get(unit, unit)
 
 
 def named_value(reported: Reported) -> tuple[str, str]:
@@ -68,7 +53,12 @@ def values(step: Step) -> list[tuple[str, str]]:
 
     Of an effect with many coefficients only what sums them up and its inner parameters are told.
     """
-    told = sorted(step.reported, key=lambda r: _ORDER.index(r.role))
+    return number_words(step.reported)
+
+
+def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
+    """The same of the numbers themselves, as a model file keeps them."""
+    told = sorted(reported, key=lambda r: _ORDER.index(r.role))
     if len(told) > ALL_TOLD:
         told = [r for r in told if r.role is not Role.COEFFICIENT]
     return [named_value(r) for r in told]
@@ -154,8 +144,40 @@ def _fall(diagnosis: Diagnosis) -> str:
     )
 
 
-def _added(step: Step, most: int) -> str:
-    """An effect with its leading numbers, and whether another name would do as well."""
+def _alike(step: Step, places: Sequence[float]) -> str:
+    """What a period cannot be told from, and where to measure to tell them apart.
+
+    Args:
+        step: With an effect whose period others look like; others have nothing said.
+        places: Readings of the axis that would tell them apart, mm; empty for none on offer.
+    """
+    alike = step.confusion.alike if step.confusion else None
+    if alike is None:
+        return ""
+    longest = [f"{p:.4g}" for p in alike.periods[:PERIODS_TOLD]]
+    more = len(alike.periods) - len(longest)
+    shorter = f" or one of {more} shorter ones" if more > 0 else ""
+    told = f"{', '.join(longest)} mm{shorter}" if more > 0 else f"{listed(longest, 'or')} mm"
+    at = f"with steps of {alike.step:g} mm" if alike.step else "with targets that stand so"
+    why = f" (named for the stated pitch of {alike.pitch:g} mm)" if alike.pitch else ""
+    where = listed([f"{p:g}" for p in places])
+    what = f": measure at {alike.axis} {where} mm" if places else ""
+    return f"{at} it could as well be {told}{why}{what}"
+
+
+def _places(diagnosis: Diagnosis, step: Step) -> list[float]:
+    """Three readings, far from one another, of the plan that tells the periods of an effect."""
+    alike = step.confusion.alike if step.confusion else None
+    name = step.effect.name if step.effect is not None else ""
+    for plan in diagnosis.plans if alike is not None else ():
+        if plan.periods_of == name and alike is not None:
+            readings = sorted({float(q) for q in plan.touches.reading(alike.axis)})
+            return sorted({readings[0], readings[len(readings) // 2], readings[-1]})
+    return []
+
+
+def _added(diagnosis: Diagnosis, step: Step, most: int) -> str:
+    """An effect with its leading numbers, and whether another one would do as well."""
     name = step.effect.name if step.effect is not None else ""
     rivals = step.confusion.rivals if step.confusion else ()
     told = [sizes(step, most)] if most and step.reported else []
@@ -163,7 +185,8 @@ def _added(step: Step, most: int) -> str:
         told.append(f"or {rivals[0].effect.name}")
     elif rivals:
         told.append(f"or one of {len(rivals)} effects that look the same")
-    return f"{name} ({', '.join(told)})" if told else name
+    clauses = [c for c in (", ".join(told), _alike(step, _places(diagnosis, step))) if c]
+    return f"{name} ({'; '.join(clauses)})" if clauses else name
 
 
 def _them(steps: Sequence[Step]) -> str:
@@ -174,8 +197,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     """The verdict in one plain sentence, with numbers and standard uncertainties."""
     most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
     steps = diagnosis.steps[1:]
-    named = [_added(s, most) for s in steps if s.is_named]
-    found = [_added(s, most) for s in steps if not s.is_named]
+    named = [_added(diagnosis, s, most) for s in steps if s.is_named]
+    found = [_added(diagnosis, s, most) for s in steps if not s.is_named]
     also = f" Added by name: {'; '.join(named)}." if named else ""
     if diagnosis.verdict is Verdict.MISSING:
         what = "one effect" if len(found) == 1 else f"{len(found)} effects"
@@ -234,6 +257,27 @@ def promise_sentence(found: Comparison, promised: float) -> str:
         f"That is {word} was promised: {microns(found.rms)} beside {microns(promised)}, the error "
         "of rows that the model had not seen when it was made."
     )
+
+
+def figures(fit: Fit) -> tuple[str, str, str]:
+    """Fitted and held-out error, µm, and chi-square per degree of freedom, as in all tables."""
+    return f"{fit.rms / UM:.3f}", f"{fit.test_rms / UM:.3f}", digits(fit.noise.chi2_ratio)
+
+
+def learnt_lines(fit: Fit, told: Mapping[str, Sequence[Reported]]) -> list[str]:
+    """What was told of the fit that a model was learnt by: its figures, then its effects.
+
+    Args:
+        fit: Made again from the model.
+        told: Numbers of effects as the model file keeps them, by name.
+    """
+    rms, held_out, chi2 = figures(fit)
+    first = (
+        f"As it was learnt from these very rows: fitted {rms} µm, held out {held_out} µm, "
+        f"chi-square per degree of freedom {chi2}."
+    )
+    sizes = {name: ", ".join(" ".join(v) for v in number_words(r)) for name, r in told.items()}
+    return [first, *(f"{name}: {words}" for name, words in sizes.items() if words)]
 
 
 def _memory(fit: Fit) -> str:

@@ -13,6 +13,7 @@ from diagnosis.remarks import (
     HeldOutInDoubt,
     NoiseMisstated,
     NoiseRemembers,
+    NotSignificant,
     OutliersKept,
     OutliersLeftOut,
     PriorWidened,
@@ -21,6 +22,7 @@ from diagnosis.remarks import (
     SearchEnded,
     WorseThanReplicates,
 )
+from report.numbers import unit_words, with_uncertainty
 from twin.units import UM
 
 LISTED = 20
@@ -140,6 +142,14 @@ def _search_ended(r: SearchEnded) -> str:
     )
 
 
+def _not_significant(r: NotSignificant) -> str:
+    size = with_uncertainty(r.value, r.u, unit_words(r.unit))
+    return (
+        f"{r.effect} was added by name, but its size is not significant: {r.quantity} {size}; "
+        "this run gives no reason to keep it"
+    )
+
+
 def _units(r: UnitMistake) -> str:
     usual = f"{_shown(r.measured)}, a machine like this shows {_shown(r.expected)}"
     stated = f"a touch is stated to be uncertain by {_shown(r.stated)}"
@@ -187,4 +197,5 @@ _SENTENCES: dict[type, Callable[[Any], str]] = {
     OutliersLeftOut: _outliers_left_out,
     PriorWidened: _prior_widened,
     SearchEnded: _search_ended,
+    NotSignificant: _not_significant,
 }

@@ -13,6 +13,7 @@ from diagnosis.fit.identification import fit_run
 from diagnosis.fit.memory import CLEARLY, Memory, likely_memory, whitener
 from diagnosis.remarks.run_remarks import remarks
 from report.words.diagnosis_words import verdict_sentence
+from report.words.remark_words import remark_sentence
 from twin.library.ordinary import ordinary_model
 from twin.model.model import columns
 from twin.units import UM
@@ -153,6 +154,6 @@ def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path) -
     assert memory is not None
     told = f"correlation {memory.correlation:.2f}"
     assert f"and remembers ({told}" in verdict_sentence(result)
-    assert any(f"the noise remembers, {told}" in line for line in remarks(result.fit))
+    assert any(f"the noise remembers ({told}" in remark_sentence(r) for r in remarks(result.fit))
     write_model(tmp_path / "model.toml", result.fit, "run.csv")
     assert "held_out_um" in (tmp_path / "model.toml").read_text(encoding="utf-8")

@@ -98,7 +98,7 @@ def test_both_time_constants_of_a_body_are_found_within_what_is_stated() -> None
     found = bodies(task, (), gross)
     names = {s.effect.name for s in found}
     assert {"thermal-lag(EZZ,bed)", "thermal-lag(EZZ,bed)#2", "thermal-static(EZZ,frame)"} <= names
-    told = sizes(task, found, gross, ResidualSpace.of(task.fit((), gross)))
+    told, _ = sizes(task, found, gross, ResidualSpace.of(task.fit((), gross)))
     lags = sorted((r.value, r.u) for reported in told for r in reported if r.name == "tau_min")
     for (value, u), tau in zip(lags, TAUS, strict=True):
         assert abs(value - tau / MINUTE) < 3.0 * u
@@ -292,7 +292,7 @@ def test_a_time_constant_at_the_end_of_its_scan_is_a_bound() -> None:
     task = task_of(replace(quick, deviation=quick.deviation + noise))
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     lag_frame = parse_effect("thermal-lag(EZZ,frame)", run.touches.chain).tuned(120.0)
-    (told,) = sizes(
+    (told,), _ = sizes(
         task, [ScaledEffect(lag_frame, 4.0)], gross, ResidualSpace.of(task.fit((), gross))
     )
     tau = next(r for r in told if r.name == "tau_min")
@@ -308,7 +308,9 @@ def test_a_slip_is_as_large_as_the_direction_that_was_probed_says() -> None:
     task = task_of(replace(run, deviation=step + noise))
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     slip = parse_effect("artefact-slip", run.touches.chain).tuned(7000.0)
-    (told,) = sizes(task, [ScaledEffect(slip, 4.0)], gross, ResidualSpace.of(task.fit((), gross)))
+    (told,), _ = sizes(
+        task, [ScaledEffect(slip, 4.0)], gross, ResidualSpace.of(task.fit((), gross))
+    )
     size = next(r for r in told if r.name.startswith("amplitude"))
     assert abs(size.value - 9.0) < 3.0 * size.u
     assert size.u < 1.0

@@ -6,6 +6,7 @@ the search and the reports know it from then on.
 
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
+from twin.effects.periodic import usual_distance
 from twin.effects.probe import ProbeRadius, normal_in_tool
 from twin.effects.second_time import MARK, Again, again
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
@@ -23,4 +24,5 @@ __all__ = [
     "component",
     "normal_in_tool",
     "setup_errors",
+    "usual_distance",
 ]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from twin.frames import Array
 from twin.machine import Chain, Family, Symbol
 from twin.model import (
     Inner,
@@ -21,7 +22,11 @@ from twin.record import Touches
 from twin.units import UM, URAD
 
 SHORTEST, LONGEST = 1.0, 50.0
-"""Periods that are scanned on a linear axis, mm."""
+"""Periods that are scanned on a linear axis, mm, if nothing else is known; closer readings are
+scanned down to what they resolve."""
+FRACTIONS = 4
+"""Whole fractions of a stated pitch that are scanned: starts of the thread, balls of the nut, lines
+of the encoder on the screw."""
 OVERSAMPLING = 3.0
 """Scanned frequencies per resolvable one; the nearest keeps 95 % of a sine between two of them."""
 HIGHEST_HARMONIC = 12
@@ -65,11 +70,9 @@ class Periodic:
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The period, evenly spaced in frequency, fine enough for the travel that was covered."""
-        travel = max(float(np.ptp(touches.reading(self.symbol.link))), LONGEST)
-        low, high = 1.0 / min(LONGEST, travel / 2.0), 1.0 / SHORTEST
-        count = int(np.ceil(OVERSAMPLING * travel * (high - low))) + 1
-        grid = 1.0 / np.linspace(high, low, count)
-        return (Inner("period", "mm", grid, acts="with a period"),)
+        axis = self.symbol.link
+        grid = scanned_periods(touches.reading(axis), touches.chain.link(axis).pitch)
+        return (Inner("period", "mm", grid, acts="with a period", over=axis),)
 
     def tuned(self, *values: float) -> "Periodic":
         """With this period, mm."""
@@ -132,6 +135,46 @@ class Harmonic:
     def tuning(self) -> Mapping[str, float]:
         """The harmonic."""
         return {"harmonic": self.harmonic}
+
+
+def scanned_periods(q: Array, pitch: float | None = None) -> Array:
+    """Periods that some readings can show, ascending, (G,), mm.
+
+    From half the travel (and `LONGEST`) down to `SHORTEST`, or to twice the distance of the
+    readings where they stand closer; and around whole fractions of a stated pitch beyond that.
+    Frequencies 1/p are evenly spaced.
+
+    Args:
+        q: Readings of the axis, (N,), mm.
+        pitch: As stated, mm; None where nobody said.
+    """
+    travel = float(np.ptp(q))
+    shortest = min(SHORTEST, 2.0 * usual_distance(q)) if travel > 0.0 else SHORTEST
+    longest = max(min(LONGEST, 0.5 * travel), 2.0 * shortest)
+    low, high = 1.0 / longest, 1.0 / shortest
+    step = 1.0 / (OVERSAMPLING * max(travel, longest))
+    frequencies = np.linspace(low, high, int(np.ceil((high - low) / step)) + 1)
+    for k in range(1, FRACTIONS + 1) if pitch else ():
+        around = k / pitch + step * np.arange(-1.0, 2.0) if pitch else np.zeros(0)
+        beyond = (around < low) | (around > high + step)
+        if beyond.all() and around[0] > 0.5 / max(travel, longest):
+            frequencies = np.concatenate([frequencies, around])
+    return np.asarray(1.0 / np.unique(frequencies)[::-1])
+
+
+def usual_distance(q: Array) -> float:
+    """Distance between neighbouring readings that half of the travel is made of, mm.
+
+    Readings that nearly repeat, such as targets approached several times, count as one: the gaps
+    between them make up no travel.
+
+    Example:
+        >>> usual_distance(np.array([0.0, 6.0, 12.0, 12.001, 18.0, 0.002]))
+        5.999
+    """
+    gaps = np.sort(np.diff(np.unique(q)))
+    covered = np.cumsum(gaps)
+    return float(round(gaps[np.searchsorted(covered, 0.5 * covered[-1])], 9))
 
 
 def _sine_and_cosine(symbol: Symbol) -> Sequence[Parameter]:

@@ -20,18 +20,19 @@ Range = Annotated[tuple[Coordinate, Coordinate], Strict(False)]
 
 
 class AxisTable(Table):
-    """`[axis.X]`: range in mm or degrees, point in mm, direction."""
+    """`[axis.X]`: range in mm or degrees, point in mm, direction, pitch in mm."""
 
     range: Range | None = None
     point: Vector | None = None
     direction: Vector | None = None
+    pitch: float | None = None
 
     def axis(self, name: str) -> Axis:
         """What the table says of the axis of that name, base units."""
         factor = DEG if name[:1] in "ABC" else 1.0
         low, high = self.range or (0.0, 0.0)
         travel = None if self.range is None else (low * factor, high * factor)
-        return Axis(travel, self.point, self.direction)
+        return Axis(travel, self.point, self.direction, self.pitch)
 
 
 class WorkpieceTable(Table):

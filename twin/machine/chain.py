@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -44,6 +44,8 @@ class Link:
             every axis at zero, (3,), mm.
         range: Smallest and largest reading, mm or rad.
         programmed: False for a bracketed spindle, whose angle is not programmed.
+        pitch: Of the screw or scale of a linear axis, mm, as its owner states it; None where nobody
+            said. Knowledge of the machine, no part of its kinematics.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Link:
     point: Array
     range: tuple[float, float]
     programmed: bool = True
+    pitch: float | None = None
 
     @property
     def own(self) -> int:
@@ -82,6 +85,7 @@ class Axis:
     range: tuple[float, float] | None = None
     point: tuple[float, float, float] | None = None
     direction: tuple[float, float, float] | None = None
+    pitch: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,6 +178,19 @@ class Chain:
         if symbol is None or symbol not in self.symbols:
             raise UnknownSymbol(name, (s.name for s in self.symbols))
         return symbol
+
+    def with_pitch(self, name: str, pitch: float) -> "Chain":
+        """The same machine with the pitch of a linear axis stated, mm.
+
+        Raises:
+            UnknownAxis: The machine has no such axis.
+            BadValue: The axis is not linear, or the pitch is no length.
+        """
+        at = self.link_index(name)
+        checked_pitch(self.links[at].kind, name, pitch)
+        links = list(self.links)
+        links[at] = replace(links[at], pitch=pitch)
+        return replace(self, links=tuple(links))
 
     def difference(self, other: "Chain") -> tuple[str, str, str] | None:
         """The first thing in which two machines differ, None if nothing.
@@ -298,6 +315,16 @@ def _check_directions(linear: list[Link]) -> None:
         raise BadValue("axis", f"directions of {names} that lie {where}", "directions that span")
 
 
+def checked_pitch(kind: Kind, name: str, pitch: float | None) -> None:
+    """Refuse a pitch that is no length, or of an axis that turns; raises BadValue."""
+    if pitch is None:
+        return
+    if kind != "linear":
+        raise BadValue(f"axis.{name}.pitch", pitch, "none: only a linear axis has a pitch in mm")
+    if not 0.0 < pitch < np.inf:
+        raise BadValue(f"axis.{name}.pitch", pitch, "a length in mm, more than nothing")
+
+
 def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
     """Link of one axis with its defaults filled in."""
     kind: Kind = "linear" if name[0] in "XYZUVW" else "rotary"
@@ -314,4 +341,5 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
     if not length > SHORTEST:
         raise BadValue(f"axis.{name}.direction", f"a vector of length {length:g}", "a unit vector")
     point = np.array(axis.point or (0.0, 0.0, 0.0), dtype=float)
-    return Link(name, kind, primed, direction / length, point, reach, programmed)
+    checked_pitch(kind, name, axis.pitch)
+    return Link(name, kind, primed, direction / length, point, reach, programmed, axis.pitch)

@@ -105,6 +105,8 @@ class Inner(NamedTuple):
         acts: "smoothly", such as a time constant or a width; "with a period", the reading in which
             the effect repeats; "at an instant", a time at which something jumps, so that every
             instant between two touches is as good as another.
+        over: Of a period the axis over whose reading it repeats; empty where it repeats over
+            something else.
     """
 
     name: str
@@ -112,6 +114,7 @@ class Inner(NamedTuple):
     grid: Array
     continuous: bool = True
     acts: Acts = "smoothly"
+    over: str = ""
 
 
 @runtime_checkable

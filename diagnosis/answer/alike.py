@@ -1,0 +1,180 @@
+"""Periods that the sampling cannot tell apart.
+
+At targets every s mm a sine of period p reads as one of period p' wherever ``1/p' = k/s ± 1/p``.
+Nothing is assumed of the targets here: the evidence is scanned over all periods, and whatever else
+explains the run as well is told. Which one is named says nothing, unless a pitch was stated.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.evidence import (
+    EffectSet,
+    Grid,
+    ScaledEffect,
+    period_of,
+    score_all,
+    signatures,
+    strongest,
+)
+from diagnosis.search import refined
+from twin.effects import usual_distance
+from twin.frames import Array
+from twin.model import Effect, Inner, Tunable
+
+ALIKE = float(np.log(100.0))
+"""Log odds below which two periods count as not told apart."""
+
+WINDOW = 0.2
+"""Share of the square explained by the best period of the scan by which another may fall behind and
+still be refined: between two scanned ones up to a tenth is lost."""
+
+REFINED = 60
+"""Most periods that are refined."""
+
+LEVELS = 6
+"""Scans, each four times finer: alike are periods that agree to a part of their uncertainty."""
+
+EVEN = 0.02
+"""Largest distance of a target from an even grid, in steps of it."""
+
+FRACTIONS = 8
+"""Whole fractions of a stated pitch that are preferred to other periods."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Alike:
+    """A periodic effect at every other period that explains the run as well.
+
+    Attributes:
+        axis: Over whose reading it repeats.
+        others: The effect at other periods, longest first, with their sizes.
+        step: Distance of the targets, mm, where they stand evenly; None where they do not.
+        pitch: Stated pitch of the axis, where the named period is a whole fraction of it; None
+            where nothing speaks for the named one.
+    """
+
+    axis: str
+    others: tuple[ScaledEffect, ...]
+    step: float | None
+    pitch: float | None
+
+    @property
+    def periods(self) -> tuple[float, ...]:
+        """The other periods, longest first, mm."""
+        return tuple(period_value(o.effect) for o in self.others)
+
+    def beside(self, told: ScaledEffect, named: ScaledEffect) -> "Alike":
+        """The same where another period than the one to be named is told after all."""
+        own = period_value(told.effect)
+        if own == period_value(named.effect):
+            return self
+        others = [o for o in self.others if abs(period_value(o.effect) - own) > 1e-3 * own]
+        return replace(self, others=(named, *others), pitch=None)
+
+
+def periods_alike(
+    found: ScaledEffect, others: Sequence[ScaledEffect], base: EffectSet
+) -> tuple[ScaledEffect, Alike | None]:
+    """The period to be named of a found effect, and those that the run cannot tell from it.
+
+    A whole fraction of a stated pitch is named before others, the longest one where there are
+    several; without one it is the longest of all.
+
+    Args:
+        found: The effect, refined.
+        others: The other effects of the set.
+        base: The set without it.
+
+    Returns:
+        The effect as it was found, and None, where it has no period or no other is like it.
+    """
+    complement = base.complement
+    inner = period_of(found.effect, complement)
+    if inner is None:
+        return found, None
+    assert isinstance(found.effect, Tunable)
+    best = _best(found.effect, inner, base)
+    if len(best) < 2:
+        return found, None
+    link = complement.touches.chain.link(inner.over)
+    taken = [period_value(o.effect) for o in others if period_of(o.effect, complement) is not None]
+    best = [b for b in best if all(abs(period_value(b.effect) - t) > 1e-6 * t for t in taken)]
+    fraction = [_fraction(period_value(b.effect), link.pitch, inner) for b in best]
+    named = int(np.argmin(fraction)) if best else -1
+    if named < 0 or len(best) < 2:
+        return found, None
+    is_stated = fraction[named] <= FRACTIONS
+    q = complement.touches.reading(inner.over)[complement.used]
+    rest = tuple(b for i, b in enumerate(best) if i != named)
+    pitch = link.pitch if is_stated else None
+    return best[named], Alike(inner.over, rest, even_step(q), pitch)
+
+
+def _best(effect: Tunable, inner: Inner, base: EffectSet) -> list[ScaledEffect]:
+    """The effect at every period that has the most evidence, or nearly, longest first."""
+    complement = base.complement
+    periods = strongest(effect, inner, complement, base.residual)
+    variants = tuple(effect.tuned(float(p)) for p in periods)
+    scores = score_all(base, signatures(complement, [Grid(effect, variants, len(variants))], 1))
+    drop = scores.free_drop
+    padded = np.concatenate([[-np.inf], drop, [-np.inf]])
+    is_peak = (drop >= padded[:-2]) & (drop >= padded[2:]) & (drop > (1.0 - WINDOW) * drop.max())
+    peaks = np.flatnonzero(is_peak)
+    peaks = peaks[np.argsort(-drop[peaks], kind="stable")][:REFINED]
+    sized = [refined(base, variants[i], LEVELS) for i in peaks]
+    top = max((e for _, e in sized), default=-np.inf)
+    close = [s for s, e in sized if top - e < ALIKE]
+    out: list[ScaledEffect] = []
+    for s in sorted(close, key=lambda s: -period_value(s.effect)):
+        # two peaks of a scan may climb to one and the same period
+        if not out or _apart(out[-1].effect, s.effect, inner):
+            out.append(s)
+    return out
+
+
+def _apart(first: Effect, second: Effect, inner: Inner) -> bool:
+    """Whether two periods are farther apart than half of what the travel tells apart."""
+    difference = 1.0 / period_value(first) - 1.0 / period_value(second)
+    return abs(difference) > 0.5 * _frequency_step(inner)
+
+
+def _frequency_step(inner: Inner) -> float:
+    """Distance of the scanned frequencies, 1/mm."""
+    return float(np.median(np.diff(1.0 / np.asarray(inner.grid)[::-1])))
+
+
+def _fraction(period: float, pitch: float | None, inner: Inner) -> float:
+    """Which whole fraction of a stated pitch a period is; infinite for none."""
+    if pitch is None:
+        return np.inf
+    k = round(pitch / period)
+    is_fraction = 1 <= k <= FRACTIONS and abs(1.0 / period - k / pitch) < _frequency_step(inner)
+    return float(k) if is_fraction else np.inf
+
+
+def period_value(effect: Effect) -> float:
+    """Period of an effect that has no other inner parameter, mm."""
+    assert isinstance(effect, Tunable)
+    return float(next(iter(effect.tuning.values())))
+
+
+def even_step(q: Array) -> float | None:
+    """Distance of targets that stand evenly, mm; None where they do not.
+
+    Example:
+        >>> even_step(np.array([0.0, 6.0, 12.001, 30.0, 6.002]))
+        6.0
+        >>> even_step(np.array([0.0, 6.0, 13.0, 30.0])) is None
+        True
+    """
+    step = usual_distance(q) if np.ptp(q) > 0.0 else 0.0
+    if step == 0.0:
+        return None
+    first = float(q.min())
+    count = np.round((q - first) / step)
+    step = float(count @ (q - first) / max(float(count @ count), 1.0))
+    off = np.abs((q - first) / step - np.round((q - first) / step))
+    return float(f"{step:.4g}") if off.max() < EVEN else None

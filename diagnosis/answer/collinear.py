@@ -1,0 +1,77 @@
+"""Effects that a user adds together and that these touches cannot tell apart, or tell at all."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.answer.verdict import Step
+from diagnosis.evidence import ResidualSpace, ScaledEffect
+from diagnosis.fit import Reported, Role
+from diagnosis.remarks import NotSignificant
+from twin.errors import DesignError
+from twin.frames import Array
+
+SAME = 1e-4
+"""Share of the square of a signature that others must leave of it: with less its size is a hundred
+times as uncertain as it would be without them, and says nothing."""
+
+SIGNIFICANT = 2.0
+"""Standard uncertainties from which a size is significant (GUM, k = 2)."""
+
+
+def left_by(C: Array, others: Array) -> float:
+    """Share of the square of some columns (N, K) that other columns (N, L) cannot imitate."""
+    whole = float((C**2).sum())
+    if not others.shape[1] or whole == 0.0:
+        return 1.0
+    fitted = others @ np.linalg.lstsq(others, C, rcond=None)[0]
+    return float(((C - fitted) ** 2).sum()) / whole
+
+
+def check_distinct(complement: ResidualSpace, added: Sequence[ScaledEffect]) -> None:
+    """Refuse effects of which a run knows no more than a sum.
+
+    Args:
+        complement: What the starting model leaves.
+        added: Effects that the user added, with their inner parameters.
+
+    Raises:
+        DesignError: Two names, and how much of the one the other imitates; or one name and the
+            others, where only several together imitate it.
+    """
+    columns = [complement.project(complement.columns([s.effect])) for s in added]
+    for i, C in enumerate(columns):
+        earlier = columns[:i]
+        alone = [left_by(C, other) for other in earlier]
+        if min(alone, default=1.0) < SAME:
+            _refuse(added[i], [added[int(np.argmin(alone))]], min(alone))
+        if earlier and (left := left_by(C, np.hstack(earlier))) < SAME:
+            _refuse(added[i], added[:i], left)
+
+
+def _refuse(one: ScaledEffect, others: Sequence[ScaledEffect], left: float) -> None:
+    names = " and ".join(s.effect.name for s in others)
+    verb = "imitates" if len(others) == 1 else "together imitate"
+    raise DesignError(
+        f"{one.effect.name} beside {names}: at these touches the latter {verb} all but "
+        f"{100.0 * left:.2g} % of it, so that only a sum of their sizes is known; expected the one "
+        "without the other"
+    )
+
+
+def not_significant(steps: Sequence[Step]) -> tuple[NotSignificant, ...]:
+    """Effects that were added by name and whose size is within its own uncertainty."""
+    out = []
+    for step in steps:
+        size = _size(step.reported)
+        if step.effect is None or not step.is_named or size is None or size.u is None:
+            continue
+        if abs(size.value) < SIGNIFICANT * size.u:
+            name = step.effect.name
+            out.append(NotSignificant(name, size.quantity, size.value, size.u, size.unit))
+    return tuple(out)
+
+
+def _size(numbers: Sequence[Reported]) -> Reported | None:
+    """The number that says how large an effect is."""
+    return next((n for n in numbers if n.role is Role.SIZE), None)

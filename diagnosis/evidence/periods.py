@@ -1,0 +1,105 @@
+"""Which periods of a long scan are worth a signature: the spectrum of a residual over an axis.
+
+The finer the readings, the more periods they resolve: ten thousand readings over 100 mm tell some
+15 000 apart. A signature of each would fill the memory, while the spectrum of the residual, weighed
+by what the effect does to every touch, costs one fast Fourier transform and ranks them alike. Short
+scans are kept whole.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from diagnosis.evidence.effect_signatures import (
+    GRID_MOST,
+    Grid,
+    ResidualSpace,
+    tuned_variants,
+)
+from twin.frames import Array
+from twin.model import Effect, Inner, Tunable, columns
+
+KEPT = 300
+"""Periods of a long scan that get a signature."""
+
+FINE = 8.0
+"""Bins of a reading in the shortest period: within a bin a sine turns by 45 degrees and keeps 97 %
+of its size."""
+
+NEIGHBOURS = 101
+"""Scanned periods whose median is the background of a line of the spectrum."""
+
+ENDLESS = 1e9
+"""A period in mm over which a cosine stays 1."""
+
+
+def period_of(effect: Effect, complement: ResidualSpace) -> Inner | None:
+    """The inner parameter of an effect that repeats over the reading of an axis, if that is all."""
+    inner = effect.inner(complement.touches) if isinstance(effect, Tunable) else ()
+    return inner[0] if len(inner) == 1 and inner[0].over else None
+
+
+def scanned_grids(candidates: Sequence[Effect], complement: ResidualSpace) -> list[Grid]:
+    """Candidates at every point of their grids; of long scans of a period at the strongest ones.
+
+    Args:
+        candidates: Effects that are not in the model.
+        complement: What the fitted model leaves.
+    """
+    out = []
+    for effect in candidates:
+        inner = period_of(effect, complement)
+        if inner is None or len(inner.grid) <= GRID_MOST:
+            variants = tuple(tuned_variants(effect, complement.touches))
+            out.append(Grid(effect, variants, len(variants)))
+            continue
+        assert isinstance(effect, Tunable)
+        periods = strongest(effect, inner, complement, complement.residual)
+        kept = tuple(effect.tuned(float(p)) for p in periods)
+        out.append(Grid(effect, kept, len(inner.grid)))
+    return out
+
+
+def strongest(effect: Tunable, inner: Inner, complement: ResidualSpace, residual: Array) -> Array:
+    """Periods at which a residual over an axis is strongest, ascending, at most `KEPT`; mm.
+
+    Half are the strongest of all, half those that stand out most from their neighbours: a slow
+    residual hides a small wave in the power that it spreads.
+
+    Args:
+        effect: That repeats.
+        inner: Its period, with the periods to choose from.
+        complement: Which touches count, and their uncertainty.
+        residual: Whitened, data rows first, (N + ...,).
+    """
+    grid = np.asarray(inner.grid, dtype=float)
+    if len(grid) <= KEPT:
+        return grid
+    q = complement.touches.reading(inner.over)[complement.used]
+    # at an endless period the cosine is what the effect does to every touch per unit
+    C = columns([effect.tuned(ENDLESS)], complement.touches)[complement.used]
+    weight = C[:, int(np.argmax((C**2).sum(axis=0)))] / complement.u
+    power = spectrum(q, weight * residual[: len(q)], 1.0 / grid)
+    background = median_filter(power, NEIGHBOURS, mode="nearest")
+    outstanding = power / np.maximum(background, 1e-12 * power.max() + 1e-300)
+    best = {*np.argsort(-power)[: KEPT // 2], *np.argsort(-outstanding)[: KEPT // 2]}
+    return grid[sorted(int(i) for i in best)]
+
+
+def spectrum(q: Array, values: Array, frequencies: Array) -> Array:
+    """Power ``|sum_i v_i exp(-2 pi i f q_i)|^2`` at some frequencies, (F,), to a few per cent.
+
+    Args:
+        q: Readings in any order, (N,), mm.
+        values: At every reading, (N,).
+        frequencies: 1/mm, (F,).
+    """
+    width = 1.0 / (FINE * float(frequencies.max()))
+    bins = np.round((q - q.min()) / width).astype(np.int64)
+    binned = np.bincount(bins, weights=values)
+    # padded fourfold: a line that lies between two bins of the transform keeps 97 % of its size
+    size = 1 << int(np.ceil(np.log2(4 * len(binned))))
+    power = np.abs(np.fft.rfft(binned, size)) ** 2
+    at = np.round(frequencies * width * size).astype(np.int64)
+    return np.asarray(power[np.minimum(at, len(power) - 1)])

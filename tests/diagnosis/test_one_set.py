@@ -1,0 +1,251 @@
+"""One set: tested, told and saved; every figure can be had again from the saved model."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from simulator_case import simulate_case
+
+from diagnosis.answer import one_set
+from diagnosis.answer.ambiguity import ConfusionClass, Rival
+from diagnosis.answer.collinear import left_by
+from diagnosis.answer.one_set import placed, told_set
+from diagnosis.choice.following import ways_tried
+from diagnosis.choice.prediction import SETS, Choice, Way
+from diagnosis.files.diagnosis_file import choice_table
+from diagnosis.files.model_file import read_model
+from diagnosis.files.model_writer import write_model
+from diagnosis.fit.identification import fit_run
+from diagnosis.fit.learnt_fit import Learnt
+from diagnosis.fit.memory import Memory
+from diagnosis.fit.prior import Prior
+from diagnosis.remarks.run_remarks import SearchEnded
+from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
+from matstd.cli import main
+from report.words.diagnosis_words import figures, number_words
+from twin.library.catalogue import parse_effect
+from twin.library.ordinary import ordinary_model
+from twin.model.model import Model
+from twin.record.copies import without_copies
+from twin.units import UM
+
+LAG = (5, "hsm600u", ("thermal-lag(EXC)",))
+COLLINEAR = ("thermal-static(EXX,ambient)", "thermal-static(EXB,ambient)")
+TWO = (12, "hmc1995", ("backlash(Y)", "stylus-bending"))
+
+
+def searched(case, key, names):
+    """Result of a search among some effects of a simulated run."""
+    run = case(*key).run
+    start = ordinary_model(run.touches.chain)
+    task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
+    library = [parse_effect(name, run.touches.chain) for name in names]
+    return task, search_until_stable(task, (), library)
+
+
+# --- the set that is told is the set that was tested ------------------------------------------
+
+
+def test_refined_effects_are_tested_as_they_are_told(case) -> None:
+    _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
+    tested = told_set(final)
+    (told,) = tested.state.effects
+    (member,) = tested.state.chosen.members
+    assert member.effect is told.effect
+    grid = [p for inner in told.effect.inner(case(*LAG).run.touches) for p in inner.grid]
+    assert all(abs(told.effect.tuning["tau"] / g - 1.0) > 1e-6 for g in grid)  # off the grid
+    test = tested.tests["thermal-lag(EXC)"]
+    assert test.stands
+    without = tested.state.search.evaluate(())
+    gained = tested.state.chosen.effects.evidence - without.effects.evidence
+    assert test.evidence == pytest.approx(gained)
+
+
+def test_a_name_that_does_not_stand_is_not_told(case, monkeypatch) -> None:
+    """The class offers a head that explains nothing: the tested member keeps its name."""
+    _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
+    other = replace(final.effects[0], effect=parse_effect("backlash(X)", final.base.model.chain))
+
+    def headed(pool, found, others, fixed=None):
+        return ConfusionClass(other, (), ())
+
+    monkeypatch.setattr(one_set, "confusion_class", headed)
+    tested = told_set(final)
+    assert [s.effect.name for s in tested.state.effects] == ["thermal-lag(EXC)"]
+    assert [c.effect.name for c in tested.classes] == ["thermal-lag(EXC)"]
+    assert [r.effect.name for r in tested.classes[0].rivals] == ["backlash(X)"]
+    assert tested.tests["thermal-lag(EXC)"].stands
+
+
+def test_no_effect_stands_twice_when_two_classes_want_one_head(case, monkeypatch) -> None:
+    names = ["backlash(Y)", "stylus-bending", "probe-radius"]
+    _, final = searched(case, TWO, names)
+    assert len(final.effects) == 2
+    wanted = final.effects[0]
+
+    def headed(pool, found, others, fixed=None):
+        assert found.effect.name not in {o.effect.name for o in others}
+        return ConfusionClass(found, (Rival(wanted, 0.0, 1.0),), ())
+
+    monkeypatch.setattr(one_set, "confusion_class", headed)
+    tested = told_set(final)
+    told = [s.effect.name for s in tested.state.effects]
+    assert sorted(told) == sorted(set(told)) == ["backlash(Y)", "stylus-bending"]
+    rivals = {r.effect.name for c in tested.classes for r in c.rivals}
+    assert not rivals & set(told)
+
+
+def test_a_set_put_back_is_what_it_was(case) -> None:
+    _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
+    before = final.search.pool.C.copy()
+    grid = tuple(
+        replace(s, effect=m.effect)
+        for s, m in zip(final.effects, final.chosen.members, strict=True)
+    )
+    moved = placed(final, final.effects)
+    assert np.abs(moved.search.pool.C - before).max() > 0.0
+    again = placed(moved, grid)
+    assert pytest.approx(before) == again.search.pool.C
+
+
+# --- figures made again from what is kept -----------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "memory",
+    [None, Memory(0.4), Memory(0.6, is_filtered=False)],
+    ids=["white", "remembers", "counts for less"],
+)
+@pytest.mark.parametrize("held_out", [False, True], ids=["all rows", "some held out"])
+def test_a_fit_is_made_again(case, memory, held_out) -> None:
+    run = without_copies(case(*LAG).run)
+    if held_out:
+        split = np.where(np.arange(len(run)) % 5 == 0, "test", "train")
+        run = replace(run, split=split)
+    effect = parse_effect("thermal-lag(EXC)", run.touches.chain)
+    start = ordinary_model(run.touches.chain)
+    model = Model(start.chain, (*start.effects, effect.tuned(1800.0)))
+    fit = fit_run(run, model, memory=memory)
+    again = Learnt.of(fit).again(run, model)
+    assert again.residual == pytest.approx(fit.residual, abs=1e-9)
+    assert again.solution.leverage == pytest.approx(fit.solution.leverage, abs=1e-6)
+    assert again.rms == pytest.approx(fit.rms, rel=1e-7)
+    assert again.test_rms == pytest.approx(fit.test_rms, rel=1e-7)
+    assert again.noise.chi2_ratio == pytest.approx(fit.noise.chi2_ratio, rel=1e-7)
+    assert again.covariance == pytest.approx(fit.covariance, rel=1e-4, abs=1e-14)
+
+
+def test_uncertain_inner_parameters_widen_what_is_saved(case, tmp_path) -> None:
+    run = without_copies(case(*LAG).run)
+    effect = parse_effect("thermal-lag(EXC)", run.touches.chain)
+    start = ordinary_model(run.touches.chain)
+    model = Model(start.chain, (*start.effects, effect.tuned(1800.0)))
+    fit = fit_run(run, model)
+    root = Learnt.of(fit).from_inner
+    count = len(model.parameters)
+    assert root.shape == (count, 1)
+    write_model(tmp_path / "model.toml", fit, "run.csv")
+    saved = read_model(tmp_path / "model.toml")
+    whole = saved.estimates.root @ saved.estimates.root.T
+    held = fit.covariance[:count, :count]
+    assert np.diag(whole - held).min() > -1e-12
+    assert np.diag(whole)[-1] > np.diag(held)[-1]
+    learnt = saved.learnt(run)
+    assert learnt is not None
+    assert figures(learnt.again(run, saved.model)) == figures(fit)
+    assert saved.learnt(replace(run, deviation=run.deviation + 1e-3)) is None
+
+
+# --- the console and the page, and the model file -----------------------------------------------
+
+
+def flat(text):
+    return " ".join(text.split())
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A run with a hidden warming of the column, and its machine."""
+    place = tmp_path_factory.mktemp("run")
+    run, machine, _ = simulate_case(np.random.default_rng(5), LAG[1], LAG[2], with_alike=False)
+    (place / "run.csv").write_text(run, encoding="utf-8")
+    (place / "machine.toml").write_text(machine, encoding="utf-8")
+    return place
+
+
+@pytest.mark.parametrize("option", [["--auto"], ["--add", "backlash(X)"]], ids=["auto", "added"])
+def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, option) -> None:
+    run = str(folder / "run.csv")
+    narrow = ["--only", "thermal-lag(EXC)", "backlash"]
+    told = [run, *option, *narrow, "--no-report", "-o", str(tmp_path / "d")]
+    assert main(["diagnose", *told]) == 0
+    capsys.readouterr()
+    model = str(tmp_path / "d" / "model.toml")
+    assert main(["compare", run, "--model", model, "-o", str(tmp_path / "c")]) == 0
+    shown = flat(capsys.readouterr().out)
+    diagnosis = json.loads((tmp_path / "d" / "diagnosis.json").read_text())
+    comparison = json.loads((tmp_path / "c" / "comparison.json").read_text())
+    step = diagnosis["steps"][-1 if option == ["--auto"] else 1]
+    assert step["effect"] == (option[1] if option[1:] else "thermal-lag(EXC)")
+    keys = ("rms_um", "test_rms_um", "chi2_ratio")
+    assert comparison["learnt"] == {key: step[key] for key in keys}
+    page = flat((tmp_path / "c" / "report.html").read_text())
+    for text in (shown, page.replace("\u00a0", " ").replace("&nbsp;", " ")):
+        assert f"fitted {step['rms_um']:.3f} µm, held out {step['test_rms_um']:.3f} µm" in text
+    saved = read_model(model)
+    numbers = saved.told[step["effect"]]
+    assert {n.name: n.value for n in numbers} == pytest.approx(step["parameters"], rel=1e-5)
+    for words in number_words(numbers):
+        assert " ".join(words) in shown
+
+
+# --- additions that these touches cannot tell apart ---------------------------------------------
+
+
+def test_additions_that_are_one_to_these_touches_are_refused_by_name(
+    folder, tmp_path, capsys
+) -> None:
+    """A shift of either axis with the air: nothing here moves between them."""
+    run = str(folder / "run.csv")
+    asked = ["--add", *COLLINEAR, "--no-report", "-o", str(tmp_path / "d")]
+    assert main(["diagnose", run, *asked]) == 2
+    said = flat(capsys.readouterr().err)
+    assert all(name in said for name in COLLINEAR)
+    assert "only a sum of their sizes is known" in said
+    assert not (tmp_path / "d").exists()
+
+
+def test_left_by_is_the_share_that_others_cannot_imitate() -> None:
+    x, y = np.array([[1.0], [0.0], [0.0]]), np.array([[3.0], [4.0], [0.0]])
+    assert left_by(x, y) == pytest.approx(16.0 / 25.0)
+    assert left_by(y, np.hstack([x, np.array([[0.0], [1.0], [0.0]])])) == pytest.approx(0.0)
+    assert left_by(x, np.zeros((3, 0))) == 1.0
+
+
+def test_an_addition_that_is_not_significant_is_commented(folder, tmp_path, capsys) -> None:
+    run = str(folder / "run.csv")
+    narrow = ["--only", "thermal-lag(EXC)", "--add", "backlash(Y)"]
+    assert main(["diagnose", run, *narrow, "--no-report", "-o", str(tmp_path / "d")]) == 0
+    said = flat(capsys.readouterr().out)
+    assert "backlash(Y) was added by name, but its size is not significant: amplitude" in said
+    strong = ["--only", "backlash", "--add", "thermal-lag(EXC)"]
+    assert main(["diagnose", run, *strong, "--no-report", "-o", str(tmp_path / "e")]) == 0
+    assert "not significant" not in flat(capsys.readouterr().out)
+
+
+# --- a choice by prediction ---------------------------------------------------------------------
+
+
+def test_ways_of_a_choice_are_told_with_the_limit_that_was_met() -> None:
+    nothing = Way("nothing", (), np.array([3.0, 4.0]) * UM, np.array([10, 30]))
+    way = Way("single effects", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
+    choice = Choice((nothing, way), way, 2, None, is_ended=True)
+    told, ended = ways_tried(choice)
+    plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
+    assert [error / UM for _, error in told.ways] == pytest.approx([plain, 1.0])
+    assert ended == SearchEnded(SETS)
+    assert len(ways_tried(replace(choice, is_ended=False))) == 1
+    table = choice_table(choice)
+    assert (table["chosen"], table["blocks"]) == ("single effects", 2)
+    assert [w["held_out_um"] for w in table["ways"]] == pytest.approx([plain, 1.0], rel=1e-5)

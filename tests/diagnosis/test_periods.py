@@ -1,0 +1,172 @@
+"""Periods on one axis: fine logs, and targets that cannot tell one period from another.
+
+Data are made by a plain sine; periods that look alike come from the sampling theorem by hand.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.answer import Verdict, diagnose
+from diagnosis.answer.alike import even_step
+from twin.effects.periodic import scanned_periods
+from twin.frames import Array
+from twin.machine import Axis, make_chain
+from twin.model import Tunable
+from twin.record import Run, Touches
+from twin.record.touches import Setup
+from twin.units import UM
+
+LINE = make_chain("one axis", "[w f X t]", {"X": Axis((0.0, 400.0))})
+
+
+def run_of(x: Array, deviation: Array, u: float = 0.5 * UM, cycle: Array | None = None) -> Run:
+    """Readings of an instrument along X, a row each."""
+    n = len(x)
+    touches = Touches(
+        chain=LINE,
+        q=x[:, None],
+        length=np.zeros(n),
+        radius=np.zeros(n),
+        point=np.column_stack([x, np.zeros(n), np.zeros(n)]),
+        normal=np.tile([1.0, 0.0, 0.0], (n, 1)),
+        setups=(Setup("a"),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=np.zeros(n),
+        approach=np.ones((n, 1)),
+        pose=np.zeros(n, dtype=np.int64) if cycle is None else cycle,
+    )
+    return Run(touches=touches, deviation=deviation, u=np.full(n, u))
+
+
+def positioning(targets: Array, period: float, amplitude: float, seed: int = 0) -> Run:
+    """Five cycles over some targets, both ways, scattering by 0.5 µm."""
+    rng = np.random.default_rng(seed)
+    x = np.tile(np.concatenate([targets, targets[::-1]]), 5)
+    cycle = np.repeat(np.arange(5), 2 * len(targets))
+    noise = rng.normal(0.0, 0.5 * UM, len(x))
+    # a row tells where the tool believes the surface to stand: minus the error of the axis
+    return run_of(x, -amplitude * np.sin(2.0 * np.pi * x / period + 0.4) + noise, cycle=cycle)
+
+
+def aliases(step: float, period: float) -> list[float]:
+    """Periods that read as one at targets so far apart: ``1/p' = k/step ± 1/p``, longest first."""
+    inside = [abs(k / step + sign / period) for k in range(0, 9) for sign in (1.0, -1.0)]
+    found = {round(1.0 / f, 12) for f in inside if 1.0 / 50.0 <= f <= 1.0}
+    return sorted(found, reverse=True)
+
+
+@pytest.mark.parametrize("period", [0.25, 2.0])
+def test_a_fine_log_shows_a_short_period(period: float) -> None:
+    rng = np.random.default_rng(3)
+    x = np.arange(5.0, 15.0, 0.01)
+    error = 20.0 * UM * np.sin(2.0 * np.pi * x / period)
+    found = diagnose(run_of(x, -error + rng.normal(0.0, 0.5 * UM, len(x))))
+    assert found.verdict is Verdict.MISSING
+    (effect,) = found.found
+    assert effect.name == "periodic(EXX)"
+    assert isinstance(effect, Tunable)
+    assert effect.tuning["period"] == pytest.approx(period, rel=1e-3)
+    confusion = found.steps[1].confusion
+    assert confusion is not None
+    assert confusion.alike is None
+
+
+def test_a_fine_log_of_many_rows_shows_two_periods() -> None:
+    """A screw of 2 mm and an encoder of 0.25 mm, written down while the axis moves evenly."""
+    rng = np.random.default_rng(4)
+    x = np.arange(0.0, 100.0, 100.0 / 12000.0)
+    error = 3.0 * np.sin(2.0 * np.pi * x / 2.0 + 1.0) + 0.8 * np.sin(2.0 * np.pi * x / 0.25)
+    run = run_of(x, -error * UM + rng.normal(0.0, 0.05 * UM, len(x)), 0.05 * UM)
+    run = replace(run, touches=replace(run.touches, time=0.1 * np.arange(len(x))))
+    found = diagnose(run)
+    assert found.verdict is Verdict.MISSING
+    periods = [e.tuning["period"] for e in found.found if isinstance(e, Tunable)]
+    assert sorted(periods) == pytest.approx([0.25, 2.0], rel=1e-4)
+    assert found.fit.rms < 0.055 * UM
+
+
+def test_even_targets_tell_every_period_that_looks_alike() -> None:
+    run = positioning(np.arange(5.0, 300.0, 6.0), 2.5, 8.0 * UM)
+    found = diagnose(run, rng=np.random.default_rng(0))
+    confusion = found.steps[1].confusion
+    assert confusion is not None
+    assert confusion.alike is not None
+    alike = confusion.alike
+    assert alike.step == pytest.approx(6.0)
+    assert alike.pitch is None
+    own = next(r.value for r in found.steps[1].reported if r.quantity == "period")
+    every = aliases(6.0, 2.5)
+    assert 15.0 in every
+    assert 10.0 in every
+    np.testing.assert_allclose(sorted([own, *alike.periods], reverse=True), every, rtol=2e-3)
+    # the plan's places tell the true period from every other one by hand
+    plan = found.plans[0]
+    assert plan.periods_of == "periodic(EXX)"
+    x = plan.touches.reading("X")
+    seen = run.touches.reading("X")
+    for other in (p for p in every if abs(p - 2.5) > 1e-6):
+        wave = 2.0 * np.pi * seen[:, None] / other
+        basis = np.hstack([np.sin(wave), np.cos(wave)])
+        true = 8.0 * np.sin(2.0 * np.pi * seen / 2.5 + 0.4)
+        theta = np.linalg.lstsq(basis, true, rcond=None)[0]
+        assert np.abs(basis @ theta - true).max() < 1e-6
+        wave = 2.0 * np.pi * x[:, None] / other
+        there = np.hstack([np.sin(wave), np.cos(wave)]) @ theta
+        off = there - 8.0 * np.sin(2.0 * np.pi * x / 2.5 + 0.4)
+        assert np.sqrt(np.mean(off**2)) > 2.0
+
+
+@pytest.mark.parametrize(("pitch", "named"), [(10.0, 10.0), (5.0, 2.5), (None, 15.0)])
+def test_a_stated_pitch_names_the_period(pitch: float | None, named: float) -> None:
+    """10 mm reads as 2.5 mm does, which is half of 5 mm; without a pitch the longest is named."""
+    run = positioning(np.arange(5.0, 300.0, 6.0), 2.5, 8.0 * UM)
+    if pitch is not None:
+        chain = run.touches.chain.with_pitch("X", pitch)
+        run = replace(run, touches=replace(run.touches, chain=chain))
+    found = diagnose(run)
+    confusion = found.steps[1].confusion
+    assert confusion is not None
+    assert confusion.alike is not None
+    assert confusion.alike.pitch == pitch
+    own = next(r.value for r in found.steps[1].reported if r.quantity == "period")
+    assert own == pytest.approx(named, rel=2e-3)
+
+
+def test_uneven_targets_tell_one_period() -> None:
+    rng = np.random.default_rng(5)
+    targets = np.sort(np.arange(5.0, 300.0, 6.0) + rng.uniform(-2.5, 2.5, 50))
+    found = diagnose(positioning(targets, 2.5, 8.0 * UM))
+    confusion = found.steps[1].confusion
+    assert confusion is not None
+    assert confusion.alike is None
+    own = next(r.value for r in found.steps[1].reported if r.quantity == "period")
+    assert own == pytest.approx(2.5, rel=1e-3)
+
+
+def test_periods_are_scanned_down_to_what_readings_resolve() -> None:
+    fine = scanned_periods(np.arange(0.0, 100.0, 0.01))
+    assert fine[0] == pytest.approx(0.02)
+    assert fine[-1] == pytest.approx(50.0, rel=1e-3)
+    coarse = scanned_periods(np.arange(0.0, 300.0, 6.0))
+    assert coarse[0] == pytest.approx(1.0)
+    # repeated targets stand no closer for their scatter
+    near = np.tile(np.arange(0.0, 300.0, 6.0), 5)
+    near = near + np.random.default_rng(0).normal(0.0, 1e-3, len(near))
+    assert scanned_periods(near)[0] == pytest.approx(1.0)
+    # no wave longer than half the record
+    assert scanned_periods(np.arange(0.0, 10.0, 0.01))[-1] == pytest.approx(5.0, rel=1e-2)
+    assert np.all(np.diff(fine) > 0.0)
+
+
+def test_a_stated_pitch_is_scanned_beyond_what_readings_resolve() -> None:
+    q = np.arange(0.0, 300.0, 6.0)
+    for k in (1, 2, 4):
+        assert np.abs(scanned_periods(q, 0.8) - 0.8 / k).min() < 1e-9
+    assert np.abs(scanned_periods(q) - 0.8).min() > 0.1
+
+
+def test_even_step_by_hand() -> None:
+    assert even_step(np.array([3.0, 9.0, 15.0, 27.0])) == pytest.approx(6.0)
+    assert even_step(np.array([3.0, 9.0, 17.0, 27.0])) is None
