@@ -67,7 +67,7 @@ def test_a_design_for_every_kind_of_machine(
     assert all(np.isfinite([o.drift, *o.reversal]).all() and o.duration > 0.0 for o in found)
     write_order_picture(tmp_path / "order.png", plan)
     programs = make_programs(plan).write(tmp_path)
-    machine = design._prove(project, project.population, placement, programs, 0, rng_proof)
+    machine = design._prove(project, workspace, placement, programs, 0, rng_proof)
     assert len(machine.campaign.run) == len(plan)
     # what the touches predict: far better than nothing, and as well as they say themselves
     assert machine.proof.factor > 5.0

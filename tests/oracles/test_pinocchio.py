@@ -129,7 +129,7 @@ class Arm:
 
     def tip_frame(self, tip: pin.SE3) -> int:
         if not self.model.existFrame("tip"):
-            self.model.addFrame(pin.Blank("tip", self.parent, tip, pin.FrameType.OP_FRAME))
+            self.model.addFrame(pin.Frame("tip", self.parent, tip, pin.FrameType.OP_FRAME))
             self.data = self.model.createData()
         return self.model.getFrameId("tip")
 

@@ -88,7 +88,7 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
         wanted = "some µm: units are mixed up, or the set-up, the probe or the machine is another"
         _tell_slip(run, table, far, where, found, wanted, remarks)
         astray[far] = True
-    if "dev_um" in table:
+    if "dev_um" in table and states_readings(run):
         computed = computed_deviation(run.touches)
         apart = np.flatnonzero((_gap(run, computed) > GAP) & ~astray)
         if len(apart):
@@ -106,6 +106,15 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     return run
 
 
+def states_readings(run: Run) -> bool:
+    """Whether readings and points of a run are those of a touching ball, and tell its deviations.
+
+    Distances of other instruments may stand anywhere beside the machine.
+    """
+    touches = run.touches
+    return touches.instrument.is_ball_on_standard and bool(np.all(touches.radius > 0.0))
+
+
 def _gap(run: Run, computed: Array) -> Array:
     """How far stated deviations are from those of the readings, (N,), mm.
 
@@ -116,7 +125,7 @@ def _gap(run: Run, computed: Array) -> Array:
 
 def _compare_with_readings(run: Run, table: CsvTable, remarks: list[str]) -> None:
     """Say that stated deviations and those of the readings differ by more than their noise."""
-    if "dev_um" not in table:
+    if "dev_um" not in table or not states_readings(run):
         return
     gap = float(np.median(_gap(run, computed_deviation(run.touches))))
     if gap > NOISY * float(np.median(run.u)) + UM:

@@ -10,7 +10,7 @@ from twin.errors import BadFile
 from twin.files import run_columns as columns
 from twin.files.machine_file import Vector, read_machine
 from twin.files.pose_file import FARTHEST, reading_columns, readings
-from twin.files.run_checks import checked_run
+from twin.files.run_checks import checked_run, states_readings
 from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, is_file, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
@@ -87,8 +87,12 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks = [columns.assumed_point(axis) for axis in chain.assumed_points]
     stated = _assemble(table, chain, head, remarks)
-    placed, moved = aligned(stated)
-    run = replace(placed, deviation=stated.deviation) if "dev_um" in table else placed
+    run, moved = stated, ()
+    if "dev_um" not in table:
+        run, moved = aligned(stated)
+    elif states_readings(stated):
+        placed, moved = aligned(stated)
+        run = replace(placed, deviation=stated.deviation)
     remarks += [columns.moved_setup(m) for m in moved]
     try:
         run = checked_run(run, table, remarks)
