@@ -15,7 +15,16 @@ from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, is_file, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
 from twin.machine import Chain
-from twin.record import Instrument, IntArray, Run, Setup, Touches, aligned, computed_deviation
+from twin.record import (
+    Instrument,
+    IntArray,
+    Moved,
+    Run,
+    Setup,
+    Touches,
+    aligned,
+    computed_deviation,
+)
 from twin.units import DEG, UM
 
 _OPTIONAL = (
@@ -87,7 +96,8 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks = [columns.assumed_point(axis) for axis in chain.assumed_points]
     stated = _assemble(table, chain, head, remarks)
-    run, moved = stated, ()
+    run = stated
+    moved: tuple[Moved, ...] = ()
     if "dev_um" not in table:
         run, moved = aligned(stated)
     elif states_readings(stated):
