@@ -92,9 +92,10 @@ def component(chain: Chain, name: str, shape: ShapeName, **options: float) -> Co
 class HigherOrder:
     """One component error of an axis over some degrees, or some harmonics.
 
-    ``E = sum a_k T_k(u)``, or ``sum s_k sin kq + c_k cos kq``, k from `lowest` to `degree`. T_k are the Chebyshev polynomials (T_1 and T_2 are the linear and the parabolic distribution) of
-    u, the reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are
-    expected to fall as ``1/k^1.5`` from the size of the class.
+    ``E = sum a_k T_k(u)``, or ``sum s_k sin kq + c_k cos kq``, k from `lowest` to `degree`. T_k are
+    the Chebyshev polynomials (T_1 and T_2 are the linear and the parabolic distribution) of u, the
+    reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are expected
+    to fall as ``1/k^1.5`` from the size of the class.
 
     Attributes:
         symbol: Which component of which axis.
