@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from diagnosis.answer import faults_of_refused
 from diagnosis.choice import offered
+from diagnosis.faults import faults_of_refused
 from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
 from report.geometry import fault_sentences

@@ -5,7 +5,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from diagnosis.fit import BoolArray, Fit
+from diagnosis.fit import Fit
+from diagnosis.regression import BoolArray
 from twin.frames import Array
 from twin.machine import inverse_linear
 from twin.model import columns

@@ -11,17 +11,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
-from diagnosis.fit import (
-    PRIOR_DOF,
-    Fit,
-    GrossErrors,
-    Reported,
-    continuous_inner,
-    fit_run,
-    reported,
-    shifted,
-    spacing,
-)
+from diagnosis.fit import Fit, Reported, continuous_inner, fit_run, reported, shifted, spacing
+from diagnosis.regression import PRIOR_DOF, GrossErrors
 from diagnosis.search import DiagnosisTask
 from twin.frames import Array
 from twin.model import Effect, Inner, Model, Tunable

@@ -20,7 +20,7 @@ from diagnosis.evidence import (
     projected,
     tuned_variants,
 )
-from diagnosis.fit import GrossErrors
+from diagnosis.regression import GrossErrors
 from diagnosis.search import WORTH, DiagnosisTask, refined_set
 from twin.effects import Again
 from twin.frames import Array

@@ -17,7 +17,8 @@ from diagnosis.evidence import (
     quiet,
     signatures,
 )
-from diagnosis.fit import Fit, Memory
+from diagnosis.fit import Fit
+from diagnosis.regression import Memory
 from diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
 from diagnosis.residual import find_structure
 from diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState

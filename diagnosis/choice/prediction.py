@@ -19,7 +19,8 @@ from diagnosis.choice.field import sized_field
 from diagnosis.choice.needed import needed
 from diagnosis.choice.remembering import memory_of
 from diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
-from diagnosis.fit import CLEARLY, Fit, GrossErrors, Memory
+from diagnosis.fit import Fit
+from diagnosis.regression import CLEARLY, GrossErrors, Memory
 from diagnosis.search import Budget, DiagnosisTask, Library, SearchState, refined_set, searched
 from twin.effects import again
 from twin.frames import Array

@@ -8,7 +8,8 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from diagnosis.fit import Learnt, Memory, Prior, Reported, Role, file_unit
+from diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
+from diagnosis.regression import Memory
 from twin.errors import BadFile, DesignError
 from twin.files import (
     MachineTables,

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys
-from diagnosis.fit import Fit, Learnt, Memory, Reported, inner_unit
+from diagnosis.fit import Fit, Learnt, Reported, inner_unit
+from diagnosis.regression import Memory
 from twin.files import write_whole
 from twin.frames import Array
 from twin.machine import Chain

@@ -6,12 +6,23 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit.gross import GrossErrors, find_gross
 from diagnosis.fit.inner import Tangent, tangents
-from diagnosis.fit.linear import BoolArray, LeftOut, Solution, left_out, solve
-from diagnosis.fit.memory import Memory, Whitener, whitener
-from diagnosis.fit.noise import Noise, noise_factor, replicate_factor
 from diagnosis.fit.prior import Prior
+from diagnosis.regression import (
+    BoolArray,
+    GrossErrors,
+    LeftOut,
+    Memory,
+    Noise,
+    Solution,
+    Whitener,
+    find_gross,
+    left_out,
+    noise_factor,
+    replicate_factor,
+    solve,
+    whitener,
+)
 from twin.display import Shown
 from twin.effects import setup_errors
 from twin.errors import NotEnoughData

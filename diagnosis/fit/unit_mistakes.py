@@ -5,9 +5,8 @@ from enum import Enum
 
 import numpy as np
 
-from diagnosis.fit.gross import robust_scale
 from diagnosis.fit.identification import Fit
-from diagnosis.fit.linear import solve
+from diagnosis.regression import robust_scale, solve
 from twin.units import UM
 
 SMALL = 30.0

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import gammainc
 
-from diagnosis.fit import BoolArray
+from diagnosis.regression import BoolArray
 from diagnosis.residual.patterns import pairs, variables
 from twin.record import Touches
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import gammaln
 
 from diagnosis.evidence import ScaledEffect
-from diagnosis.fit import BoolArray, GrossErrors
+from diagnosis.regression import BoolArray, GrossErrors
 from twin.frames import Array
 from twin.model import inner_values
 from twin.record import IntArray, Touches

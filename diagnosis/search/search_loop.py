@@ -28,7 +28,8 @@ from diagnosis.evidence import (
     scanned_grids,
     signatures,
 )
-from diagnosis.fit import Fit, GrossErrors, Memory, Prior, fit_run
+from diagnosis.fit import Fit, Prior, fit_run
+from diagnosis.regression import GrossErrors, Memory
 from diagnosis.residual import Structure, find_structure
 from diagnosis.search.edges import unexplained_near_slip, without
 from diagnosis.search.refine import refined_set

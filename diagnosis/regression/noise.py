@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.fit.linear import BoolArray
+from diagnosis.regression.linear import BoolArray
 from twin.frames import Array
 from twin.record import Run
 

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.linalg import solve_banded
 from scipy.optimize import minimize_scalar
 
-from diagnosis.fit.linear import BoolArray, solve
-from diagnosis.fit.noise import PRIOR_DOF
+from diagnosis.regression.linear import BoolArray, solve
+from diagnosis.regression.noise import PRIOR_DOF
 from twin.frames import Array
 from twin.record import IntArray, Touches
 
