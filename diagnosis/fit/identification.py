@@ -39,7 +39,7 @@ SETTLED = 0.005
 """Most passes of a fit, and the relative change of the noise below which it weights with the noise
 that it finds: gross errors and the widening of the prior then stay what they are."""
 
-MIN_POSES = 4
+MIN_POSES = 4  # of fewer, one held out leaves the fit with less than three quarters
 BLOCKS = 10
 """With fewer table poses than that, held out are so many blocks of touches one after the other."""
 

@@ -19,7 +19,7 @@ from twin.frames import Array, apply, inverse
 from twin.machine import Chain, tip
 from twin.record import IntArray, Labels
 
-_MARCHES = 400
+_MARCHES = 400  # steps as long as the clearance; a path that needs more grazes, and is refused
 
 
 @dataclass(frozen=True, eq=False)
