@@ -45,7 +45,7 @@ MAX_LINES = 400
 MAX_CODE = 60
 FACE = range(3, 26)
 """Names of a face."""
-WIDE = {"diagnosis.answer": 27, "diagnosis.fit": 30, "report.words": 30}
+WIDE = {"report.words": 30}
 """Faces that are wider than they should be, with their number of names: it may only fall."""
 
 UNIT = re.compile(r"µm|µrad|°|\b(?:mm|min|degC)\b")

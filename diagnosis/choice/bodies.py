@@ -20,7 +20,7 @@ from diagnosis.evidence import (
     projected,
     tuned_variants,
 )
-from diagnosis.fit import GrossErrors
+from diagnosis.regression import GrossErrors
 from diagnosis.search import WORTH, DiagnosisTask, refined_set
 from twin.effects import Again
 from twin.frames import Array
@@ -57,7 +57,6 @@ def bodies(
     """For every component error that touches tell apart the body that explains it best, if any.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         gross: Gross errors, as they were found.
     """

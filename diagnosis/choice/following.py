@@ -17,7 +17,8 @@ from diagnosis.evidence import (
     quiet,
     signatures,
 )
-from diagnosis.fit import Fit, Memory
+from diagnosis.fit import Fit
+from diagnosis.regression import Memory
 from diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
 from diagnosis.residual import find_structure
 from diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
@@ -43,7 +44,6 @@ def followed(
     """The task with rows that count as independent observations, and the chosen set in it.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         final: Result of the search.
         choice: Which way predicts best.

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
-from diagnosis.fit import BoolArray, Fit
+from diagnosis.fit import Fit
+from diagnosis.regression import BoolArray
 from diagnosis.residual import Partial, binned, partial
 from report.plots.residual_pictures import kept
 from report.style import (

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.identification import fit_run
-from diagnosis.fit.linear import left_out, solve
+from diagnosis.regression.linear import left_out, solve
 from diagnosis.remarks.run_remarks import (
     FewTouches,
     NoiseMisstated,

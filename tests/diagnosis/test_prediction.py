@@ -19,8 +19,8 @@ from diagnosis.choice.prediction import Choice, chosen_by_prediction, offered, w
 from diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from diagnosis.evidence.evidence import EffectSet
 from diagnosis.fit.identification import fit_run
-from diagnosis.fit.memory import Memory
 from diagnosis.fit.prior import Prior
+from diagnosis.regression.memory import Memory
 from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
 from matstd.inputs import candidates
 from report.words.diagnosis_words import named_value, promise_sentence

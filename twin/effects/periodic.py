@@ -39,7 +39,6 @@ class Periodic:
     Screw and nut, or scale and head, repeat every pitch.
 
     Attributes:
-        symbol: The component error.
         period: p, mm.
     """
 
@@ -92,7 +91,6 @@ class Harmonic:
     line count from the encoder.
 
     Attributes:
-        symbol: The component error.
         harmonic: k.
     """
 

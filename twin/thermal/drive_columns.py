@@ -68,7 +68,6 @@ def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 
     """What has followed of a drive with a time constant at every touch, (N,).
 
     Args:
-        touches: All of the run.
         drive: A sensor, followed as its difference from 20 degC, `spindle_rpm` in units of
             10 000 rpm, or an own column in units of a step.
         tau: Time constant, s; zero follows at once.

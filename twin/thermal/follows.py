@@ -29,7 +29,6 @@ class ThermalStatic:
     parameter, the amplitude a, mm/K or rad/K: 1 to 30 um/K of a frame or a column.
 
     Attributes:
-        symbol: The component error.
         sensor: Name of the sensor.
 
     Reference:
@@ -72,7 +71,6 @@ class Follows:
     effect: the same model means the same on another run.
 
     Attributes:
-        symbol: The component error.
         column: Name of the column without `V_`, its unit included.
         step: s, in the unit of the column.
     """

@@ -46,7 +46,6 @@ class ThermalLag:
     it before.
 
     Attributes:
-        symbol: The component error.
         drive: Sensor, `spindle_rpm`, an own column `V_name_unit`, or "" for switching on.
         tau: Time constant, s.
         step: Of an own column, in its unit; the amplitude is that after such a step.
