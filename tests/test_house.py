@@ -67,8 +67,6 @@ EXCUSED = {
     "diagnosis/fit/unit_mistakes.py": "refusal, and the same where it is only suspected",
 }
 """Files below `report` with units in prose outside a `raise` all the same, and why."""
-UNSAID = {"diagnosis/residual/partial_residuals.py"}
-"""Files whose sentences belong into `report/words`."""
 
 FILES = [f for room in ALLOWED for f in sorted((ROOT / room).rglob("*.py"))]
 IDS = [f.relative_to(ROOT).as_posix() for f in FILES]
@@ -222,7 +220,7 @@ def test_prose_lives_in_the_report(file: Path) -> None:
     found = prose_with_units(TREES[file])
     if name in EXCUSED:
         assert found, f"{name} has no prose any more: take it off the list"
-    elif name not in UNSAID:
+    else:
         assert not found, f"{name}: {found}"
 
 
