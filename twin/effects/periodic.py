@@ -13,7 +13,6 @@ from twin.model import (
     Parameter,
     Term,
     Title,
-    Where,
     check_count,
     component_symbol,
     moving_axes,
@@ -182,7 +181,7 @@ def _sine_and_cosine(symbol: Symbol) -> Sequence[Parameter]:
 
 def _wave(touches: Touches, symbol: Symbol, factor: float) -> Sequence[Term]:
     """Sine and cosine of factor times the reading, as a twist of the axis."""
-    where = Where("twist", touches.chain.link_index(symbol.link), symbol.component)
+    where = touches.chain.twist_of(symbol)
     argument = factor * touches.reading(symbol.link)
     return (Term(0, where, np.sin(argument)), Term(1, where, np.cos(argument)))
 

@@ -138,6 +138,7 @@ def _machine(path: str | Path, named: str) -> Chain:
 
 def _check_columns(table: CsvTable, chain: Chain) -> None:
     """Needed columns are there, and none that nobody understands."""
+    columns.check_units(table)
     names = [column for column, _ in reading_columns(chain).values()]
     directions = [f"dir{axis}" for axis in chain.axes]
     sensors = [c for c in table.columns if columns.SENSOR.match(c) or columns.OWN.match(c)]
@@ -170,7 +171,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         force=columns.force(table),
         feature=np.array(table.text("feature") if "feature" in table else [""] * n),
         pose=columns.poses(table, chain, q, setup),
-        value=columns.own_columns(table, remarks),
+        value=columns.own_columns(table, time, remarks),
     )
     signs = columns.approach(table, chain, q, touches.normal_table)
     touches = replace(touches, approach=signs)

@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from twin.frames import Array
+from twin.machine.contribution import Where
 from twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
 from twin.units import DEG
 
@@ -126,6 +127,10 @@ class Chain:
     def rotary_axes(self) -> tuple[str, ...]:
         """Names of the programmed rotary axes in chain order."""
         return tuple(ln.name for ln in self.links if ln.kind == "rotary" and ln.programmed)
+
+    def twist_of(self, symbol: Symbol) -> Where:
+        """Where a component error acts."""
+        return Where("twist", self.link_index(symbol.link), symbol.component)
 
     def axis_index(self, name: str) -> int:
         """Column of an axis in an array of readings (N, A).
