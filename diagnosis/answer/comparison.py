@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer.fault_trial import DescriptionFault, description_faults
-from diagnosis.answer.learnt_geometry import LearntGeometry, learnt_geometry
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from diagnosis.fit import BoolArray, Fit, Learnt, Prior, fit_run, solve
+from diagnosis.faults import DescriptionFault, description_faults
+from diagnosis.fit import Fit, Learnt, Prior, fit_run
+from diagnosis.geometry import LearntGeometry, learnt_geometry
+from diagnosis.regression import BoolArray, solve
 from diagnosis.remarks import Remark, remarks
 from diagnosis.residual import Region, Structure, find_structure, regions
 from twin.compute import one_blas_thread
@@ -175,7 +176,6 @@ def compare(
     """Measured against predicted deviations.
 
     Args:
-        run: The measurements.
         model: Machine and effects; None for the ordinary geometric model of the machine.
         estimates: Of the model's parameters, from an earlier run; then nothing but where the
             standard stands is learnt from this one. None fits the whole model to this run.

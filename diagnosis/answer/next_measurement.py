@@ -5,7 +5,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from diagnosis.fit import BoolArray, Fit
+from diagnosis.fit import Fit
+from diagnosis.regression import BoolArray
 from twin.frames import Array
 from twin.machine import inverse_linear
 from twin.model import columns
@@ -65,7 +66,6 @@ def candidate_touches(run: Run, rng: np.random.Generator) -> Touches:
     has not touched that feature are left out.
 
     Args:
-        run: The measurements.
         rng: Draws the combinations.
     """
     t = run.touches

@@ -9,8 +9,6 @@ from diagnosis.answer.alike import period_value
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.collinear import check_distinct, not_significant
 from diagnosis.answer.detectable import detectable
-from diagnosis.answer.fault_trial import description_faults
-from diagnosis.answer.learnt_geometry import learnt_geometry
 from diagnosis.answer.next_measurement import (
     Plan,
     candidate_targets,
@@ -37,7 +35,10 @@ from diagnosis.evidence import (
     projected,
     quiet,
 )
-from diagnosis.fit import Fit, GrossErrors, Prior
+from diagnosis.faults import description_faults
+from diagnosis.fit import Fit, Prior
+from diagnosis.geometry import learnt_geometry
+from diagnosis.regression import GrossErrors
 from diagnosis.remarks import Remark, SearchEnded, remarks
 from diagnosis.residual import Region, Structure, find_structure, regions
 from diagnosis.search import (
@@ -76,7 +77,6 @@ def diagnose(
     """Find what a model lacks.
 
     Args:
-        run: The measurements.
         model: Starting model; None for the ordinary geometric one.
         prior: Of its parameters, as from a model file; None for what its effects state.
         named: Effects that the user adds, whatever they are worth.

@@ -6,11 +6,11 @@ from typing import Any
 
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
-from diagnosis.answer.fault_trial import DescriptionFault
-from diagnosis.answer.learnt_geometry import LearntGeometry
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.choice import Choice
+from diagnosis.faults import DescriptionFault
 from diagnosis.fit import Fit, Reported
+from diagnosis.geometry import LearntGeometry
 from diagnosis.remarks import Remark
 from diagnosis.residual import Region, Structure
 from twin.display import Tabular
@@ -84,7 +84,6 @@ class Diagnosis(Tabular):
     """All that a run tells about what its model lacks.
 
     Attributes:
-        run: The measurements.
         verdict: One of three.
         steps: The error falling, effect by effect.
         candidates: Library effects by themselves, best first.

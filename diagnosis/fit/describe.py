@@ -7,7 +7,7 @@ from enum import Enum
 import numpy as np
 
 from diagnosis.fit.identification import Fit
-from diagnosis.fit.linear import BoolArray
+from diagnosis.regression import BoolArray
 from twin.frames import Array
 from twin.model import Effect, Inner, columns, inner_values
 from twin.units import DEG, MINUTE, UM, URAD

@@ -15,8 +15,8 @@ from enum import Enum
 
 import numpy as np
 
-from diagnosis.answer.geometry_functionals import Quantity, functionals
 from diagnosis.fit import Fit, Prior, fit_run
+from diagnosis.geometry.functionals import Quantity, functionals
 from twin.frames import Array
 from twin.machine import LETTERS, Link
 from twin.model import Model
