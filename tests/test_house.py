@@ -296,3 +296,35 @@ def test_every_command_has_its_file() -> None:
 
     for name in COMMANDS:
         assert (ROOT / "matstd" / "commands" / f"{name}.py").exists(), name
+
+
+MAX_PLACES = 4
+"""Fields of a record that may be given by place: of more, nobody can tell which is which."""
+
+
+def records(tree: ast.AST) -> dict[str, int]:
+    """Data classes and named tuples of a file, with their numbers of fields."""
+    found = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            marks = [ast.unparse(n) for n in (*node.decorator_list, *node.bases)]
+            if any(mark.startswith(("dataclass", "NamedTuple")) for mark in marks):
+                found[node.name] = sum(isinstance(b, ast.AnnAssign) for b in node.body)
+    return found
+
+
+def test_long_records_are_built_by_keyword() -> None:
+    sizes: dict[str, int] = {}
+    for tree in TREES.values():
+        sizes |= records(tree)
+    found = [
+        f"{file}:{node.lineno}: {node.func.id}"
+        for file, tree in TREES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and sizes.get(node.func.id, 0) > MAX_PLACES
+        and len(node.args) > MAX_PLACES
+    ]
+    assert len(sizes) > 200
+    assert not found, found

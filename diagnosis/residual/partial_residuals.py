@@ -103,7 +103,16 @@ def partial(fit: Fit, effect: Effect) -> Partial:
     weight = (usable / fit.run.u[rows]) ** 2
     shown = np.flatnonzero(np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99)))
     driver, x = _driver(effect, touches, rows, explained)
-    return Partial(driver, x, drawn, explained, observed, weight, shown, rows)
+    return Partial(
+        driver=driver,
+        x=x,
+        drawn=drawn,
+        explained=explained,
+        observed=observed,
+        weight=weight,
+        shown=shown,
+        rows=rows,
+    )
 
 
 def _split(effect: Effect, touches: Touches, theta: Array) -> tuple[Drawn, Array, Array]:

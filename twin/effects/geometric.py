@@ -163,7 +163,13 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
         )
     _, periods, phase = match.groups()
     sd = Ranges().sd(chain, symbol)
-    return ComponentError(symbol, word, float(periods or 1.0), float(phase or 0.0) * DEG, sd)
+    return ComponentError(
+        symbol=symbol,
+        shape=word,
+        periods=float(periods or 1.0),
+        phase=float(phase or 0.0) * DEG,
+        sd=sd,
+    )
 
 
 def propose(touches: Touches) -> Iterable[HigherOrder]:

@@ -70,7 +70,7 @@ class Periodic:
         """The period, evenly spaced in frequency, fine enough for the travel that was covered."""
         axis = self.symbol.link
         grid = scanned_periods(touches.reading(axis), touches.chain.link(axis).pitch)
-        return (Inner("period", "mm", grid, acts="with a period", over=axis),)
+        return (Inner(name="period", unit="mm", grid=grid, acts="with a period", over=axis),)
 
     def tuned(self, *values: float) -> "Periodic":
         """With this period, mm."""

@@ -176,12 +176,14 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
     signs = columns.approach(table, chain, q, touches.normal_table)
     touches = replace(touches, approach=signs)
     return Run(
-        touches,
-        table.numbers("dev_um") * UM if "dev_um" in table else computed_deviation(touches),
-        columns.uncertainties(table, head.u_um),
-        columns.splits(table),
-        columns.repeats(table),
-        np.array(table.lines),
+        touches=touches,
+        deviation=table.numbers("dev_um") * UM
+        if "dev_um" in table
+        else computed_deviation(touches),
+        u=columns.uncertainties(table, head.u_um),
+        split=columns.splits(table),
+        repeat=columns.repeats(table),
+        line=np.array(table.lines),
     )
 
 
