@@ -174,8 +174,9 @@ def _drivers(effect: Effect, touches: Touches) -> Mapping[str, Array]:
 
 def _time(touches: Touches) -> dict[str, Array]:
     """Time in minutes, or in hours where the run is long."""
-    hours = np.ptp(touches.time) > 600.0 * MINUTE
-    return {f"time in {'h' if hours else 'min'}": touches.time / (3600.0 if hours else MINUTE)}
+    time = touches.since_start
+    hours = np.ptp(time) > 600.0 * MINUTE
+    return {f"time in {'h' if hours else 'min'}": time / (3600.0 if hours else MINUTE)}
 
 
 def roughness(x: Array, y: Array) -> float:

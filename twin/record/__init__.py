@@ -7,6 +7,7 @@ units. A new quantity that is recorded at every touch becomes a field of it; `Ru
 from twin.record.alignment import Moved, aligned
 from twin.record.copies import without_copies
 from twin.record.instrument import Instrument
+from twin.record.joined import joined
 from twin.record.run import Run
 from twin.record.touches import (
     IntArray,
@@ -29,6 +30,7 @@ __all__ = [
     "aligned",
     "at_poses",
     "computed_deviation",
+    "joined",
     "linear_approach",
     "without_copies",
 ]

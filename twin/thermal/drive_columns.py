@@ -8,7 +8,7 @@ from twin.errors import UnknownEffect
 from twin.frames import Array
 from twin.model import sensor_record, sensors, varies
 from twin.record import Touches
-from twin.thermal.thermal_lag import SPEED_UNIT, SPINDLE, first_order_lag
+from twin.thermal.thermal_lag import SPEED_UNIT, SPINDLE, lagged
 from twin.units import T_REF
 from twin.words import did_you_mean
 
@@ -44,9 +44,9 @@ def driven(touches: Touches, drive: str, tau: float, effect: str) -> Array:
         if touches.spindle_rpm is None:
             raise UnknownEffect(f"'{effect}': the spindle speed of these touches is unknown")
         speed = touches.spindle_rpm / SPEED_UNIT
-        return first_order_lag(touches.time, speed, tau, steps=True) if tau > 0.0 else speed
+        return lagged(touches, speed, tau, steps=True) if tau > 0.0 else speed
     warmth = sensor_record(touches, drive) - T_REF
-    return first_order_lag(touches.time, warmth, tau) if tau > 0.0 else warmth
+    return lagged(touches, warmth, tau) if tau > 0.0 else warmth
 
 
 def own_column(touches: Touches, name: str) -> Array:

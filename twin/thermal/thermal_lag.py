@@ -90,18 +90,16 @@ class ThermalLag:
     def response(self, touches: Touches) -> Array:
         """What has followed of the drive at every touch, per unit of amplitude, (N,)."""
         if not self.drive:
-            return -np.expm1(-touches.time / self.tau)
+            return -np.expm1(-touches.since_start / self.tau)
         if self.drive == SPINDLE:
             if touches.spindle_rpm is None:
                 raise UnknownEffect(f"'{self.name}': the spindle speed of these touches is unknown")
-            return first_order_lag(
-                touches.time, touches.spindle_rpm / SPEED_UNIT, self.tau, steps=True
-            )
-        return first_order_lag(touches.time, sensor_record(touches, self.drive) - T_REF, self.tau)
+            return lagged(touches, touches.spindle_rpm / SPEED_UNIT, self.tau, steps=True)
+        return lagged(touches, sensor_record(touches, self.drive) - T_REF, self.tau)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The time constant, evenly spaced in its logarithm, up to three times the run."""
-        duration = float(np.ptp(touches.time)) if len(touches) else LONGEST
+        duration = float(np.ptp(touches.since_start)) if len(touches) else LONGEST
         high = float(np.clip(3.0 * duration, 4.0 * SHORTEST, LONGEST))
         return (Inner("tau", "s", np.geomspace(SHORTEST, high, STEPS)),)
 
@@ -113,6 +111,16 @@ class ThermalLag:
     def tuning(self) -> Mapping[str, float]:
         """The time constant, s."""
         return {"tau": self.tau}
+
+
+def lagged(touches: Touches, drive: Array, tau: float, steps: bool = False) -> Array:
+    """`first_order_lag` of a drive (N,) that was recorded at the touches, in every run anew."""
+    out = np.empty_like(drive)
+    for i in range(len(touches.runs)):
+        own = touches.run == i
+        if own.any():
+            out[own] = first_order_lag(touches.since_start[own], drive[own], tau, steps)
+    return out
 
 
 def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) -> Array:
