@@ -109,7 +109,6 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
     Args:
         names: As given.
         known: Effects that are in the model already.
-        run: The measurements.
 
     Raises:
         UnknownEffect, UnknownAxis, UnknownSymbol: A name that means nothing here.
@@ -140,7 +139,6 @@ def candidates(only: Sequence[str], without: Sequence[str], run: Run) -> list[Ef
     Args:
         only: Kinds, or names of effects; empty for all.
         without: Kinds, or names of effects, that are left out.
-        run: The measurements.
 
     Raises:
         DesignError: A word that is no kind and no effect of this run, or nothing is left.

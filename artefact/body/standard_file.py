@@ -93,9 +93,6 @@ class _File(Table):
 def read_standard(path: str | Path) -> Standard:
     """Read `standard.toml`.
 
-    Args:
-        path: The file.
-
     Returns:
         The standard, in base units; bit for bit the one that was written.
 
@@ -111,7 +108,6 @@ def write_standard(path: str | Path, standard: Standard) -> None:
     """Write `standard.toml` whole or not at all; reading it gives the same numbers.
 
     Args:
-        path: The file.
         standard: In base units.
     """
     import tomli_w

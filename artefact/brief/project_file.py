@@ -98,7 +98,6 @@ class Project:
     Attributes:
         path: The project file.
         machine_path: The machine file.
-        chain: The machine.
         seed: Of all random numbers.
         probe_radius: mm.
         probe_length: Gauge point to ball centre, mm.
@@ -151,7 +150,6 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     """Project with its machine.
 
     Args:
-        path: The file.
         montecarlo: Keys of `[montecarlo]` that stand in place of those of the file.
 
     Raises:

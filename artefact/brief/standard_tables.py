@@ -87,7 +87,6 @@ def check_body(
         limits: What is allowed.
         wanted: The standard.
         ball_mm: Radius of the probe's ball.
-        path: The file.
 
     Raises:
         BadFile: The key and what it contradicts.

@@ -135,7 +135,6 @@ def alternatives(
     """What every other way to measure buys.
 
     Args:
-        criterion: Criterion.
         requests: The touches of the design.
         rng: Draws the touches that are tried.
     """

@@ -75,7 +75,6 @@ def smooth_heights(
     Args:
         half_size: Half sides of the face, mm.
         limits: Of slope and concave radius.
-        rng: Source of the random numbers.
         tallest: What a shape may rise above its plane or sink below it, mm.
 
     Returns:
@@ -124,7 +123,6 @@ def random_sites(blank: Blank, count: int, rng: np.random.Generator) -> list[Sit
     Args:
         blank: Base, blank height and limits.
         count: Number of sites, shared out over the rings.
-        rng: Source of the random numbers.
 
     Raises:
         NotBuildable: A blank on which no column of some ring can stand.

@@ -47,7 +47,6 @@ def with_optimised_shapes(
     Patches whose new shape breaks a limit keep the old one.
 
     Args:
-        criterion: Criterion.
         standard: Within its limits.
         poses: Table poses, (K, R), rad.
         limits: Of slope, curvature, room.

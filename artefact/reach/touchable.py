@@ -72,7 +72,6 @@ class ProbeReach:
     """Machine, probe and place of the standard, with the room that a touch is given.
 
     Attributes:
-        chain: The machine.
         setup: Where the standard stands.
         shape: The probe from its ball upwards.
         length: Gauge point to ball centre, mm.

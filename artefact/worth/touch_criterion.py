@@ -335,7 +335,6 @@ def random_touches(
         volume: Box in the artefact frame, mm.
         rotary: Limits of every rotary axis (R, 2), from which readings are drawn evenly, rad.
         count: Number of touches; fewer where the machine reaches fewer.
-        rng: Source of the random numbers.
 
     Raises:
         NotReachable: The machine reaches none.

@@ -176,7 +176,6 @@ def compare(
     """Measured against predicted deviations.
 
     Args:
-        run: The measurements.
         model: Machine and effects; None for the ordinary geometric model of the machine.
         estimates: Of the model's parameters, from an earlier run; then nothing but where the
             standard stands is learnt from this one. None fits the whole model to this run.

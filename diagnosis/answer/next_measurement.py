@@ -66,7 +66,6 @@ def candidate_touches(run: Run, rng: np.random.Generator) -> Touches:
     has not touched that feature are left out.
 
     Args:
-        run: The measurements.
         rng: Draws the combinations.
     """
     t = run.touches

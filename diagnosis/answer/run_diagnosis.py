@@ -77,7 +77,6 @@ def diagnose(
     """Find what a model lacks.
 
     Args:
-        run: The measurements.
         model: Starting model; None for the ordinary geometric one.
         prior: Of its parameters, as from a model file; None for what its effects state.
         named: Effects that the user adds, whatever they are worth.

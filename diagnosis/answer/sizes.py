@@ -43,7 +43,6 @@ def sizes(
     """Parameters of every effect as a user reads them, and the effects at their inner parameters.
 
     Args:
-        task: What is diagnosed.
         effects: Everything that was added to the model.
         gross: Gross errors, as they were found.
         complement: What the model to begin with leaves.

@@ -84,7 +84,6 @@ class Diagnosis(Tabular):
     """All that a run tells about what its model lacks.
 
     Attributes:
-        run: The measurements.
         verdict: One of three.
         steps: The error falling, effect by effect.
         candidates: Library effects by themselves, best first.

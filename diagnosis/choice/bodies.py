@@ -57,7 +57,6 @@ def bodies(
     """For every component error that touches tell apart the body that explains it best, if any.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         gross: Gross errors, as they were found.
     """

@@ -51,7 +51,6 @@ def sized_field(
     """A field at the size of its prior with which left-out blocks are predicted best.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         gross: Gross errors, as they were found.
         warm: The field.

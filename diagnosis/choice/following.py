@@ -44,7 +44,6 @@ def followed(
     """The task with rows that count as independent observations, and the chosen set in it.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         final: Result of the search.
         choice: Which way predicts best.

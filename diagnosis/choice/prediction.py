@@ -101,7 +101,6 @@ def chosen_by_prediction(
     drive it.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         final: Result of the search.
         candidates: Effects that may be found, fields among them.
@@ -210,7 +209,6 @@ def named(
     """Single effects by search, then those with inner parameters once more beside themselves.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         gross: Gross errors, as they were found.
         candidates: Effects that may be found.

@@ -105,7 +105,6 @@ class SavedModel:
     """A model with what is known of its parameters.
 
     Attributes:
-        model: Machine and effects.
         estimates: Of the parameters, with their covariance.
         source: The run that they were learnt from.
         from_inner: Root (P, T) of the part of the covariance that uncertain inner parameters add.
@@ -167,7 +166,6 @@ def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
     """Model with its estimates.
 
     Args:
-        path: The file.
         known: Effects whose names the library cannot read back, such as those with a prior of a
             project's own; others are made from their names.
 

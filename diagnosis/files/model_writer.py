@@ -28,7 +28,6 @@ def write_model(
     """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
 
     Args:
-        path: The file.
         fit: What was learnt.
         run_name: Name of the run file, for whoever reads the model later.
         before: Model whose estimates the fit began with; None if it began with none.

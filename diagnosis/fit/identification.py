@@ -60,8 +60,6 @@ class Fit(Shown):
     Parameters stand in the order: effects of the model, set-ups, tangents of inner parameters.
 
     Attributes:
-        run: The measurements.
-        model: Machine and effects.
         setups: The free set-ups of the standard.
         tangents: Displacements of inner parameters that were left free.
         prior: Of all parameters, as it was used.
@@ -249,8 +247,6 @@ def fit_run(
     prior; the second weights with what was found, and more follow while the gross errors change.
 
     Args:
-        run: The measurements.
-        model: Machine and effects.
         prior: Of the model's parameters; None for what its effects state.
         free_inner: Linear parameters of the model, at which tangents of its inner parameters are
             added to the fit; None leaves the inner parameters where they are.

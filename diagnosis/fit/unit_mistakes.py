@@ -64,9 +64,6 @@ def unit_mistake(fit: Fit) -> UnitMistake | None:
 
     Judged by two yardsticks, since either alone misleads: a very good machine has small deviations,
     and an uncertainty may be stated wrongly.
-
-    Args:
-        fit: Any fit.
     """
     measured, expected, stated = _typical_sizes(fit)
     what = _mistaken(fit, measured, expected, stated)

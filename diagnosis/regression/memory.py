@@ -123,7 +123,6 @@ def whitener(memory: Memory, touches: Touches, u: Array, used: BoolArray) -> Whi
 
     Args:
         memory: Of the noise.
-        touches: All of the run.
         u: Standard uncertainty of every touch, (N,), mm.
         used: Rows of the fit, (N,).
     """
@@ -178,7 +177,6 @@ def likely_memory(
     noise left open: a residual alone has lost what the fit took with it, and most of a slow memory.
 
     Args:
-        touches: All of the run.
         u: Standard uncertainty of every touch, (N,), mm.
         used: Rows that count, (N,).
         X: Columns of the model times the root of their prior over the noise, (N, P), not whitened.

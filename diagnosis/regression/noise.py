@@ -70,7 +70,6 @@ def replicate_factor(run: Run, z: Array, rows: BoolArray) -> tuple[float | None,
     """Noise over stated noise from replicates alone, with its degrees of freedom.
 
     Args:
-        run: The measurements.
         z: Residuals over the stated uncertainty, (N,); the model removes the little that replicates
             differ in.
         rows: Rows to use, (N,).

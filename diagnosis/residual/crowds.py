@@ -23,7 +23,6 @@ def crowds(touches: Touches, allowed: BoolArray, gross: BoolArray) -> dict[tuple
     the mean ``links g (g - 1) / (n (n - 1))``. Not corrected for the number of pairs.
 
     Args:
-        touches: All of the run.
         allowed: Those that could have been found out, (N,).
         gross: Those that were, (N,).
     """

@@ -129,11 +129,7 @@ def pairs(touches: Touches, known: Mapping[str, Array]) -> list[tuple[str, str]]
 
 
 def patterns(touches: Touches) -> Iterator[Pattern]:
-    """Every smooth pattern and every grouping that a run can show.
-
-    Args:
-        touches: All of the run.
-    """
+    """Every smooth pattern and every grouping that a run can show."""
     known, along = variables(touches), directions(touches)
     for name, values in known.items():
         F = half_waves(values, ORDER_ALONE)[:, 1:]

@@ -58,7 +58,6 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
 
     Args:
         effects: Model and effects in it.
-        touches: All of the run.
         rows: Which of the touches in use are looked at, (R,).
     """
     complement = effects.complement

@@ -36,7 +36,6 @@ def unexplained_near_slip(
     slip that was found, all that adjoin it, since the instant rests upon the touches without them.
 
     Args:
-        touches: All of the run.
         gross: Of the fit.
         effects: That were found.
     """

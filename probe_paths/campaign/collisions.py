@@ -50,7 +50,6 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     Args:
         program: As read from its text.
         standard: What stands on the table.
-        chain: The machine.
 
     Raises:
         BadFile: Line of the first move that comes too near, and what it comes near to.

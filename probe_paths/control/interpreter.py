@@ -32,7 +32,6 @@ def read_program(path: str | Path, chain: Chain, probe: Probe | None = None) -> 
 
     Args:
         path: The `.H` file; masks (`.A`) stand in the same folder.
-        chain: The machine.
         probe: In the spindle; None takes the one that the program's head states.
 
     Raises:
@@ -76,7 +75,6 @@ def interpret(
         data: Content of the program file.
         path: Its name: it must agree with the program's.
         masks: Where FN 16 finds its masks.
-        chain: The machine.
         probe: In the spindle; None takes the one that the program's head states.
 
     Raises:

@@ -71,7 +71,6 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
     """Reading of Z at which the lowest point of the tool is level with the highest obstacle.
 
     Args:
-        chain: The machine.
         rotary: Readings of the rotary axes, shape (V, R), rad.
         solid: What stands on the table, table frame.
         probe: In the spindle.
@@ -96,7 +95,6 @@ def swing_height(chain: Chain, path: Array, solid: SolidHull, probe: Probe) -> A
     r d^2 / 8 at most, which is added.
 
     Args:
-        chain: The machine.
         path: Rotary readings in order, shape (W, R), rad.
         solid: What stands on the table, table frame.
         probe: In the spindle.
@@ -133,8 +131,6 @@ class ToolClearance:
     """How near stylus, body and spindle come to anything solid at single readings.
 
     Attributes:
-        chain: The machine.
-        standard: What is touched.
         setup: Where it is believed to stand.
         probe: In the spindle.
         table_radius: Of the table's face, mm.

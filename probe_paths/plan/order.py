@@ -49,7 +49,6 @@ def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -
     the second round.
 
     Args:
-        chain: The machine.
         rotary: Readings of every request, (N, R), rad.
         overshoot: Of the last motion towards a reading, rad.
         shortest_visit: Fewest touches for which a pose is split over two visits.

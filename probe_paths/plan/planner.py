@@ -80,8 +80,6 @@ def plan_touches(
     """Plan of all touches of one set-up.
 
     Args:
-        standard: What is touched.
-        chain: The machine.
         probe: In the spindle.
         setup: Where the standard is believed to stand.
         requests: Wanted touches, at any poses, in any order.

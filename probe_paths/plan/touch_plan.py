@@ -93,9 +93,7 @@ class TouchPlan:
     """Touches in the order of execution; rows of one visit stand together.
 
     Attributes:
-        chain: The machine.
         probe: In the spindle.
-        standard: What is touched.
         setup: Where it is believed to stand.
         options: As planned.
         visits: Table poses in order, each with its side of approach and clearance height.

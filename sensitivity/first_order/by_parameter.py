@@ -48,7 +48,6 @@ def jacobian_by_parameter(
     fills fastest.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), mm.
         symbols: P parameters; None for all of `chain.symbols`, in that order.

@@ -27,7 +27,6 @@ class Population:
     """All machines that may be drawn.
 
     Attributes:
-        chain: The machine.
         ranges: Smallest and largest peak amplitude of every error.
         distributions: Shapes over the readings.
         dependence: Which errors depend on each other; None for independent ones.
@@ -159,7 +158,6 @@ def draw(population: Population, count: int, rng: np.random.Generator) -> Draws:
     Args:
         population: What to draw from.
         count: S.
-        rng: Source of the random numbers.
     """
     symbols = population.chain.symbols
     mixes = [population.mix_of(s) for s in symbols]

@@ -89,7 +89,6 @@ def regions(population: Population, workspace: Workspace) -> tuple[Region, ...]:
 
     Args:
         population: Errors that are expected.
-        workspace: Limits.
     """
     out = []
     for place, readings in _places(workspace):
@@ -148,7 +147,6 @@ def region_totals(
         population: Errors that are expected, independent ones.
         workspace: Limits, tool length.
         found: The regions.
-        rng: Source of the random numbers.
         machines: Pairs of random machines.
 
     Raises:

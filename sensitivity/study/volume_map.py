@@ -107,7 +107,6 @@ def volume(
     """Poses that fill the box of the linear readings.
 
     Args:
-        workspace: Limits.
         rotary: Readings of the rotary axes, rad; an axis left out stands in the middle.
         points: Values of each linear reading.
 

@@ -32,7 +32,6 @@ class Coupling:
     ``EBX = a u_X u_Z``, u the reading scaled to [-1, 1].
 
     Attributes:
-        symbol: The component error.
         other: Name of the axis it also depends on.
     """
 

@@ -69,9 +69,6 @@ class TiltSag:
     ``E = a sin 2q``. The weight pulls with m g sin q across and m g cos q along the tilted body;
     the arm that its sag across gives the pull along makes the product of both (P-delta). What the
     weight does in the first harmonic cannot be told from `geometric(EBB,1)` and belongs there.
-
-    Attributes:
-        symbol: The component error.
     """
 
     symbol: Symbol

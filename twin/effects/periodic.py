@@ -40,7 +40,6 @@ class Periodic:
     Screw and nut, or scale and head, repeat every pitch.
 
     Attributes:
-        symbol: The component error.
         period: p, mm.
     """
 
@@ -93,7 +92,6 @@ class Harmonic:
     line count from the encoder.
 
     Attributes:
-        symbol: The component error.
         harmonic: k.
     """
 

@@ -77,7 +77,6 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     refused.
 
     Args:
-        path: The file.
         chain: The machine; None reads the machine file that the head names.
 
     Raises:

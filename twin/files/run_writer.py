@@ -18,7 +18,6 @@ def write_run(path: str | Path, run: Run, machine: str) -> None:
     """Write a run file, whole or not at all; `read_run` gives the same measurements back.
 
     Args:
-        path: The file.
         run: Measurements with one probe and one stated uncertainty or one a row.
         machine: Path of the machine file as it shall stand in the head (relative to `path`).
     """

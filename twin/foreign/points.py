@@ -59,7 +59,6 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     column is zero and not measured.
 
     Args:
-        sheet: The table.
         unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
 
     Raises:
@@ -176,7 +175,6 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
     Args:
         points: The list.
         meaning: `part` or `standard`; it decides the sign.
-        chain: The machine.
         u: Standard uncertainty of one coordinate, mm.
 
     Raises:

@@ -63,7 +63,6 @@ def read_positioning(sheet: Sheet, axis: str, unit: str | None = None) -> Positi
     the cycle in one header row and the direction in the next).
 
     Args:
-        sheet: The table.
         axis: Letter of the axis, which says whether it turns (A B C).
         unit: Of deviations whose column names none.
 

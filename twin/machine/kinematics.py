@@ -89,7 +89,6 @@ def carriers(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
     """Nominal poses of the body that each link sits on, of the table and of the tool.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
 
     Returns:
@@ -114,7 +113,6 @@ def table_to_tool(chain: Chain, q: Array) -> Array:
     """Nominal pose T_table_tool (N, 4, 4): takes tool coordinates to table coordinates.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
     """
     _, T_machine_table, T_machine_tool = carriers(chain, q)
@@ -132,7 +130,6 @@ def tip(chain: Chain, q: Array, length: Array | float) -> Array:
     """Nominal tool point (ball centre of a probe) in the table frame.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), mm.
 
@@ -154,7 +151,6 @@ def place_as_twist(chain: Chain, q: Array) -> Array:
     is tool minus workpiece.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A).
 
     Returns:
@@ -189,7 +185,6 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
     foundation because a component error is tool side minus workpiece side.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), mm.
 
@@ -238,7 +233,6 @@ def exact_table_to_tool(chain: Chain, q: Array, contribution: Contribution) -> A
     motion about the displaced line. No angle is taken for small.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         contribution: What all effects add at these readings; its twist and place are used.
     """
@@ -265,7 +259,6 @@ def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contr
     """Actual tool point in the table frame with every error in it.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), mm.
         contribution: What all effects add at these readings.
@@ -281,7 +274,6 @@ def linear_directions(chain: Chain, q: Array) -> Array:
     """Motion of the tip in the table frame per unit of each linear axis.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A).
 
     Returns:

@@ -17,7 +17,6 @@ class Model:
     """Chain plus effects; parameters of all effects stand in one vector, effect after effect.
 
     Attributes:
-        chain: The machine.
         effects: The physics in the model.
     """
 

@@ -57,7 +57,6 @@ class Touches:
     """N contacts of a probe with a standard (or readings of any instrument along a direction).
 
     Attributes:
-        chain: The machine.
         q: Axis readings at the trigger, (N, A), mm and rad.
         length: Probe length to the ball centre, (N,), mm.
         radius: Of the ball, (N,), mm.
@@ -188,7 +187,6 @@ def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
     """Poses without a standard, for maps over the workspace: normals are zero.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), mm.
     """
@@ -212,7 +210,6 @@ def linear_approach(chain: Chain, q: Array, normal_table: Array) -> Array:
     """Signs of the last motion of the linear axes of a touch, which runs against the normal.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A).
         normal_table: Outward normals in the table frame, (N, 3).
 

@@ -31,7 +31,6 @@ def driven(touches: Touches, drive: str, tau: float, effect: str) -> Array:
     """What has followed of a drive with a time constant at every touch, (N,).
 
     Args:
-        touches: All of the run.
         drive: A sensor, followed as its difference from 20 degC, or `spindle_rpm` in units of
             10 000 rpm.
         tau: Time constant, s; zero follows at once.

@@ -34,7 +34,6 @@ class Follows:
     effect: the same model means the same on another run.
 
     Attributes:
-        symbol: The component error.
         column: Name of the column without `V_`, its unit included.
         step: s, in the unit of the column.
     """

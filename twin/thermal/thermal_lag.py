@@ -51,7 +51,6 @@ class ThermalLag:
     touches must be the whole run: a part of it has lost what drove it before.
 
     Attributes:
-        symbol: The component error.
         drive: Sensor, `spindle_rpm`, or "" for switching on.
         tau: Time constant, s.
     """

@@ -30,7 +30,6 @@ class ThermalStatic:
     parameter, the amplitude a, mm/K or rad/K: 1 to 30 um/K of a frame or a column.
 
     Attributes:
-        symbol: The component error.
         sensor: Name of the sensor.
 
     Reference:
