@@ -42,12 +42,22 @@ def changed_since(model: Model) -> tuple[int, ...]:
     return tuple(sorted({e.index for e in model.effects if isinstance(e, Change)}))
 
 
+def since_first_run(model: Model) -> Model:
+    """The model without changes since an earlier model: what its runs alone can tell."""
+    kept = [e for e in model.effects if not (isinstance(e, Change) and e.index == 0)]
+    return Model(model.chain, tuple(kept))
+
+
 def with_changes(prior: Prior, model: Model) -> Prior:
-    """What is believed of a model, from what is believed of its first effects."""
-    count, rest = 0, list(model.effects)
-    while count < len(prior):
-        count += len(rest.pop(0).parameters)
-    return prior.joined(Prior.of_effects(rest))
+    """What is believed of a changing model, from what is believed of its standing effects."""
+    changes = [e for e in model.effects if isinstance(e, Change)]
+    return prior.joined(Prior.of_effects(changes))
+
+
+def of_first(prior: Prior, model: Model) -> Prior:
+    """Of what is believed of a model, the effects before its first change."""
+    first = next((i for i, (e, _) in enumerate(model.parameters) if isinstance(e, Change)), None)
+    return prior if first is None else Prior(prior.mean[:first], prior.root[:first, :first])
 
 
 def state(model: Model, run: int) -> Array:

@@ -7,8 +7,8 @@ units. A new quantity that is recorded at every touch becomes a field of it; `Ru
 from twin.record.alignment import Moved, aligned
 from twin.record.copies import without_copies
 from twin.record.instrument import Instrument
-from twin.record.joined import joined
 from twin.record.run import Run
+from twin.record.several_runs import joined
 from twin.record.touches import (
     IntArray,
     Labels,

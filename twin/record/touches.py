@@ -99,7 +99,7 @@ class Touches:
             object.__setattr__(self, "feature", np.full(n, "", dtype="U1"))
         if len(self.pose) == 0 and n:
             object.__setattr__(self, "pose", np.zeros(n, dtype=np.int64))
-        for name in _PER_TOUCH:
+        for name in PER_TOUCH:
             value = getattr(self, name)
             if value is not None and len(value) != n:
                 raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as in q")
@@ -116,9 +116,7 @@ class Touches:
     def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Touches":
         """The touches of some rows, as a new record."""
         picked = {
-            name: getattr(self, name)[rows]
-            for name in _PER_TOUCH
-            if getattr(self, name) is not None
+            name: getattr(self, name)[rows] for name in PER_TOUCH if getattr(self, name) is not None
         }
         temperature = {sensor: value[rows] for sensor, value in self.temperature.items()}
         own = {name: value[rows] for name, value in self.value.items()}
@@ -178,9 +176,9 @@ class Touches:
         return Signature(self.reach, self.normal_table)
 
 
-_MAPS = ("temperature", "value")
-_COMMON = ("chain", "setups", "instrument", *_MAPS)
-_PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
+MAPS = ("temperature", "value")
+_COMMON = ("chain", "setups", "instrument", *MAPS)
+PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
 
 
 def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:

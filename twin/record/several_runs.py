@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from twin.errors import DesignError
 from twin.frames import Array
 from twin.record.copies import without_copies
 from twin.record.run import Run
-from twin.record.touches import Setup, Touches
+from twin.record.touches import MAPS, PER_TOUCH, Setup, Touches
 
 PAUSE = 3600.0
 """Between one run and the next, s: bodies and noise have forgotten; every run counts its own time
@@ -39,26 +40,19 @@ def joined(runs: Mapping[str, Run]) -> Run:
         return parts[0]
     _check_alike(names, parts)
     every = [part.touches for part in parts]
-    start, starts, firsts = 0.0, [], []
-    for touches in every:
-        starts.append(start - min(float(touches.time.min()), 0.0))
-        firsts.append(sum(len(t.setups) for t in every[: len(firsts)]))
-        start = starts[-1] + float(touches.time.max()) + PAUSE
+    starts = _starts(every)
     setups = [
         Setup(f"{name}/{s.name}", s.T_table_artefact, name, begin)
         for name, t, begin in zip(names, every, starts, strict=True)
         for s in t.setups
     ]
-    touches = _stacked(every, tuple(setups), starts, firsts)
-    repeats = [part.repeat for part in parts]
+    touches = _stacked(every, tuple(setups), starts)
     return Run(
         touches=touches,
         deviation=np.concatenate([part.deviation for part in parts]),
         u=np.concatenate([part.u for part in parts]),
         split=np.concatenate([part.split for part in parts]),
-        repeat=None
-        if any(r is None for r in repeats)
-        else np.concatenate([r for r in repeats if r is not None]),
+        repeat=_all_of([part.repeat for part in parts]),
         line=np.concatenate([part.line for part in parts]),
         remarks=(
             *_dropped(names, every),
@@ -96,40 +90,34 @@ def _check_alike(names: Sequence[str], parts: Sequence[Run]) -> None:
             )
 
 
+def _starts(every: Sequence[Touches]) -> list[float]:
+    """Time at which every run starts, s: one after the other, with a pause between them."""
+    starts, end = [], 0.0
+    for touches in every:
+        starts.append(end - min(float(touches.time.min()), 0.0))
+        end = starts[-1] + float(touches.time.max()) + PAUSE
+    return starts
+
+
 def _stacked(
-    every: Sequence[Touches], setups: tuple[Setup, ...], starts: Sequence[float], firsts: list[int]
+    every: Sequence[Touches], setups: tuple[Setup, ...], starts: Sequence[float]
 ) -> Touches:
     """The touches of all runs, one run after the other."""
+    first = np.cumsum([0, *(len(t.setups) for t in every[:-1])])
+    every = [
+        replace(t, setup=t.setup + k, time=t.time + s)
+        for t, k, s in zip(every, first, starts, strict=True)
+    ]
+    columns = {name: _all_of([getattr(t, name) for t in every]) for name in PER_TOUCH}
+    for kind in MAPS:
+        records = [getattr(t, kind) for t in every]
+        columns[kind] = {n: np.concatenate([r[n] for r in records]) for n in _common(records)}
+    return replace(every[0], setups=setups, **columns)
 
-    def all_of(name: str) -> Array:
-        return np.concatenate([getattr(t, name) for t in every])
 
-    speeds = [t.spindle_rpm for t in every]
-    forces = [t.force for t in every]
-    return replace(
-        every[0],
-        q=all_of("q"),
-        length=all_of("length"),
-        radius=all_of("radius"),
-        point=all_of("point"),
-        normal=all_of("normal"),
-        setups=setups,
-        setup=np.concatenate([t.setup + k for t, k in zip(every, firsts, strict=True)]),
-        time=np.concatenate([t.time + s for t, s in zip(every, starts, strict=True)]),
-        approach=all_of("approach"),
-        temperature={
-            s: np.concatenate([t.temperature[s] for t in every])
-            for s in _common([t.temperature for t in every])
-        },
-        spindle_rpm=None if any(s is None for s in speeds) else all_of("spindle_rpm"),
-        force=None if any(f is None for f in forces) else all_of("force"),
-        feature=all_of("feature"),
-        pose=all_of("pose"),
-        value={
-            s: np.concatenate([t.value[s] for t in every])
-            for s in _common([t.value for t in every])
-        },
-    )
+def _all_of(values: Sequence[Any]) -> Any:
+    """One column of all runs; None where one of them has none."""
+    return None if any(v is None for v in values) else np.concatenate(values)
 
 
 def _common(records: Sequence[Mapping[str, Array]]) -> list[str]:
