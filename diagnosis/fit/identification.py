@@ -213,8 +213,8 @@ class Fit(Shown):
         return np.asarray(out * unit)
 
     @cached_property
-    def freed_rms(self) -> float:
-        """The same freed of the prediction's own uncertainty, mm, to be held against the noise.
+    def standardised_test_rms(self) -> float:
+        """The same without the prediction's own uncertainty, mm, to be compared with the noise.
 
         The errors are weighted by how much larger than the noise they must be, since the parameters
         are uncertain where a pose is missing; a right model gives the noise itself. Held out are

@@ -1,5 +1,6 @@
 """Pictures of what was found: the error falling, rival explanations, and each effect by itself."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,8 @@ import numpy as np
 from diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
 from diagnosis.fit import Fit
 from diagnosis.regression import BoolArray
-from diagnosis.residual import Partial, binned, partial
+from diagnosis.residual import Partial, Seen, binned, partial
+from report.numbers import noun, shown
 from report.plots.residual_pictures import kept
 from report.style import (
     BLUE,
@@ -19,6 +21,7 @@ from report.style import (
     ORANGE,
     RED,
     SOFT,
+    axis_of,
     figure,
     plain,
     save,
@@ -230,7 +233,7 @@ def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) 
         effect: As it stands in the fit.
         colour: Of its course.
     """
-    found = partial(fit, effect)
+    found, variable, quantity = shown_partial(partial(fit, effect))
     drawn = figure(3.9)
     left, right = drawn.subplots(1, 2, width_ratios=(1.35, 1.0))
     tested = np.ones(len(found.rows), dtype=bool)
@@ -241,16 +244,42 @@ def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) 
     ):
         _touches(ax, found, y, tested)
         ax.set_title(title, fontsize=9.5, loc="left", color=INK)
-        ax.set_xlabel(found.variable or f"explained: {found.quantity}", fontsize=9)
+        ax.set_xlabel(variable or f"explained: {quantity}", fontsize=9)
         plain(ax)
     _course(left, found, effect, colour)
     right.axhline(0.0, color=colour, lw=1.6, zorder=4)
     low, high = _limits(found)
     left.set_ylim(low, high)
     right.set_ylim(0.5 * (low - high), 0.5 * (high - low))  # about zero, as large a scale
-    left.set_ylabel(found.quantity)
+    left.set_ylabel(quantity)
     left.legend(fontsize=8, frameon=False)
     save(drawn, path)
+
+
+def shown_partial(found: Partial) -> tuple[Partial, str, str]:
+    """Partial residuals in the units of a picture, and the labels of its axes.
+
+    Returns:
+        The residuals; what they are drawn over, "" where it is no function of one variable; what is
+        drawn.
+    """
+    unit, factor = shown("rad" if found.drawn.is_angular else "mm")
+    symbol = found.drawn.symbol
+    words = {Seen.SHIFT: f"{found.drawn.seen.value} in {symbol}", Seen.ERROR: symbol}
+    quantity = f"{words.get(found.drawn.seen, found.drawn.seen.value)}, {unit}"
+    variable, x = axis_of(found.driver.column, found.x)
+    if not variable:
+        x = found.x / factor
+    elif found.driver.period:
+        variable = f"{noun(found.driver.column)} within a period of {found.driver.period:.4g} mm"
+    scaled = replace(
+        found,
+        x=x,
+        explained=found.explained / factor,
+        observed=found.observed / factor,
+        weight=found.weight * factor**2,
+    )
+    return scaled, variable, quantity
 
 
 def _limits(found: Partial) -> tuple[float, float]:
@@ -266,7 +295,7 @@ def _course(ax: Any, found: Partial, effect: Effect, colour: str) -> None:
     """What the effect explains, as a line where it is a function, else as marks."""
     order = np.argsort(found.x, kind="stable")
     x, y = found.x[order], found.explained[order]
-    if not found.variable:
+    if not found.driver.column:
         ax.plot(x[[0, -1]], x[[0, -1]], color=colour, lw=1.8, zorder=4, label=effect.name)
         return
     if len(np.unique(x)) > 12 and _roughness(found) < SCATTERED:
