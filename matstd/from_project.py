@@ -126,10 +126,10 @@ def probe_reach(project: Project) -> ProbeReach:
     """Machine, probe, table and place of the standard."""
     tool = probe(project)
     return ProbeReach(
-        project.chain,
-        project.setup,
-        tool.shape,
-        tool.length,
+        chain=project.chain,
+        setup=project.setup,
+        shape=tool.shape,
+        length=tool.length,
         room=_room(project),
         workshop=workshop(project),
     )

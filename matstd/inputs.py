@@ -112,7 +112,8 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
 
     Raises:
         UnknownEffect, UnknownAxis, UnknownSymbol: A name that means nothing here.
-        DesignError: An effect that is there already, is given twice, or moves nothing in this run.
+        DesignError: An effect that the model already has, that is given twice, or that moves
+            nothing in this run.
     """
     there = {effect.name for effect in known}
     out: list[Effect] = []

@@ -194,7 +194,12 @@ def _sphere(path: Path, number: int, sphere: _Sphere) -> DatumSphere:
 def _hole(path: Path, number: int, hole: _Hole) -> MountingHole:
     try:
         return MountingHole(
-            hole.name, hole.x_mm, hole.y_mm, hole.radius_mm, hole.bore_radius_mm, hole.bore_depth_mm
+            name=hole.name,
+            x=hole.x_mm,
+            y=hole.y_mm,
+            radius=hole.radius_mm,
+            bore_radius=hole.bore_radius_mm,
+            bore_depth=hole.bore_depth_mm,
         )
     except ShapeMismatch as error:
         raise BadFile(path, f"hole.{number}", str(error), "a counterbored hole") from error

@@ -27,7 +27,7 @@ from twin.frames import Array
 from twin.machine import Chain, Family, Symbol
 from twin.model import Effect, moving_axes
 from twin.record import IntArray, Touches
-from twin.thermal import ThermalLag, ThermalStatic, drives, is_speed
+from twin.thermal import ThermalLag, drives, follower, is_speed
 
 ALIKE = 0.999
 """Correlation from which two component errors act alike at the touches of a run."""
@@ -94,7 +94,7 @@ def _family(symbol: Symbol, touches: Touches) -> _Family:
     for drive in drives(touches):
         if not is_speed(drive):
             at_once[drive] = len(effects)
-            effects.append(ThermalStatic(symbol, drive))
+            effects.append(follower(touches, symbol, drive))
         tuned = tuned_variants(ThermalLag(symbol, drive), touches)
         lags[drive] = len(effects) + np.arange(len(tuned))
         effects += tuned

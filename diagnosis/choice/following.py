@@ -66,15 +66,15 @@ def followed(
     shrunk = {s.effect.name: _chance(choice) for s in effects if _is_shrunk(s)}
     nothing = find_structure(search.evaluate(()).effects, progress)
     return task, SearchState(
-        base,
-        library,
-        search,
-        chosen,
-        effects,
-        tuple(nothing) or final.at_start,
-        tuple(left),
-        (),
-        shrunk,
+        base=base,
+        library=library,
+        search=search,
+        chosen=chosen,
+        effects=effects,
+        at_start=tuple(nothing) or final.at_start,
+        left=tuple(left),
+        nameless=(),
+        chances=shrunk,
         is_weighed=True,
         is_ended=final.is_ended,
     )

@@ -201,7 +201,15 @@ def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
 
 def _reported(told: ToldEntry) -> Reported:
     """A number as it was told; one of its unit in the base unit is of no more use."""
-    return Reported(told.quantity, told.unit, told.value, told.u, 1.0, Role(told.role), told.bound)
+    return Reported(
+        quantity=told.quantity,
+        unit=told.unit,
+        value=told.value,
+        u=told.u,
+        factor=1.0,
+        role=Role(told.role),
+        bound=told.bound,
+    )
 
 
 def _from_inner(rows: list[list[float]], factors: Array, path: str | Path) -> Array:

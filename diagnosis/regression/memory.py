@@ -129,7 +129,7 @@ def whitener(memory: Memory, touches: Touches, u: Array, used: BoolArray) -> Whi
     order, before, gap = _before(touches, used, memory.by_place)
     steps = gap / memory.step if memory.step else np.ones(len(before))
     kept = np.where(before >= 0, memory.correlation ** np.maximum(steps, 1e-3), 0.0)
-    return Whitener(used, u[used], order, before, kept)
+    return Whitener(used=used, u=u[used], order=order, before=before, kept=kept)
 
 
 def _before(touches: Touches, used: BoolArray, by_place: bool) -> tuple[IntArray, IntArray, Array]:

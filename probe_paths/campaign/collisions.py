@@ -71,7 +71,9 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     low = straight[
         np.flatnonzero(lowest < top_height(chain, straight.after[:, rotary], solid, probe))
     ]
-    clearance = ToolClearance(chain, standard, setup, probe, workshop)
+    clearance = ToolClearance(
+        chain=chain, standard=standard, setup=setup, probe=probe, workshop=workshop
+    )
     strokes = _strokes(program, chain)
     if len(low.line):
         _refuse(program, low.line, _marched(clearance, low), np.full(len(low.line), "the standard"))

@@ -100,7 +100,7 @@ def interpret(
                 f"feature {touch.feature}",
                 "a number of the head's list (;FEATURE <number> IS <name>)",
             )
-    return ReadProgram(path, name, head, features, tuple(steps))
+    return ReadProgram(path=path, name=name, heading=head, features=features, steps=tuple(steps))
 
 
 def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:

@@ -88,7 +88,7 @@ def _visit(
             raise NotReachable(
                 f"pose {name}{rotary[i] / DEG:+.4f}: travel of {name} leaves no room to approach it"
             )
-    return Visit(pose, rotary, side, rotary - side * overshoot, rows)
+    return Visit(pose=pose, rotary=rotary, side=side, before=rotary - side * overshoot, rows=rows)
 
 
 def waypoints(start: Array, end: Array) -> Array:

@@ -41,10 +41,10 @@ class _Task:
         """What can be touched, with the margins of the plan."""
         o = self.options
         return ProbeReach(
-            self.chain,
-            self.setup,
-            self.probe.shape,
-            self.probe.length,
+            chain=self.chain,
+            setup=self.setup,
+            shape=self.probe.shape,
+            length=self.probe.length,
             steepest=o.steepest,
             room=o.smallest_gap,
             standoff=o.standoff,
@@ -96,7 +96,7 @@ def plan_touches(
     ProgramFrame(chain, probe)
     _check_requests(standard, chain, requests)
     rotary = np.round(requests.rotary / GRID) * GRID
-    task = _Task(standard, chain, probe, setup, options)
+    task = _Task(standard=standard, chain=chain, probe=probe, setup=setup, options=options)
     stops = visits(chain, rotary, options.overshoot, options.shortest_visit)
     stops = _with_heights(task, stops)
     height = np.empty(len(requests))
@@ -176,7 +176,13 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     above = touches.start[rows].copy()
     above[:, task.chain.axis_index("Z")] = height[rows]
     o = task.options
-    clearance = ToolClearance(task.chain, task.standard, task.setup, task.probe, o.workshop)
+    clearance = ToolClearance(
+        chain=task.chain,
+        standard=task.standard,
+        setup=task.setup,
+        probe=task.probe,
+        workshop=o.workshop,
+    )
     reason = touches.reason.copy()
     for before, after in (
         (above, touches.start[rows]),

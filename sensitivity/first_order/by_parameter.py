@@ -107,7 +107,13 @@ def _walk(chain: Chain, q: Array, length: Array) -> list[PoseCache]:
         passed.append((before, R, lever, reading))
     tip = t - R[:, 2] * length
     return [
-        PoseCache(before, after, after if link.carries_workpiece else before, tip - lever, reading)
+        PoseCache(
+            before=before,
+            after=after,
+            carrier=after if link.carries_workpiece else before,
+            arm=tip - lever,
+            reading=reading,
+        )
         for link, (before, after, lever, reading) in zip(chain.links, passed, strict=True)
     ]
 

@@ -74,12 +74,12 @@ def count_lengths(
     n, draws = len(G), theta.shape[1]
     counter = np.uint16 if draws <= np.iinfo(np.uint16).max else np.int32
     found = Lengths(
-        draws,
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros((n, BINS), dtype=counter),
-        np.zeros(n, dtype=np.int64),
+        draws=draws,
+        sum=np.zeros(n),
+        squares=np.zeros(n),
+        above=np.zeros(n),
+        histogram=np.zeros((n, BINS), dtype=counter),
+        worst=np.zeros(n, dtype=np.int64),
     )
     kernels = (compiled() if use_compiled else None) or Kernels(_count, _worst)
     reference = worst[0]

@@ -106,8 +106,16 @@ class Population:
                     effects.append(ComponentError(symbol, shape, sd=sd))
                     continue
                 for n in mix.periods:
-                    effects.append(ComponentError(symbol, shape, float(n), 0.0, sd))
-                    effects.append(ComponentError(symbol, shape, float(n), _QUARTER, sd))
+                    effects.append(
+                        ComponentError(
+                            symbol=symbol, shape=shape, periods=float(n), phase=0.0, sd=sd
+                        )
+                    )
+                    effects.append(
+                        ComponentError(
+                            symbol=symbol, shape=shape, periods=float(n), phase=_QUARTER, sd=sd
+                        )
+                    )
         return Model(self.chain, tuple(effects))
 
     def expected(self, free: str = "") -> Model:

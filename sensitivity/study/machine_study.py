@@ -204,7 +204,9 @@ def run_study(
     start = len(q)
     for pair, first, second, q_plane in planes:
         rows = slice(start, start + len(q_plane))
-        sections.append(Section(pair, first, second, q_plane, found[rows]))
+        sections.append(
+            Section(axes=pair, first=first, second=second, q=q_plane, volumetric=found[rows])
+        )
         start = rows.stop
     machines, checked = _CHECKED
     return Study(

@@ -135,4 +135,4 @@ def volume(
     found = inverse_linear(chain, corners, np.tile(base, (4, 1)), workspace.length)[:, columns]
     T = np.eye(4)
     T[:3, 3], T[:3, :3] = found[0], (found[1:] - found[0]).T
-    return Volume(workspace, names, each, q, T)
+    return Volume(workspace=workspace, axes=names, readings=each, q=q, T_readings_table=T)

@@ -107,7 +107,7 @@ def test_both_time_constants_of_a_body_are_found_within_what_is_stated() -> None
 
 def test_a_large_effect_does_not_hide_what_is_small_beside_it() -> None:
     """Evidence by the size of what is left: half the residual over n rows is n log 2, whatever
-    the model to begin with leaves.
+    the starting model leaves.
     """
     task = task_of(record())
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))

@@ -11,8 +11,8 @@ from twin.library.ordinary import ordinary_model
 from twin.machine.contribution import Contribution
 from twin.model.effect import Effect, Tunable, contribution
 from twin.model.model import Model, columns
+from twin.thermal.drive_columns import first_order_lag
 from twin.thermal.thermal_field import field
-from twin.thermal.thermal_lag import first_order_lag
 from twin.units import NM
 
 SECOND_ORDER = 60 * NM

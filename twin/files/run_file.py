@@ -138,6 +138,7 @@ def _machine(path: str | Path, named: str) -> Chain:
 
 def _check_columns(table: CsvTable, chain: Chain) -> None:
     """Needed columns are there, and none that nobody understands."""
+    columns.check_units(table)
     names = [column for column, _ in reading_columns(chain).values()]
     directions = [f"dir{axis}" for axis in chain.axes]
     sensors = [c for c in table.columns if columns.SENSOR.match(c) or columns.OWN.match(c)]
@@ -170,17 +171,19 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         force=columns.force(table),
         feature=np.array(table.text("feature") if "feature" in table else [""] * n),
         pose=columns.poses(table, chain, q, setup),
-        value=columns.own_columns(table, remarks),
+        value=columns.own_columns(table, time, remarks),
     )
     signs = columns.approach(table, chain, q, touches.normal_table)
     touches = replace(touches, approach=signs)
     return Run(
-        touches,
-        table.numbers("dev_um") * UM if "dev_um" in table else computed_deviation(touches),
-        columns.uncertainties(table, head.u_um),
-        columns.splits(table),
-        columns.repeats(table),
-        np.array(table.lines),
+        touches=touches,
+        deviation=table.numbers("dev_um") * UM
+        if "dev_um" in table
+        else computed_deviation(touches),
+        u=columns.uncertainties(table, head.u_um),
+        split=columns.splits(table),
+        repeat=columns.repeats(table),
+        line=np.array(table.lines),
     )
 
 

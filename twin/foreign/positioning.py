@@ -88,12 +88,14 @@ def read_positioning(sheet: Sheet, axis: str, unit: str | None = None) -> Positi
     n = len(sheet)
     return _present(
         PositioningTest(
-            axis,
-            at,
-            deviation,
-            _whole(sheet, cycle) if cycle is not None else np.ones(n, dtype=np.int64),
-            _signs(sheet, direction) if direction is not None else np.zeros(n, dtype=np.int64),
-            np.array(sheet.lines),
+            axis=axis,
+            target=at,
+            deviation=deviation,
+            cycle=_whole(sheet, cycle) if cycle is not None else np.ones(n, dtype=np.int64),
+            direction=_signs(sheet, direction)
+            if direction is not None
+            else np.zeros(n, dtype=np.int64),
+            line=np.array(sheet.lines),
         )
     )
 
@@ -123,12 +125,12 @@ def _present(test: PositioningTest) -> PositioningTest:
     """Without readings that are not there."""
     rows = np.isfinite(test.target) & np.isfinite(test.deviation)
     return PositioningTest(
-        test.axis,
-        test.target[rows],
-        test.deviation[rows],
-        test.cycle[rows],
-        test.direction[rows],
-        test.line[rows],
+        axis=test.axis,
+        target=test.target[rows],
+        deviation=test.deviation[rows],
+        cycle=test.cycle[rows],
+        direction=test.direction[rows],
+        line=test.line[rows],
     )
 
 
