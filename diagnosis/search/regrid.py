@@ -49,7 +49,7 @@ def regridded(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubse
 
 def _needed(
     search: Search, chosen: Sequence[Member], members: Sequence[ScaledEffect]
-) -> tuple[Sequence[Member], Sequence[ScaledEffect]]:
+) -> tuple[list[Member], list[ScaledEffect]]:
     """A set without what only mops up: a member that falls where the others are refined without it.
 
     Args:
@@ -74,4 +74,4 @@ def _needed(
         base, whole = small.evaluate(each[:-1]), small.evaluate(each)
         if not small.verified(base, whole, each[-1]).stands:
             return [*chosen[:i], *chosen[i + 1 :]], others
-    return chosen, members
+    return list(chosen), list(members)

@@ -92,8 +92,8 @@ class HigherOrder:
 
     ``E = sum a_k T_k(u)``, or ``sum s_k sin kq + c_k cos kq``, k from `lowest` to `degree`. T_k are
     the Chebyshev polynomials (T_1 and T_2 are the linear and the parabolic distribution) of u, the
-    reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are expected
-    to fall as ``1/k^1.5`` from the size of the class.
+    reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are
+    expected to fall as ``1/k^1.5`` from the size of the class.
 
     Attributes:
         symbol: Which component of which axis.
@@ -155,7 +155,8 @@ class HigherOrder:
 def higher_order(chain: Chain, symbol: Symbol, degree: int, lowest: int = 1) -> HigherOrder:
     """One component error over some degrees, with the prior of the default ranges."""
     rotary = chain.link(symbol.link).kind == "rotary"
-    return HigherOrder(symbol, degree, Ranges().sd(chain, symbol), rotary, lowest)
+    sd = Ranges().sd(chain, symbol)
+    return HigherOrder(symbol=symbol, degree=degree, sd=sd, rotary=rotary, lowest=lowest)
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Effect:
