@@ -9,6 +9,8 @@ rests on the first of both, in which each run stands for itself.
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from diagnosis.answer.trend import Trend, run_errors
 from diagnosis.answer.verdict import Diagnosis
 from diagnosis.fit import Fit, fit_run
@@ -23,22 +25,22 @@ def settled(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]
         task: Run or joined runs, with a starting model.
         diagnosed: Makes a diagnosis of a task.
     """
-    runs = task.run.touches.runs
-    possible = range(0 if task.is_known else 1, len(runs))
-    if not possible:
-        return diagnosed(task)
+    touches = task.run.touches
+    fitted = [int(i) for i in np.unique(touches.run[task.run.split != "test"])]
+    possible = [0] * task.is_known + fitted[1:]
     free = diagnosed(_with(task, possible))
     shown = [i for i in possible if _is_changed(free.geometry.rows, i)]
-    result = free if shown == list(possible) else diagnosed(_with(task, shown))
-    if len(runs) == 1:
+    result = free if shown == possible else diagnosed(_with(task, shown))
+    if len(touches.runs) == 1:
         return result
-    rows = free.geometry.rows if result is free else _apart(result.fit)
-    changed = tuple(i in shown for i in range(1, len(runs)))
-    return replace(result, trend=Trend(run_errors(result.fit), changed, rows))
+    rows = free.geometry.rows if result is free else _apart(result.fit, fitted[1:])
+    return replace(result, trend=Trend(run_errors(result.fit), tuple(shown), rows))
 
 
 def _with(task: DiagnosisTask, since: Sequence[int]) -> DiagnosisTask:
     """The task with a geometry that may be another from some runs on."""
+    if not since:
+        return task
     model = changing(task.model, task.run.touches, since)
     return replace(task, model=model, prior=with_changes(task.prior, model))
 
@@ -50,8 +52,7 @@ def _is_changed(rows: Sequence[GeometryRow], run: int) -> bool:
     return any(row.has_changed_into(run) for row in rows)
 
 
-def _apart(fit: Fit) -> tuple[GeometryRow, ...]:
+def _apart(fit: Fit, since: Sequence[int]) -> tuple[GeometryRow, ...]:
     """The geometry of every run by itself, beside the effects of a fit."""
-    touches = fit.run.touches
-    model = changing(fit.model, touches, range(1, len(touches.runs)))
+    model = changing(fit.model, fit.run.touches, since)
     return geometry_rows(fit_run(fit.run, model, gross=fit.gross, memory=fit.memory))

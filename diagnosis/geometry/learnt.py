@@ -213,7 +213,8 @@ def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | Non
     sd = float(np.linalg.norm(one.weights @ fit.prior.root[:machine, :machine]))
     values = [_of(fit, w) for w in every]
     is_known = [e.u * DETERMINED < sd for e in values]
-    course = tuple(e if k else None for e, k in zip(values, is_known, strict=True))
+    fitted = set(fit.run.touches.run[fit.used])
+    course = tuple(e if is_known[i] and i in fitted else None for i, e in enumerate(values))
     steps = [
         _of(fit, every[i + 1] - every[i]) if is_known[i] and is_known[i + 1] else None
         for i in range(len(every) - 1)

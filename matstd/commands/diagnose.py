@@ -25,7 +25,21 @@ WIDE = 40
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
+    parser.add_argument(
+        "run_files",
+        metavar="RUN.csv",
+        nargs="+",
+        help="measurements; several runs of one machine (days, set-ups, standards) in their order",
+    )
+    parser.add_argument(
+        "--hold-out",
+        metavar="RUN",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="learn nothing of these runs but where the standard stood, and tell how well the "
+        "others predict them",
+    )
     parser.add_argument(
         "--model",
         metavar="MODEL.toml",
@@ -85,7 +99,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.progress import stages
 
     same = "so that its estimates are made anew: no touch counts twice"
-    run, saved = read_inputs(args.run_file, args.model, args.effects, same)
+    run, saved = read_inputs(args.run_files, args.model, args.effects, same, args.hold_out)
     run = with_pitches(run, args.pitch)
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
@@ -97,11 +111,15 @@ def run(args: argparse.Namespace) -> int:
             from report.pages import write_diagnosis_page
 
             show("report", 0, 1)
-            title = Path(args.run_file).name
+            title = _title(args)
             write_diagnosis_page(result, folder, title, np.random.default_rng(0))
             print_report(folder, printed_by)
     _tell(args, result)
     return 0
+
+
+def _title(args: argparse.Namespace) -> str:
+    return ", ".join(Path(path).name for path in args.run_files)
 
 
 def _diagnosed(
@@ -141,7 +159,7 @@ def _write(
     before = saved if saved and not is_learnt_from(saved, result.run) else None
     made_with = f"material-standard {versions()['material-standard']}"
     promised = result.choice.best.error if fit is result.fit and result.choice else None
-    name = Path(args.run_file).name
+    name = _title(args)
     told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
     write_model(folder / "model.toml", fit, name, before, made_with, promised, told)
     for i, plan in enumerate(result.plans, start=1):
