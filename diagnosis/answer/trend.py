@@ -43,11 +43,18 @@ class Trend:
         changed: Runs, by number, whose geometry differs from that of the run before; 0 stands for
             the first beside the model that the diagnosis began with.
         rows: The geometry with its course, every run by itself.
+        settled: The same with runs between which nothing changed as one: what did change is known
+            better by it.
     """
 
     runs: tuple[RunErrors, ...]
     changed: tuple[int, ...]
     rows: tuple[GeometryRow, ...]
+    settled: tuple[GeometryRow, ...]
+
+    def known_best(self, run: int) -> tuple[GeometryRow, ...]:
+        """The rows, in the same order, by which what changed into a run is known best."""
+        return self.settled if run in self.changed else self.rows
 
 
 def run_errors(fit: Fit) -> tuple[RunErrors, ...]:

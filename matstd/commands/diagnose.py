@@ -172,7 +172,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
     from matstd.console import console, say
     from report.effects import plan_words, rival_words
-    from report.geometry import fault_sentences, ladder_sentence, noted_lines
+    from report.geometry import fault_sentences, ladder_sentence, noted_lines, trend_lines
     from report.words import remark_sentence, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
@@ -188,7 +188,10 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
             say(f"- {rivals}")
     for sentence in fault_sentences(result.faults):
         say(f"- {sentence}", style="bold")
-    for line in (ladder_sentence(result.geometry), *noted_lines(result.geometry)):
+    for line in trend_lines(result.trend):
+        say(f"- {line}", style="bold")
+    noted = () if result.trend else noted_lines(result.geometry)
+    for line in (ladder_sentence(result.geometry), *noted):
         say(f"- {line}")
     for remark in result.remarks:
         say(f"- {remark_sentence(remark)}")
