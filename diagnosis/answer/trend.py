@@ -19,14 +19,15 @@ class RunErrors:
         rms: Root mean square residual of those that were fitted; None if the run was held out.
         test_rms: Plain error of its poses, each predicted by all others; None likewise.
         left_out: Plain error of the whole run, its set-ups fitted, the machine predicted by the
-            other runs: as in the run before, of the first run as in the one after.
+            other runs: as in the run before, of the first run as in the one after. None where no
+            other run was fitted.
     """
 
     name: str
     touches: int
     rms: float | None
     test_rms: float | None
-    left_out: float
+    left_out: float | None
 
     @property
     def is_held_out(self) -> bool:
@@ -65,23 +66,25 @@ def run_errors(fit: Fit) -> tuple[RunErrors, ...]:
         rows, own = fit.used & (run_of == i), run_of[fit.used] == i
         is_fitted = bool(rows.any())
         counted = rows if is_fitted else fit.test_rows & (run_of == i)
-        seen = fit if not is_fitted else _without(fit, i)
+        others = _without(fit, i) if is_fitted else fit
         out.append(
             RunErrors(
                 name=name,
                 touches=int(counted.sum()),
                 rms=_rms(fit.residual[rows]) if is_fitted else None,
                 test_rms=_rms(held_out[own]) if is_fitted else None,
-                left_out=_rms(seen.residual[counted]),
+                left_out=None if others is None else _rms(others.residual[counted]),
             )
         )
     return tuple(out)
 
 
-def _without(fit: Fit, run: int) -> Fit:
-    """The fit to the other runs alone."""
+def _without(fit: Fit, run: int) -> Fit | None:
+    """The fit to the other runs alone; None where there is no other."""
     touches = fit.run.touches
     others = [i for i in np.unique(touches.run[fit.used]) if i != run]
+    if not others:
+        return None
     # what changed since a run that nobody has seen is nobody's guess
     since = [i for i in changed_since(fit.model) if i in others[1:]]
     split = np.where(fit.used & (touches.run != run), "", "test")

@@ -22,10 +22,14 @@ def _run(run: RunErrors, has_changed: bool) -> dict[str, Any]:
         "touches": run.touches,
         "is_held_out": run.is_held_out,
         "has_changed": has_changed,
-        "rms_um": None if run.rms is None else _digits(run.rms / UM),
-        "test_rms_um": None if run.test_rms is None else _digits(run.test_rms / UM),
-        "left_out_rms_um": _digits(run.left_out / UM),
+        "rms_um": _um(run.rms),
+        "test_rms_um": _um(run.test_rms),
+        "left_out_rms_um": _um(run.left_out),
     }
+
+
+def _um(value: float | None) -> float | None:
+    return None if value is None else _digits(value / UM)
 
 
 def _row(trend: Trend, k: int) -> dict[str, Any]:

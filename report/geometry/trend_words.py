@@ -41,7 +41,8 @@ def trend_lines(trend: Trend | None) -> list[str]:
 
 def _left_out(trend: Trend) -> str:
     """How well every run is predicted by the others."""
-    errors = [f"{run.name} {microns(run.left_out)}" for run in trend.runs]
+    known = [(run.name, run.left_out) for run in trend.runs if run.left_out is not None]
+    errors = [f"{name} {microns(error)}" for name, error in known]
     return f"each run predicted by the others, its set-ups fitted: {', '.join(errors)} rms"
 
 
