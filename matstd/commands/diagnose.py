@@ -23,6 +23,26 @@ WIDE = 40
 """Letters of a cell of words, so that the table of figures fits beside them."""
 
 
+LISTS = (
+    (
+        "--hold-out",
+        "RUN",
+        "learn nothing of these runs but where the standard stood, and tell how well the others "
+        "predict them",
+    ),
+    ("--add", "EFFECT", "add these effects to the model"),
+    ("--only", "KIND", "look for effects of these kinds alone, or of these names"),
+    ("--without", "KIND", "do not look for effects of these kinds, or of these names"),
+    (
+        "--pitch",
+        "AXIS=MM",
+        "pitch of the screw or scale of an axis: errors that repeat are looked for at it and at "
+        "its whole fractions, and it is preferred among periods that look alike",
+    ),
+)
+"""Options with one or more words, which may be given more than once."""
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
@@ -32,57 +52,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="measurements; several runs of one machine (days, set-ups, standards) in their order",
     )
     parser.add_argument(
-        "--hold-out",
-        metavar="RUN",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="learn nothing of these runs but where the standard stood, and tell how well the "
-        "others predict them",
-    )
-    parser.add_argument(
         "--model",
         metavar="MODEL.toml",
         help="starting model; without it the ordinary geometric one",
     )
-    parser.add_argument(
-        "--add",
-        metavar="EFFECT",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="add these effects to the model",
-    )
+    for option, word, meaning in LISTS:
+        parser.add_argument(
+            option, metavar=word, action="extend", nargs="+", default=[], help=meaning
+        )
     parser.add_argument(
         "--auto", action="store_true", help="add whatever the diagnosis finds, step by step"
     )
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
-    )
-    parser.add_argument(
-        "--only",
-        metavar="KIND",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="look for effects of these kinds alone, or of these names",
-    )
-    parser.add_argument(
-        "--without",
-        metavar="KIND",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="do not look for effects of these kinds, or of these names",
-    )
-    parser.add_argument(
-        "--pitch",
-        metavar="AXIS=MM",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="pitch of the screw or scale of an axis: errors that repeat are looked for at it and "
-        "at its whole fractions, and it is preferred among periods that look alike",
     )
     parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
     add_pdf(parser)
