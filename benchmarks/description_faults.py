@@ -23,7 +23,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
 
 from simulator_case import simulate_case  # noqa: E402  (found through the path above)
 
-from diagnosis.answer import Fault, description_faults, faults_of_refused  # noqa: E402
+from diagnosis.faults import Fault, description_faults, faults_of_refused  # noqa: E402
 from diagnosis.fit import fit_run  # noqa: E402
 from twin.errors import BadFile  # noqa: E402
 from twin.files import read_run  # noqa: E402

@@ -108,7 +108,7 @@ def score(folder: Path) -> Score:
         for s in result.steps
         if s.effect is not None
     )
-    ratio = result.fit.freed_rms / UM / truth["noise_um"]
+    ratio = result.fit.standardised_test_rms / UM / truth["noise_um"]
     return Score(
         folder.name,
         told or "-",

@@ -8,12 +8,13 @@ measure next), and model and result files. It needs no standard and no CAD.
     result = diagnose(read_run("run.csv"))
     result.verdict, [step.effect for step in result.steps], result.fit.test_rms
 
-`fit` estimates parameters with a prior, whatever the noise, and finds gross errors. `evidence`
-projects effects that are not in the model on what the fit leaves, and says how much a set of them
-explains. `residual` tests what is left for structure, and finds regions where a model fails.
-`search` finds sets of effects, `choice` takes the one that predicts best. `answer` turns
-it into a verdict with sizes and look-alikes.
-`files` reads and writes models and results.
+`regression` solves with a prior and knows what noise does, `fit` estimates a model's parameters
+with it, `geometry` tells what they mean to a machine's user. `evidence` projects effects that are
+not in the model on what the fit leaves, and says how much a set of them explains; `faults` tries
+what users get wrong in a description. `residual` tests what is left for structure, and finds
+regions where a model fails. `search` finds sets of effects, `choice` takes the one that predicts
+best, `answer` turns it into a verdict with sizes and look-alikes. `files` reads and writes models
+and results.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
 should know about a run is a record in `remarks`, its sentence in `report.words`; a
@@ -32,7 +33,19 @@ from diagnosis.files import (
 from diagnosis.fit import Estimable, Fit, Prior, estimable, fit_run
 from diagnosis.residual import Region, Structure
 
-PARTS = ("fit", "evidence", "remarks", "residual", "search", "choice", "answer", "files")
+PARTS = (
+    "regression",
+    "fit",
+    "geometry",
+    "evidence",
+    "faults",
+    "remarks",
+    "residual",
+    "search",
+    "choice",
+    "answer",
+    "files",
+)
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

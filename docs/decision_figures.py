@@ -103,7 +103,7 @@ def foot_points() -> dict[str, str]:
     from ex06_step import standard
     from ex08_virtual_probing import probed
 
-    from diagnosis.fit import solve
+    from diagnosis.regression import solve
     from probe_paths.campaign import foot_points as foot
     from sensitivity.population import Population
     from twin.effects import setup_errors

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 COMMANDS = {
     "design": "the main job: sensitivities, standard, STEP and STL, programs, proof, report",
-    "volumetric": "exact deviation of the tool point in the table frame, a row a pose",
+    "volumetric": "exact deviation of the tool point in the table frame, one row per pose",
     "sensitivity": "sensitivity of the tool point to every error parameter at every pose",
     "simulate": "run an emitted probing program on the machine's twin and write a run file",
     "evaluate": "logs of our probing programs from the control, made a run file",

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from diagnosis.answer import faults_of_refused
 from diagnosis.choice import offered
+from diagnosis.faults import faults_of_refused
 from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
 from report.geometry import fault_sentences
@@ -109,11 +109,11 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
     Args:
         names: As given.
         known: Effects that are in the model already.
-        run: The measurements.
 
     Raises:
         UnknownEffect, UnknownAxis, UnknownSymbol: A name that means nothing here.
-        DesignError: An effect that is there already, is given twice, or moves nothing in this run.
+        DesignError: An effect that the model already has, that is given twice, or that moves
+            nothing in this run.
     """
     there = {effect.name for effect in known}
     out: list[Effect] = []
@@ -140,7 +140,6 @@ def candidates(only: Sequence[str], without: Sequence[str], run: Run) -> list[Ef
     Args:
         only: Kinds, or names of effects; empty for all.
         without: Kinds, or names of effects, that are left out.
-        run: The measurements.
 
     Raises:
         DesignError: A word that is no kind and no effect of this run, or nothing is left.

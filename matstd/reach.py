@@ -22,9 +22,8 @@ from artefact.reach import (
     turned,
 )
 from artefact.worth import poses_within
-from matstd.from_project import blank, placement_options, probe, probe_reach
+from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
 from probe_paths.plan import (
-    PlanOptions,
     home_readings,
     readings_at,
     solid_hull,
@@ -133,13 +132,30 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
 
     By what every standard has: its base, and its highest sphere, taken over the middle.
     """
-    made, options, chain = blank(project), PlanOptions(), project.chain
+    made, options, chain = blank(project), plan_options(project), project.chain
     fit, top = made.fittings, made.base.thickness
     middle = np.array([0.0, 0.0, max(fit.sphere_heights)])
-    ball = DatumSphere("SPH", middle, fit.sphere_radius, fit.stem_radius, fit.foot_radius, top)
-    least = Standard("least", "", made.material, made.base, None, (), (ball,), (), made.height)
-    solid = solid_hull(least, wanted.setup, wanted.table_radius)
-    tool = replace(probe(project), length=wanted.length, stylus_length=0.5 * wanted.length)
+    ball = DatumSphere(
+        name="SPH",
+        centre=middle,
+        radius=fit.sphere_radius,
+        stem_radius=fit.stem_radius,
+        foot_radius=fit.foot_radius,
+        foot=top,
+    )
+    least = Standard(
+        name="least",
+        serial="",
+        material=made.material,
+        base=made.base,
+        core=None,
+        patches=(),
+        spheres=(ball,),
+        holes=(),
+        blank_height=made.height,
+    )
+    solid = solid_hull(least, wanted.setup, wanted.workshop)
+    tool = probe(project).at_length(wanted.length)
     path = np.tile(home_readings(chain), (2 * len(poses) + 1, 1))
     path[1::2] = poses
     turning = swing_height(chain, path, solid, tool)[::2] + 0.5 * options.clearance
@@ -209,11 +225,11 @@ def _moved(
         place = ", ".join(f"{v + 0.0:.0f}" for v in moved[:3, 3])
         setup = Setup(wanted.setup.name, moved)
         yield Wish(
-            f"setup.{setup.name}.origin_mm = [{place}]",
-            float(np.linalg.norm(shift)),
-            "place",
-            replace(wanted, setup=setup),
-            rotary,
+            words=f"setup.{setup.name}.origin_mm = [{place}]",
+            size=float(np.linalg.norm(shift)),
+            kind="place",
+            reach=replace(wanted, setup=setup),
+            rotary=rotary,
         )
 
 
@@ -228,7 +244,13 @@ def _wider(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
                 wide[i, to] += (ends[[*to]] - wide[i, to]) * step / _WIDER
                 words = ", ".join(f"{v / DEG:.0f}" for v in wide[i])
                 size = float(np.abs(wide - rotary).sum() / DEG)
-                yield Wish(f"workspace.{name} = [{words}]", size, f"range {name}", wanted, wide)
+                yield Wish(
+                    words=f"workspace.{name} = [{words}]",
+                    size=size,
+                    kind=f"range {name}",
+                    reach=wanted,
+                    rotary=wide,
+                )
 
 
 def _longer(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
@@ -236,7 +258,7 @@ def _longer(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
         if wanted.length + more > 4.0 * wanted.radius:
             words = f"probe.length_mm = {wanted.length + more:g}"
             other = replace(wanted, length=wanted.length + more)
-            yield Wish(words, abs(more), "length", other, rotary)
+            yield Wish(words=words, size=abs(more), kind="length", reach=other, rotary=rotary)
 
 
 def _turned(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
@@ -245,9 +267,9 @@ def _turned(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
         setup = Setup(wanted.setup.name, turned(wanted.setup.T_table_artefact, (a, b, c)))
         words = ", ".join(f"{v:g}" for v in angles)
         yield Wish(
-            f"setup.{setup.name}.rotation_deg = [{words}]",
-            90.0,
-            "turn",
-            replace(wanted, setup=setup),
-            rotary,
+            words=f"setup.{setup.name}.rotation_deg = [{words}]",
+            size=90.0,
+            kind="turn",
+            reach=replace(wanted, setup=setup),
+            rotary=rotary,
         )

@@ -12,6 +12,8 @@ _NOUNS = {
     "time_s": "time",
     "spindle_rpm": "spindle speed",
     "setup": "set-up",
+    "azimuth_deg": "azimuth of the normal about the tool axis",
+    "inclination_deg": "angle between normal and tool axis",
     **{column: f"{letter} on the standard" for column, letter in _PLACES.items()},
     **{f"n{letter}": f"the normal's {letter}" for letter in "xyz"},
     **{f"F{letter}_N": f"load in {letter}" for letter in "xyz"},

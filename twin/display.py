@@ -6,6 +6,7 @@ when somebody asks to see one, so nothing below imports it.
 
 import csv
 import io
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
@@ -28,7 +29,7 @@ class Shown:
         return str(import_module(_MADE_BY).html(self))
 
 
-class Tabular(Shown):
+class Tabular(Shown, ABC):
     """A result that is a table, units in the names of its columns.
 
     Attributes:
@@ -37,9 +38,9 @@ class Tabular(Shown):
 
     number_format = ".7g"
 
+    @abstractmethod
     def columns(self) -> Mapping[str, Any]:
         """Columns by name, all of one length."""
-        raise NotImplementedError
 
     def to_csv(self, path: str | Path | None = None) -> str:
         """The table as CSV with a line of names; written to a file, whole or not at all, if named.

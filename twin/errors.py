@@ -112,7 +112,6 @@ class BadFile(DesignError, ValueError):
     """A file that says something else than it should.
 
     Args:
-        path: The file.
         where: The line or key.
         found: What stood there.
         expected: What should stand there.
@@ -133,7 +132,6 @@ class BadFile(DesignError, ValueError):
         """A refused value as a fault of the file that it stood in.
 
         Args:
-            path: The file.
             error: With the facts found and expected: BadValue, UnknownAxis, UnknownSymbol.
             within: Key of the table that the value stood in.
             key: Of the value; empty for the key that the error tells.

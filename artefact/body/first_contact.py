@@ -119,7 +119,14 @@ def _result(standard: Standard, race: _Race, travel: float | Array) -> Contact:
         mine = np.flatnonzero(on_surface & (race.feature == name))
         if len(mine):
             point[mine], normal[mine] = surface.point(race.uv[mine]), surface.normal(race.uv[mine])
-    return Contact(race.feature, race.meeting, race.uv, race.travel, point, normal)
+    return Contact(
+        feature=race.feature,
+        meeting=race.meeting,
+        uv=race.uv,
+        travel=race.travel,
+        point=point,
+        normal=normal,
+    )
 
 
 def _meet_patch(

@@ -232,8 +232,18 @@ def _nearest(bodies: dict[str, Body], points: Array) -> tuple[str, float]:
 def _at_least(
     name: str, subject: str, value: float, limit: float, unit: str = "mm", other: str = ""
 ) -> Constraint:
-    return Constraint(name, subject, value, limit, value - limit, unit, other)
+    return Constraint(
+        name=name,
+        subject=subject,
+        value=value,
+        limit=limit,
+        slack=value - limit,
+        unit=unit,
+        other=other,
+    )
 
 
 def _at_most(name: str, subject: str, value: float, limit: float, unit: str = "mm") -> Constraint:
-    return Constraint(name, subject, value, limit, limit - value, unit)
+    return Constraint(
+        name=name, subject=subject, value=value, limit=limit, slack=limit - value, unit=unit
+    )

@@ -12,7 +12,7 @@ from twin.units import NM
 CONTACT_TOLERANCE = 1e-4 * NM
 """Newton stops when the ball is this close to the surface, mm."""
 
-_STEPS = 30
+_STEPS = 30  # a bound: Newton settles in a few, and what uses them up has not converged
 _LONGEST = 4.0  # mm of one step over the surface: Newton is trusted no farther from its start
 _SETTLED = 0.1 * NM  # mm: what is not closer than this when the steps are used up has not converged
 

@@ -9,7 +9,7 @@ from artefact.body.datum import outline_distance
 from artefact.body.freeform import FreeformPatch
 from twin.frames import Array, apply
 
-_STEPS = 60
+_STEPS = 60  # a bound: where a ball grazes a body, Newton but halves the gap at each
 _SECANT = 1e-5  # mm
 _SLIVER = 1e-9  # mm: distance at which a ball counts as touching
 

@@ -131,7 +131,12 @@ class Standard:
         """The stem under each sphere, by the sphere's name; it ends in the ball's centre."""
         return {
             s.name: Cone(
-                s.centre[0], s.centre[1], s.foot, s.centre[2], s.foot_radius, s.stem_radius
+                x=s.centre[0],
+                y=s.centre[1],
+                low=s.foot,
+                high=s.centre[2],
+                low_radius=s.foot_radius,
+                high_radius=s.stem_radius,
             )
             for s in self.spheres
         }
@@ -142,7 +147,14 @@ class Standard:
         bodies: dict[str, Body] = {"BASE": self.base.body}
         if self.core is not None:
             core, low = self.core, 0.5 * self.base.thickness
-            bodies["CORE"] = Cone(0.0, 0.0, low, core.height, core.low_radius, core.high_radius)
+            bodies["CORE"] = Cone(
+                x=0.0,
+                y=0.0,
+                low=low,
+                high=core.height,
+                low_radius=core.low_radius,
+                high_radius=core.high_radius,
+            )
         bodies.update(self.columns)
         bodies.update({s.name: Ball(s.centre, s.radius) for s in self.spheres})
         bodies.update({f"{name} stem": stem for name, stem in self.stems.items()})

@@ -93,9 +93,6 @@ class _File(Table):
 def read_standard(path: str | Path) -> Standard:
     """Read `standard.toml`.
 
-    Args:
-        path: The file.
-
     Returns:
         The standard, in base units; bit for bit the one that was written.
 
@@ -111,7 +108,6 @@ def write_standard(path: str | Path, standard: Standard) -> None:
     """Write `standard.toml` whole or not at all; reading it gives the same numbers.
 
     Args:
-        path: The file.
         standard: In base units.
     """
     import tomli_w
@@ -198,7 +194,12 @@ def _sphere(path: Path, number: int, sphere: _Sphere) -> DatumSphere:
 def _hole(path: Path, number: int, hole: _Hole) -> MountingHole:
     try:
         return MountingHole(
-            hole.name, hole.x_mm, hole.y_mm, hole.radius_mm, hole.bore_radius_mm, hole.bore_depth_mm
+            name=hole.name,
+            x=hole.x_mm,
+            y=hole.y_mm,
+            radius=hole.radius_mm,
+            bore_radius=hole.bore_radius_mm,
+            bore_depth=hole.bore_depth_mm,
         )
     except ShapeMismatch as error:
         raise BadFile(path, f"hole.{number}", str(error), "a counterbored hole") from error

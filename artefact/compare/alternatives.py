@@ -135,7 +135,6 @@ def alternatives(
     """What every other way to measure buys.
 
     Args:
-        criterion: Criterion.
         requests: The touches of the design.
         rng: Draws the touches that are tried.
     """
@@ -146,7 +145,15 @@ def alternatives(
         try:
             found = _bought(criterion, requests, half, other, rng)
         except DesignError as error:
-            out.append(Alternative(name, False, 0, 1.0, str(error)))
+            out.append(
+                Alternative(
+                    name=name,
+                    is_possible=False,
+                    rank_gained=0,
+                    variance_ratio=1.0,
+                    refusal=str(error),
+                )
+            )
             continue
         gained, ratio = found[0] - base[0], found[1] / base[1]
         out.append(Alternative(name, True, gained, ratio))

@@ -81,7 +81,6 @@ def evaluated(
 
     Args:
         name: What it is.
-        criterion: Criterion.
         chosen: Its touches.
         random: Lots of touches taken at random on it, as many in each.
         library: Effects of the library that touches could show.
@@ -150,13 +149,11 @@ def compare(
     The ideal scatter has points anywhere in the volume and any normal, and nothing is in its way.
 
     Args:
-        criterion: Criterion.
         all_poses: Table poses that bodies choose from, (K, R), rad.
         poses: Table poses of the scatter.
         blank: Base, blank and limits of the standard.
         options: Numbers of touches and poses.
         library: Effects of the library that touches could show.
-        rng: Source of the random numbers.
 
     Returns:
         The artefacts, and the names of those that the blank has no room for, or that this

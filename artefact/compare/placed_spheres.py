@@ -23,7 +23,7 @@ COUNTS = (4, 5, 7, 13)
 
 _CANDIDATES = 300  # places that are tried
 _DIRECTIONS = 9  # touches tried on each, at each of the poses
-_POSES = 20
+_POSES = 20  # table poses, spread over the user's
 _LOWEST = 15.0  # mm between the base and a ball, for the probe to come beside it
 
 

@@ -46,9 +46,30 @@ class Ring:
 
 
 RINGS = (
-    Ring(0.08, (0.0, 6.0), (130.0, 160.0), (0.0, 15.0 * DEG), (0.0, 0.0), (17.0, 24.0)),
-    Ring(0.30, (50.0, 90.0), (90.0, 150.0), (10 * DEG, 45 * DEG), (40 * DEG, 100 * DEG), (15, 22)),
-    Ring(0.62, (80.0, 122.0), (60.0, 120.0), (20 * DEG, 60 * DEG), (35 * DEG, 110 * DEG), (15, 22)),
+    Ring(
+        share=0.08,
+        radius=(0.0, 6.0),
+        height=(130.0, 160.0),
+        tilt=(0.0, 15.0 * DEG),
+        lean=(0.0, 0.0),
+        half_size=(17.0, 24.0),
+    ),
+    Ring(
+        share=0.30,
+        radius=(50.0, 90.0),
+        height=(90.0, 150.0),
+        tilt=(10 * DEG, 45 * DEG),
+        lean=(40 * DEG, 100 * DEG),
+        half_size=(15, 22),
+    ),
+    Ring(
+        share=0.62,
+        radius=(80.0, 122.0),
+        height=(60.0, 120.0),
+        tilt=(20 * DEG, 60 * DEG),
+        lean=(35 * DEG, 110 * DEG),
+        half_size=(15, 22),
+    ),
 )
 """Top, shoulder and flank of a blank of 280 mm; scaled to other blanks by their size.
 
@@ -75,7 +96,6 @@ def smooth_heights(
     Args:
         half_size: Half sides of the face, mm.
         limits: Of slope and concave radius.
-        rng: Source of the random numbers.
         tallest: What a shape may rise above its plane or sink below it, mm.
 
     Returns:
@@ -124,7 +144,6 @@ def random_sites(blank: Blank, count: int, rng: np.random.Generator) -> list[Sit
     Args:
         blank: Base, blank height and limits.
         count: Number of sites, shared out over the rings.
-        rng: Source of the random numbers.
 
     Raises:
         NotBuildable: A blank on which no column of some ring can stand.

@@ -63,7 +63,14 @@ def with_spheres(
     """
     fit, top = blank.fittings, blank.base.thickness
     spheres = tuple(
-        DatumSphere(name(i), c, fit.sphere_radius, fit.stem_radius, fit.foot_radius, top)
+        DatumSphere(
+            name=name(i),
+            centre=c,
+            radius=fit.sphere_radius,
+            stem_radius=fit.stem_radius,
+            foot_radius=fit.foot_radius,
+            foot=top,
+        )
         for i, c in enumerate(centres, 1)
     )
     return _standard("SPHERES", blank, (), spheres)

@@ -225,7 +225,14 @@ def _spheres(standard: Standard, blank: Blank) -> tuple[DatumSphere, ...]:
             )
         options.append(centres[free])
     return tuple(
-        DatumSphere(f"SPH{i}", c, fit.sphere_radius, fit.stem_radius, fit.foot_radius, top)
+        DatumSphere(
+            name=f"SPH{i}",
+            centre=c,
+            radius=fit.sphere_radius,
+            stem_radius=fit.stem_radius,
+            foot_radius=fit.foot_radius,
+            foot=top,
+        )
         for i, c in enumerate(spread(options), 1)
     )
 
@@ -248,7 +255,12 @@ def _holes(
         )
     return tuple(
         MountingHole(
-            f"HOLE{i}", float(x), float(y), fit.hole_radius, fit.bore_radius, fit.bore_depth
+            name=f"HOLE{i}",
+            x=float(x),
+            y=float(y),
+            radius=fit.hole_radius,
+            bore_radius=fit.bore_radius,
+            bore_depth=fit.bore_depth,
         )
         for i, (x, y) in enumerate(spread([places] * fit.hole_count), 1)
     )

@@ -125,7 +125,6 @@ def design_standard(
         blank: Blank, datum features, material, limits.
         workspace: Where the user works: its poses are predicted, its rotary limits are those of the
             table poses.
-        rng: Source of the random numbers.
         population: Machines that are expected, with the relations between their errors; None for
             the ordinary ones.
         options: How much is tried and chosen.

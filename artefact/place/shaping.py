@@ -28,7 +28,7 @@ from twin.units import DEG
 _PLACES = 3  # each way on a face, where touches are wanted
 _POSES = 4  # at which each of them is tried
 _ON_SPHERE = 36  # directions on a sphere
-_ON_SPHERE_POSES = 12
+_ON_SPHERE_POSES = 12  # more than on a face: a ball shows every normal, its poses decide
 _LAID_OUT = 5  # wanted slopes each way on a face
 _SMOOTH = 0.1  # weight of bending against slopes; a length of the patch makes it a pure number
 _NEAR = 0.03  # gap of the relaxed optimum that will do
@@ -47,7 +47,6 @@ def with_optimised_shapes(
     Patches whose new shape breaks a limit keep the old one.
 
     Args:
-        criterion: Criterion.
         standard: Within its limits.
         poses: Table poses, (K, R), rad.
         limits: Of slope, curvature, room.

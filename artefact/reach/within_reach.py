@@ -135,7 +135,13 @@ def reach_of(reach: ProbeReach, point: Array, normal: Array, poses: Array) -> Pl
         limits += [Limit(name, low, upper=False), Limit(name, high)]
         beyond += [low - q[..., i].min(axis=0), q[..., i].max(axis=0) - high]
     far = np.stack(beyond, axis=-1)
-    return PlacesInReach(point, normal, poses, tuple(limits), np.where(far > ROUNDING, far, 0.0))
+    return PlacesInReach(
+        point=point,
+        normal=normal,
+        poses=poses,
+        limits=tuple(limits),
+        beyond=np.where(far > ROUNDING, far, 0.0),
+    )
 
 
 def spread_poses(poses: Array, count: int) -> Array:

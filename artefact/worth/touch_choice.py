@@ -272,4 +272,6 @@ def chosen_touches_on(
     start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
     best = relaxed(criterion.objective, W, n, start, _NEAR, quotas, rounds)
     choice = rounded(criterion.objective, W, best.weight, n, most=n // 2, quotas=quotas)
-    return choice.chosen, Certificate(len(W), n, choice.value, best.bound, shares=True)
+    return choice.chosen, Certificate(
+        candidates=len(W), count=n, value=choice.value, bound=best.bound, shares=True
+    )

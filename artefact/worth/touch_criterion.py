@@ -46,7 +46,7 @@ CRITERIA = ("I", "G", "D", "A", "E")
 
 _POSES = 400  # over which predictions are judged, in the probed volume and as many of the user's
 _SCATTER = 3000  # random touches that span all that touches can show
-_ROWS_A_BLOCK = 4000
+_ROWS_A_BLOCK = 4000  # of 71 columns: 2 MiB, held beside what is made of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -335,7 +335,6 @@ def random_touches(
         volume: Box in the artefact frame, mm.
         rotary: Limits of every rotary axis (R, 2), from which readings are drawn evenly, rad.
         count: Number of touches; fewer where the machine reaches fewer.
-        rng: Source of the random numbers.
 
     Raises:
         NotReachable: The machine reaches none.

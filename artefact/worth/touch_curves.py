@@ -84,7 +84,7 @@ def touch_curve(
         inverse = np.linalg.solve(M, np.concatenate(forms, axis=1))
         R = W.shape[1]
         left[:, k] = [np.sqrt(np.trace(inverse[:, i * R : (i + 1) * R])) for i in range(2)]
-    return TouchCurve(name, designed, numbers, left[0], left[1])
+    return TouchCurve(name=name, designed=designed, counts=numbers, rms=left[0], rms_user=left[1])
 
 
 def _form(criterion: Criterion, tip: Array, directions: Array) -> Array:

@@ -16,9 +16,6 @@ def as_part(standard: Standard) -> tuple[build123d.Solid, dict[str, build123d.Fa
     The solid is the one that `export_standard` writes. It is built in this process, where a crash
     of the CAD kernel is a crash of the caller's.
 
-    Args:
-        standard: To be built.
-
     Returns:
         The solid, labelled with the standard's name, and its faces by name: FF1 ..., SPH1 ...,
         DATUM_A, SEAT, bores and holes.

@@ -56,9 +56,6 @@ def build_solid(standard: Standard) -> Solid:
     Every column is the prism of its spline face (6 mm larger than the pad) cut out by the pad's
     own box, so its walls are planes and its lid is the spline itself, not an approximation.
 
-    Args:
-        standard: To be built.
-
     Returns:
         The solid with its named faces.
 

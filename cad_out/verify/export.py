@@ -68,7 +68,6 @@ def build_and_measure(
     """Build into an empty folder and measure; figures out of their limits are not refused here.
 
     Args:
-        standard: To be built.
         place: Empty folder.
         chord: Largest distance of the mesh from the exact faces, mm.
         author: For the header of the STEP file.

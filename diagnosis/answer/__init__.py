@@ -8,18 +8,9 @@ shown, `next_measurement` touches that tell look-alikes apart, `proof` compares 
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.comparison import Comparison, GroupResidual, compare
 from diagnosis.answer.detectable import Detectable
-from diagnosis.answer.fault_trial import DescriptionFault, description_faults, faults_of_refused
-from diagnosis.answer.geometry_functionals import Quantity
-from diagnosis.answer.learnt_geometry import (
-    Correction,
-    Estimate,
-    GeometryRow,
-    LearntGeometry,
-)
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
 from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.suspects import Fault
 from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
@@ -27,24 +18,15 @@ __all__ = [
     "Candidate",
     "Comparison",
     "ConfusionClass",
-    "Correction",
-    "DescriptionFault",
     "Detectable",
     "Diagnosis",
-    "Estimate",
-    "Fault",
-    "GeometryRow",
     "GroupResidual",
-    "LearntGeometry",
     "Plan",
     "Proof",
-    "Quantity",
     "Step",
     "Verdict",
     "compare",
-    "description_faults",
     "diagnose",
-    "faults_of_refused",
     "probed_volume",
     "prove",
     "seen_from",

@@ -19,6 +19,7 @@ WINDOW = 15.0
 """Rivals whose evidence on the grid is this far behind are not refined."""
 
 MOST_RIVALS = 40
+"""Rivals that are refined, the most likely first: a class of more would tell a reader nothing."""
 
 OWN_SENSOR = 2.0
 """Log odds in favour of a sensor that bears the letter of the axis on which it acts."""

@@ -68,7 +68,11 @@ def not_significant(steps: Sequence[Step]) -> tuple[NotSignificant, ...]:
             continue
         if abs(size.value) < SIGNIFICANT * size.u:
             name = step.effect.name
-            out.append(NotSignificant(name, size.quantity, size.value, size.u, size.unit))
+            out.append(
+                NotSignificant(
+                    effect=name, quantity=size.quantity, value=size.value, u=size.u, unit=size.unit
+                )
+            )
     return tuple(out)
 
 

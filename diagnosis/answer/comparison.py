@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer.fault_trial import DescriptionFault, description_faults
-from diagnosis.answer.learnt_geometry import LearntGeometry, learnt_geometry
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from diagnosis.fit import BoolArray, Fit, Learnt, Prior, fit_run, solve
+from diagnosis.faults import DescriptionFault, description_faults
+from diagnosis.fit import Fit, Learnt, Prior, fit_run
+from diagnosis.geometry import LearntGeometry, learnt_geometry
+from diagnosis.regression import BoolArray, solve
 from diagnosis.remarks import Remark, remarks
 from diagnosis.residual import Region, Structure, find_structure, regions
 from twin.compute import one_blas_thread
@@ -175,7 +176,6 @@ def compare(
     """Measured against predicted deviations.
 
     Args:
-        run: The measurements.
         model: Machine and effects; None for the ordinary geometric model of the machine.
         estimates: Of the model's parameters, from an earlier run; then nothing but where the
             standard stands is learnt from this one. None fits the whole model to this run.
@@ -191,7 +191,7 @@ def compare(
         fit = fit_run(run, model)
         u = run.u
     else:
-        fit = _predicted(run, model, estimates)
+        fit = predicted_by(run, model, estimates)
         u = np.sqrt(run.u**2 + _prediction_variance(fit, estimates))
     nothing = EffectSet(ResidualSpace.of(fit), np.zeros((int(fit.used.sum()) + len(fit.prior), 0)))
     found = tuple(find_structure(nothing, progress))
@@ -208,10 +208,11 @@ def compare(
     )
 
 
-def _predicted(run: Run, model: Model, estimates: Prior) -> Fit:
-    """Set-ups fitted, the machine as estimated before; no touch is called a gross error unless it
-    is one beside the uncertainty of the prediction.
-    """  # noqa: D205
+def predicted_by(run: Run, model: Model, estimates: Prior) -> Fit:
+    """Set-ups fitted to a run, the machine as estimated before.
+
+    No touch is called a gross error unless it is one beside the uncertainty of the prediction.
+    """
     learnt = fit_run(run, model, estimates)
     known = Prior(estimates.mean, np.zeros_like(estimates.root))
     gross = replace(learnt.gross, too_many=False)

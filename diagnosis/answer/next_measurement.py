@@ -5,7 +5,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from diagnosis.fit import BoolArray, Fit
+from diagnosis.fit import Fit
+from diagnosis.regression import BoolArray
 from twin.frames import Array
 from twin.machine import inverse_linear
 from twin.model import columns
@@ -65,7 +66,6 @@ def candidate_touches(run: Run, rng: np.random.Generator) -> Touches:
     has not touched that feature are left out.
 
     Args:
-        run: The measurements.
         rng: Draws the combinations.
     """
     t = run.touches
@@ -89,7 +89,7 @@ def _with_linear(touches: Touches, target: Array, q: Array) -> Array:
     """Readings whose linear axes bring the ball to its target; as they are on other machines."""
     if len(touches.chain.linear_axes) != 3:
         return q
-    return inverse_linear(touches.chain, target, q, touches.length)
+    return inverse_linear(touches.chain, target, q, touches.target)
 
 
 def _within(touches: Touches) -> BoolArray:

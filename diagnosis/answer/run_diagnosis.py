@@ -9,8 +9,6 @@ from diagnosis.answer.alike import period_value
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.collinear import check_distinct, not_significant
 from diagnosis.answer.detectable import detectable
-from diagnosis.answer.fault_trial import description_faults
-from diagnosis.answer.learnt_geometry import learnt_geometry
 from diagnosis.answer.next_measurement import (
     Plan,
     candidate_targets,
@@ -18,6 +16,7 @@ from diagnosis.answer.next_measurement import (
     plan,
 )
 from diagnosis.answer.one_set import ToldSet, told_set
+from diagnosis.answer.several import settled
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from diagnosis.choice import (
@@ -37,7 +36,10 @@ from diagnosis.evidence import (
     projected,
     quiet,
 )
-from diagnosis.fit import Fit, GrossErrors, Prior
+from diagnosis.faults import description_faults
+from diagnosis.fit import Fit, Prior
+from diagnosis.geometry import learnt_geometry
+from diagnosis.regression import GrossErrors
 from diagnosis.remarks import Remark, SearchEnded, remarks
 from diagnosis.residual import Region, Structure, find_structure, regions
 from diagnosis.search import (
@@ -76,7 +78,6 @@ def diagnose(
     """Find what a model lacks.
 
     Args:
-        run: The measurements.
         model: Starting model; None for the ordinary geometric one.
         prior: Of its parameters, as from a model file; None for what its effects state.
         named: Effects that the user adds, whatever they are worth.
@@ -95,11 +96,23 @@ def diagnose(
     start = model or ordinary_model(run.touches.chain)
     belief = prior or Prior.of_effects(start.effects)
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
-    library = offered(run.touches) if candidates is None else list(candidates)
+    return settled(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
+
+
+def _diagnosed(
+    task: DiagnosisTask,
+    named: Sequence[Effect],
+    candidates: Sequence[Effect] | None,
+    progress: Progress,
+    rng: np.random.Generator | None,
+) -> Diagnosis:
+    """What a task lacks; arguments as of `diagnose`."""
+    touches = task.run.touches
+    library = offered(touches) if candidates is None else list(candidates)
     added = refined_named(task, named, progress)
     if len(added) > 1:
         check_distinct(ResidualSpace.of(task.fit()), added)
-    known = {e.name for e in (*start.effects, *(a.effect for a in added))}
+    known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
     final = search_until_stable(task, added, single, progress)

@@ -11,17 +11,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
-from diagnosis.fit import (
-    PRIOR_DOF,
-    Fit,
-    GrossErrors,
-    Reported,
-    continuous_inner,
-    fit_run,
-    reported,
-    shifted,
-    spacing,
-)
+from diagnosis.fit import Fit, Reported, continuous_inner, fit_run, reported, shifted, spacing
+from diagnosis.regression import PRIOR_DOF, GrossErrors
 from diagnosis.search import DiagnosisTask
 from twin.frames import Array
 from twin.model import Effect, Inner, Model, Tunable
@@ -52,7 +43,6 @@ def sizes(
     """Parameters of every effect as a user reads them, and the effects at their inner parameters.
 
     Args:
-        task: What is diagnosed.
         effects: Everything that was added to the model.
         gross: Gross errors, as they were found.
         complement: What the model to begin with leaves.

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from diagnosis.fit import MIN_POSES, Fit, Memory
+from diagnosis.fit import MIN_POSES, Fit
+from diagnosis.regression import Memory
 from twin.frames import Array
 from twin.record import IntArray
 

@@ -20,14 +20,14 @@ from diagnosis.evidence import (
     projected,
     tuned_variants,
 )
-from diagnosis.fit import GrossErrors
+from diagnosis.regression import GrossErrors
 from diagnosis.search import WORTH, DiagnosisTask, refined_set
 from twin.effects import Again
 from twin.frames import Array
 from twin.machine import Chain, Family, Symbol
 from twin.model import Effect, moving_axes
 from twin.record import IntArray, Touches
-from twin.thermal import ThermalLag, ThermalStatic, drives, is_speed
+from twin.thermal import ThermalLag, drives, follower, is_speed
 
 ALIKE = 0.999
 """Correlation from which two component errors act alike at the touches of a run."""
@@ -57,7 +57,6 @@ def bodies(
     """For every component error that touches tell apart the body that explains it best, if any.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         gross: Gross errors, as they were found.
     """
@@ -95,7 +94,7 @@ def _family(symbol: Symbol, touches: Touches) -> _Family:
     for drive in drives(touches):
         if not is_speed(drive):
             at_once[drive] = len(effects)
-            effects.append(ThermalStatic(symbol, drive))
+            effects.append(follower(touches, symbol, drive))
         tuned = tuned_variants(ThermalLag(symbol, drive), touches)
         lags[drive] = len(effects) + np.arange(len(tuned))
         effects += tuned

@@ -11,7 +11,8 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from diagnosis.evidence import ResidualSpace, ScaledEffect
-from diagnosis.fit import Fit, GrossErrors
+from diagnosis.fit import Fit
+from diagnosis.regression import GrossErrors
 from diagnosis.search import FREEDOM, DiagnosisTask
 from twin.frames import Array
 from twin.model import Effect
@@ -50,7 +51,6 @@ def sized_field(
     """A field at the size of its prior with which left-out blocks are predicted best.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         gross: Gross errors, as they were found.
         warm: The field.

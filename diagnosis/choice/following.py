@@ -17,7 +17,8 @@ from diagnosis.evidence import (
     quiet,
     signatures,
 )
-from diagnosis.fit import Fit, Memory
+from diagnosis.fit import Fit
+from diagnosis.regression import Memory
 from diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
 from diagnosis.residual import find_structure
 from diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
@@ -43,7 +44,6 @@ def followed(
     """The task with rows that count as independent observations, and the chosen set in it.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         final: Result of the search.
         choice: Which way predicts best.
@@ -66,15 +66,15 @@ def followed(
     shrunk = {s.effect.name: _chance(choice) for s in effects if _is_shrunk(s)}
     nothing = find_structure(search.evaluate(()).effects, progress)
     return task, SearchState(
-        base,
-        library,
-        search,
-        chosen,
-        effects,
-        tuple(nothing) or final.at_start,
-        tuple(left),
-        (),
-        shrunk,
+        base=base,
+        library=library,
+        search=search,
+        chosen=chosen,
+        effects=effects,
+        at_start=tuple(nothing) or final.at_start,
+        left=tuple(left),
+        nameless=(),
+        chances=shrunk,
         is_weighed=True,
         is_ended=final.is_ended,
     )

@@ -19,7 +19,8 @@ from diagnosis.choice.field import sized_field
 from diagnosis.choice.needed import needed
 from diagnosis.choice.remembering import memory_of
 from diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
-from diagnosis.fit import CLEARLY, Fit, GrossErrors, Memory
+from diagnosis.fit import Fit
+from diagnosis.regression import CLEARLY, GrossErrors, Memory
 from diagnosis.search import Budget, DiagnosisTask, Library, SearchState, refined_set, searched
 from twin.effects import again
 from twin.frames import Array
@@ -100,7 +101,6 @@ def chosen_by_prediction(
     drive it.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         final: Result of the search.
         candidates: Effects that may be found, fields among them.
@@ -209,7 +209,6 @@ def named(
     """Single effects by search, then those with inner parameters once more beside themselves.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         gross: Gross errors, as they were found.
         candidates: Effects that may be found.

@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.evidence import Progress, ScaledEffect, quiet
-from diagnosis.fit import CLEARLY, Fit, Memory, likely_memory
+from diagnosis.fit import Fit
+from diagnosis.regression import CLEARLY, Memory, likely_memory
 from diagnosis.search import DiagnosisTask, SearchState, search_until_stable
 from twin.model import Effect
 

@@ -14,7 +14,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit import PRIOR_DOF, BoolArray, Fit, Whitener
+from diagnosis.fit import Fit
+from diagnosis.regression import PRIOR_DOF, BoolArray, Whitener
 from twin.frames import Array
 from twin.model import Effect, Tunable, columns
 from twin.record import Touches

@@ -8,7 +8,7 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.special import betainc
 
 from diagnosis.evidence.effect_signatures import IntArray, ResidualSpace, Signatures
-from diagnosis.fit import PRIOR_DOF, LeftOut, left_out
+from diagnosis.regression import PRIOR_DOF, LeftOut, left_out
 from twin.frames import Array
 
 VISIBLE = 0.25

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from diagnosis.answer import DescriptionFault
+from diagnosis.faults import DescriptionFault
 from twin.units import UM
 
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from diagnosis.answer import Estimate, GeometryRow, LearntGeometry
+from diagnosis.geometry import Estimate, GeometryRow, LearntGeometry
 from twin.units import UM, URAD
 
 UNITS = {"mm": ("um", UM), "rad": ("urad", URAD), "1": ("ppm", 1e-6)}

@@ -8,7 +8,8 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from diagnosis.fit import Learnt, Memory, Prior, Reported, Role, file_unit
+from diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
+from diagnosis.regression import Memory
 from twin.errors import BadFile, DesignError
 from twin.files import (
     MachineTables,
@@ -104,7 +105,6 @@ class SavedModel:
     """A model with what is known of its parameters.
 
     Attributes:
-        model: Machine and effects.
         estimates: Of the parameters, with their covariance.
         source: The run that they were learnt from.
         from_inner: Root (P, T) of the part of the covariance that uncertain inner parameters add.
@@ -166,7 +166,6 @@ def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
     """Model with its estimates.
 
     Args:
-        path: The file.
         known: Effects whose names the library cannot read back, such as those with a prior of a
             project's own; others are made from their names.
 
@@ -202,7 +201,15 @@ def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
 
 def _reported(told: ToldEntry) -> Reported:
     """A number as it was told; one of its unit in the base unit is of no more use."""
-    return Reported(told.quantity, told.unit, told.value, told.u, 1.0, Role(told.role), told.bound)
+    return Reported(
+        quantity=told.quantity,
+        unit=told.unit,
+        value=told.value,
+        u=told.u,
+        factor=1.0,
+        role=Role(told.role),
+        bound=told.bound,
+    )
 
 
 def _from_inner(rows: list[list[float]], factors: Array, path: str | Path) -> Array:

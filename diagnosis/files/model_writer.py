@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys
-from diagnosis.fit import Fit, Learnt, Memory, Reported, inner_unit
+from diagnosis.fit import Fit, Learnt, Reported, inner_unit
+from diagnosis.regression import Memory
 from twin.files import write_whole
 from twin.frames import Array
 from twin.machine import Chain
@@ -27,7 +28,6 @@ def write_model(
     """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
 
     Args:
-        path: The file.
         fit: What was learnt.
         run_name: Name of the run file, for whoever reads the model later.
         before: Model whose estimates the fit began with; None if it began with none.

@@ -7,44 +7,30 @@ combinations the run determines; `reported` gives parameters as a user reads the
 
 from diagnosis.fit.describe import Reported, Role, file_unit, inner_unit, reported
 from diagnosis.fit.estimability import Estimable, estimable
-from diagnosis.fit.gross import GrossErrors
 from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
 from diagnosis.fit.inner import continuous_inner, shifted, spacing
 from diagnosis.fit.learnt_fit import Learnt
-from diagnosis.fit.linear import BoolArray, LeftOut, left_out, solve
-from diagnosis.fit.memory import CLEARLY, Memory, Whitener, likely_memory
-from diagnosis.fit.noise import PRIOR_DOF
 from diagnosis.fit.prior import Prior
 from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 
 __all__ = [
-    "CLEARLY",
     "MIN_POSES",
     "MIN_TOUCHES",
-    "PRIOR_DOF",
-    "BoolArray",
     "Estimable",
     "Fit",
-    "GrossErrors",
     "Learnt",
-    "LeftOut",
-    "Memory",
     "MistakenUnit",
     "Prior",
     "Reported",
     "Role",
     "UnitMistake",
-    "Whitener",
     "continuous_inner",
     "estimable",
     "file_unit",
     "fit_run",
     "inner_unit",
-    "left_out",
-    "likely_memory",
     "reported",
     "shifted",
-    "solve",
     "spacing",
     "unit_mistake",
 ]

@@ -54,7 +54,6 @@ class Estimable:
     """What a fit can and cannot say.
 
     Attributes:
-        fit: The fit.
         rows: Columns of the touches in use over their noise, times the prior's standard deviations.
         effective: Number of parameters that the data rather than the prior decide.
         combinations: Of the machine's parameters, best determined first.

@@ -6,12 +6,23 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit.gross import GrossErrors, find_gross
 from diagnosis.fit.inner import Tangent, tangents
-from diagnosis.fit.linear import BoolArray, LeftOut, Solution, left_out, solve
-from diagnosis.fit.memory import Memory, Whitener, whitener
-from diagnosis.fit.noise import Noise, noise_factor, replicate_factor
 from diagnosis.fit.prior import Prior
+from diagnosis.regression import (
+    BoolArray,
+    GrossErrors,
+    LeftOut,
+    Memory,
+    Noise,
+    Solution,
+    Whitener,
+    find_gross,
+    left_out,
+    noise_factor,
+    replicate_factor,
+    solve,
+    whitener,
+)
 from twin.display import Shown
 from twin.effects import setup_errors
 from twin.errors import NotEnoughData
@@ -28,7 +39,7 @@ SETTLED = 0.005
 """Most passes of a fit, and the relative change of the noise below which it weights with the noise
 that it finds: gross errors and the widening of the prior then stay what they are."""
 
-MIN_POSES = 4
+MIN_POSES = 4  # of fewer, one held out leaves the fit with less than three quarters
 BLOCKS = 10
 """With fewer table poses than that, held out are so many blocks of touches one after the other."""
 
@@ -49,8 +60,6 @@ class Fit(Shown):
     Parameters stand in the order: effects of the model, set-ups, tangents of inner parameters.
 
     Attributes:
-        run: The measurements.
-        model: Machine and effects.
         setups: The free set-ups of the standard.
         tangents: Displacements of inner parameters that were left free.
         prior: Of all parameters, as it was used.
@@ -161,14 +170,18 @@ class Fit(Shown):
     def groups(self) -> tuple[NDArray[np.int64], ...]:
         """Rows of the fit, by numbers within it, of every table pose in every set-up.
 
-        With fewer than `MIN_POSES` poses blocks of touches in the order of probing instead.
+        With fewer than `MIN_POSES` poses blocks of touches in the order of probing instead, and so
+        in a set-up of one pose: without any touch nobody knows where the standard stands.
         """
         t = self.run.touches
         key = np.column_stack([t.setup, t.pose])[self.used]
         label = np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
         if label.max() + 1 < MIN_POSES:
             return tuple(np.array_split(np.arange(len(label)), min(BLOCKS, len(label))))
-        return tuple(np.flatnonzero(label == k) for k in range(label.max() + 1))
+        groups = [np.flatnonzero(label == k) for k in range(label.max() + 1)]
+        poses = np.bincount(np.unique(key, axis=0)[:, 0])
+        cuts = [min(BLOCKS, len(g)) if poses[key[g[0], 0]] == 1 else 1 for g in groups]
+        return tuple(p for g, n in zip(groups, cuts, strict=True) for p in np.array_split(g, n))
 
     @cached_property
     def held_out(self) -> LeftOut:
@@ -200,8 +213,8 @@ class Fit(Shown):
         return np.asarray(out * unit)
 
     @cached_property
-    def freed_rms(self) -> float:
-        """The same freed of the prediction's own uncertainty, mm, to be held against the noise.
+    def standardised_test_rms(self) -> float:
+        """The same without the prediction's own uncertainty, mm, to be compared with the noise.
 
         The errors are weighted by how much larger than the noise they must be, since the parameters
         are uncertain where a pose is missing; a right model gives the noise itself. Held out are
@@ -238,8 +251,6 @@ def fit_run(
     prior; the second weights with what was found, and more follow while the gross errors change.
 
     Args:
-        run: The measurements.
-        model: Machine and effects.
         prior: Of the model's parameters; None for what its effects state.
         free_inner: Linear parameters of the model, at which tangents of its inner parameters are
             added to the fit; None leaves the inner parameters where they are.

@@ -12,11 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag, rq, solve_triangular
 
-from diagnosis.fit.gross import GrossErrors
 from diagnosis.fit.identification import Fit, fit_run, noise_of, row_weight
-from diagnosis.fit.linear import BoolArray, Solution, solve
-from diagnosis.fit.memory import Memory, whitener
 from diagnosis.fit.prior import Prior
+from diagnosis.regression import BoolArray, GrossErrors, Memory, Solution, solve, whitener
 from twin.effects import setup_errors
 from twin.frames import Array
 from twin.model import Model, columns

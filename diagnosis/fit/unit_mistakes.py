@@ -5,9 +5,8 @@ from enum import Enum
 
 import numpy as np
 
-from diagnosis.fit.gross import robust_scale
 from diagnosis.fit.identification import Fit
-from diagnosis.fit.linear import solve
+from diagnosis.regression import robust_scale, solve
 from twin.units import UM
 
 SMALL = 30.0
@@ -65,9 +64,6 @@ def unit_mistake(fit: Fit) -> UnitMistake | None:
 
     Judged by two yardsticks, since either alone misleads: a very good machine has small deviations,
     and an uncertainty may be stated wrongly.
-
-    Args:
-        fit: Any fit.
     """
     measured, expected, stated = _typical_sizes(fit)
     what = _mistaken(fit, measured, expected, stated)

@@ -201,7 +201,7 @@ def _touches(fit: Fit) -> list[Remark]:
         out.append(FewTouches(n, p))
     if fit.solution.dof < FEW_DOF:
         out.append(FewDegreesOfFreedom(fit.solution.dof))
-        ratio = fit.freed_rms / float(np.sqrt(np.mean(fit.run.u**2)))
+        ratio = fit.standardised_test_rms / float(np.sqrt(np.mean(fit.run.u**2)))
         if ratio > DOUBTFUL:
             out.append(HeldOutInDoubt(ratio))
     t = fit.run.touches

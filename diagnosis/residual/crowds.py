@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import gammainc
 
-from diagnosis.fit import BoolArray
+from diagnosis.regression import BoolArray
 from diagnosis.residual.patterns import pairs, variables
 from twin.record import Touches
 
@@ -23,7 +23,6 @@ def crowds(touches: Touches, allowed: BoolArray, gross: BoolArray) -> dict[tuple
     the mean ``links g (g - 1) / (n (n - 1))``. Not corrected for the number of pairs.
 
     Args:
-        touches: All of the run.
         allowed: Those that could have been found out, (N,).
         gross: Those that were, (N,).
     """

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fdtrc, ndtr
 
-from diagnosis.fit import BoolArray, Fit
+from diagnosis.fit import Fit
+from diagnosis.regression import BoolArray
 from diagnosis.residual.patterns import variables
 from twin.frames import Array
 

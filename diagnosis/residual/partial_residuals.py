@@ -2,12 +2,14 @@
 
 For an effect with deviation c along the normal and a residual r of the whole model, ``r + c`` is
 what the run says about that effect alone. Where the effect acts at one place of the machine both
-are divided by the deviation along the normal per unit of that place, so that the picture shows the
-component error itself, EZZ in µm over time, whatever way the touches looked.
+are divided by the deviation along the normal per unit of that place, so that a picture shows the
+component error itself, EZZ over time, whatever way the touches looked.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from twin.effects import normal_in_tool
 from twin.frames import Array
 from twin.model import Effect, Where, columns, inner_values
 from twin.record import IntArray, Touches
-from twin.units import DEG, MINUTE, UM, URAD
+from twin.units import DEG
 
 LETTERS = "XYZABC"
 
@@ -29,25 +31,50 @@ SEES = 0.25
 """Touches that see an effect with less than this share of the best view are not drawn as points."""
 
 
+class Seen(Enum):
+    """What an effect is drawn as."""
+
+    DEVIATION = "deviation along the normal"
+    WHERE_MOST = "deviation where it shows most"
+    BIAS = "bias along the normal"
+    SHIFT = "shift of the standard"
+    ERROR = "component error"
+
+
+class Drawn(NamedTuple):
+    """What an effect is drawn as; which direction or component error, and whether in rad."""
+
+    seen: Seen
+    symbol: str = ""
+    is_angular: bool = False
+
+
+class Driver(NamedTuple):
+    """What an effect is drawn over: a column of the run, "" for none; within a period, mm, or 0."""
+
+    column: str
+    period: float = 0.0
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Partial:
     """What a run shows of one effect, touch by touch.
 
     Attributes:
-        variable: What the effect is drawn over, with its unit; "" where it is no function of one
-            variable, and `x` is then what it explains.
-        x: Of every touch, (M,).
-        quantity: What is drawn, with its unit.
-        explained: By the effect, (M,).
+        driver: What it is drawn over; without a column it is no function of one variable, and `x`
+            is then what it explains.
+        x: Of every touch, in the unit of the driver's column, (M,).
+        drawn: What it is drawn as.
+        explained: By the effect, (M,), mm or rad.
         observed: The same plus the residual of the whole model, (M,).
         weight: Of every touch, one over its variance, (M,).
         shown: Numbers of the touches that see the effect well enough to be drawn as points.
         rows: Of the run, (M,): those in the fit, then those held out.
     """
 
-    variable: str
+    driver: Driver
     x: Array
-    quantity: str
+    drawn: Drawn
     explained: Array
     observed: Array
     weight: Array
@@ -68,37 +95,45 @@ def partial(fit: Fit, effect: Effect) -> Partial:
     touches = fit.run.touches
     theta = fit.theta[fit.of_effect(effect.name)]
     rows = np.concatenate([np.flatnonzero(fit.used), np.flatnonzero(fit.test_rows)])
-    name, unit, whole, per_unit = _split(effect, touches, theta)
-    explained = whole[rows] / unit
+    drawn, whole, per_unit = _split(effect, touches, theta)
+    explained = whole[rows]
     seen = per_unit[rows]
     usable = np.where(np.abs(seen) > 1e-12, seen, 1e-12)
-    observed = explained + fit.residual[rows] / (usable * unit)
-    weight = (usable * unit / fit.run.u[rows]) ** 2
+    observed = explained + fit.residual[rows] / usable
+    weight = (usable / fit.run.u[rows]) ** 2
     shown = np.flatnonzero(np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99)))
-    variable, x = _driver(effect, touches, rows, explained)
-    return Partial(variable, x, name, explained, observed, weight, shown, rows)
+    driver, x = _driver(effect, touches, rows, explained)
+    return Partial(
+        driver=driver,
+        x=x,
+        drawn=drawn,
+        explained=explained,
+        observed=observed,
+        weight=weight,
+        shown=shown,
+        rows=rows,
+    )
 
 
-def _split(effect: Effect, touches: Touches, theta: Array) -> tuple[str, float, Array, Array]:
+def _split(effect: Effect, touches: Touches, theta: Array) -> tuple[Drawn, Array, Array]:
     """An effect as a quantity at every touch times the deviation along the normal per unit of it.
 
     At one place of the machine it is the component error there. At several places that all follow
     one course it is the deviation where that shows most. Else it is the deviation itself.
 
     Returns:
-        Name with unit, one of that unit in the base unit, the quantity (N,), deviation per unit
-        (N,).
+        What the quantity is, the quantity (N,), deviation per unit (N,).
     """
     terms = effect.terms(touches)
     places = {term.where for term in terms}
     if len(places) == 1:
         where = places.pop()
         whole = np.sum([theta[t.parameter] * t.amount for t in terms], axis=0)
-        return (*_place(where, touches), np.asarray(whole), touches.signature.of(where))
+        return _place(where, touches), np.asarray(whole), touches.signature.of(where)
     deviation = columns([effect], touches) @ theta
     course = _common_course(np.stack([t.amount for t in terms]))
     if course is None:
-        return "deviation along the normal, µm", UM, deviation, np.ones(len(touches))
+        return Drawn(Seen.DEVIATION), deviation, np.ones(len(touches))
     per_course = np.sum(
         [
             theta[t.parameter] * w * touches.signature.of(t.where)
@@ -107,7 +142,7 @@ def _split(effect: Effect, touches: Touches, theta: Array) -> tuple[str, float, 
         axis=0,
     )
     most = per_course[np.argmax(np.abs(per_course))]
-    return "deviation where it shows most, µm", UM, most * course[0], per_course / most
+    return Drawn(Seen.WHERE_MOST), most * course[0], per_course / most
 
 
 def _common_course(amounts: Array) -> tuple[Array, Array] | None:
@@ -119,63 +154,53 @@ def _common_course(amounts: Array) -> tuple[Array, Array] | None:
     return (course, weights) if left < 1e-9 * np.abs(course).max() else None
 
 
-def _place(where: Where, touches: Touches) -> tuple[str, float]:
-    """Name of an entry of a contribution with its unit, and one of that unit in the base unit."""
+def _place(where: Where, touches: Touches) -> Drawn:
+    """An entry of a contribution."""
     if where.part == "bias":
-        return "bias along the normal, µm", UM
-    unit, factor = ("µrad", URAD) if where.is_angular else ("µm", UM)
+        return Drawn(Seen.BIAS)
     letter = LETTERS[where.component]
     if where.part == "shift":
-        return f"shift of the standard in {letter}, {unit}", factor
+        return Drawn(Seen.SHIFT, letter, where.is_angular)
     link = touches.chain.links[where.link].name
     zero = "0" if where.part == "place" else ""
-    return f"E{letter}{zero}{link}, {unit}", factor
+    return Drawn(Seen.ERROR, f"E{letter}{zero}{link}", where.is_angular)
 
 
 def _driver(
     effect: Effect, touches: Touches, rows: IntArray, explained: Array
-) -> tuple[str, Array]:
+) -> tuple[Driver, Array]:
     """The variable that an effect is a smooth function of, the most telling first."""
     known = {k: v[rows] for k, v in _drivers(effect, touches).items()}
     rough = {k: roughness(v, explained) for k, v in known.items()}
     smooth = [k for k in known if rough[k] < ROUGH]
     if not smooth:
-        return "", explained
+        return Driver(""), explained
     # the order in which drivers are offered decides between those that are about equally good
     best = next(k for k in smooth if rough[k] <= max(3.0 * min(rough.values()), 0.01))
     return best, known[best]
 
 
-def _drivers(effect: Effect, touches: Touches) -> Mapping[str, Array]:
-    """Everything an effect may be a function of, with units for an axis of a picture, in order."""
+def _drivers(effect: Effect, touches: Touches) -> Mapping[Driver, Array]:
+    """Everything an effect may be a function of, in order."""
     known = variables(touches)
     scanned = inner_values(effect, touches)
     periods = [value for inner, value in scanned if inner.acts == "with a period"]
-    out: dict[str, Array] = {}
-    time = _time(touches)
+    out: dict[Driver, Array] = {}
     if any(inner.unit == "s" for inner, _ in scanned):
-        out |= time
+        out[Driver("time_s")] = touches.since_start
     for axis in touches.chain.programmed_axes:
-        q = touches.reading(axis)
-        for period in periods:
-            out[f"{axis} within a period of {period:.4g} mm"] = q % period
-        unit, factor = ("°", DEG) if touches.chain.link(axis).kind == "rotary" else ("mm", 1.0)
-        out[f"{axis} in {unit}"] = q / factor
-        out[f"last move of {axis}"] = touches.last_move(axis)
+        q, is_rotary = touches.reading(axis), touches.chain.link(axis).kind == "rotary"
+        out |= {Driver(f"{axis}_mm", period): q % period for period in periods}
+        out[Driver(f"{axis}_deg" if is_rotary else f"{axis}_mm")] = q / (DEG if is_rotary else 1.0)
+        out[Driver(f"dir{axis}")] = touches.last_move(axis)
     n = normal_in_tool(touches)
-    out["azimuth of the normal about the tool axis in °"] = np.arctan2(n[:, 1], n[:, 0]) / DEG
-    out["angle between normal and tool axis in °"] = np.arccos(np.clip(n[:, 2], -1.0, 1.0)) / DEG
-    out |= {f"temperature of {sensor} in °C": v for sensor, v in touches.temperature.items()}
+    out[Driver("azimuth_deg")] = np.arctan2(n[:, 1], n[:, 0]) / DEG
+    out[Driver("inclination_deg")] = np.arccos(np.clip(n[:, 2], -1.0, 1.0)) / DEG
+    out |= {Driver(f"T_{sensor}_degC"): v for sensor, v in touches.temperature.items()}
     if "spindle_rpm" in known:
-        out["spindle speed in 1/min"] = known["spindle_rpm"]
-    out |= time
+        out[Driver("spindle_rpm")] = known["spindle_rpm"]
+    out[Driver("time_s")] = touches.since_start
     return {k: v for k, v in out.items() if np.ptp(v) > 0.0}
-
-
-def _time(touches: Touches) -> dict[str, Array]:
-    """Time in minutes, or in hours where the run is long."""
-    hours = np.ptp(touches.time) > 600.0 * MINUTE
-    return {f"time in {'h' if hours else 'min'}": touches.time / (3600.0 if hours else MINUTE)}
 
 
 def roughness(x: Array, y: Array) -> float:

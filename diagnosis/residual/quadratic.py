@@ -5,7 +5,7 @@ from scipy.special import log_ndtr
 
 from twin.frames import Array
 
-HALVINGS = 36
+HALVINGS = 36  # of the bracket: 2^-36 is far below what a probability is quoted to
 
 
 def ratio_probability(statistic: Array, weights: Array, dof: float) -> Array:

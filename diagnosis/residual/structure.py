@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from scipy.special import ndtr
 
 from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet, reduced
-from diagnosis.fit import PRIOR_DOF
+from diagnosis.regression import PRIOR_DOF
 from diagnosis.residual.crowds import crowds
 from diagnosis.residual.patterns import Pattern, patterns, thinned, whitened
 from diagnosis.residual.quadratic import ratio_probability

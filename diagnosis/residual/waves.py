@@ -58,14 +58,20 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
 
     Args:
         effects: Model and effects in it.
-        touches: All of the run.
         rows: Which of the touches in use are looked at, (R,).
     """
     complement = effects.complement
     time = touches.time[complement.used]
     span = float(np.ptp(time))
     if span <= 0.0:
-        return Wave(0, 1.0, 0.0, np.inf, "normal", np.zeros((len(time), 0)))
+        return Wave(
+            count=0,
+            p_value=1.0,
+            drop=0.0,
+            period=np.inf,
+            direction="normal",
+            columns=np.zeros((len(time), 0)),
+        )
     highest = min(len(rows) / (SHORTEST * span), 1.0 / (ALIAS * _step(time)))
     count = int(min(MOST, max(BLOCK, PER_LINE * highest * span)))
     frequency = np.linspace(LONGEST / span, max(highest, 1.0 / span), count)
@@ -80,7 +86,14 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
     p = float(f_probability(drop, 2.0, effects.objective - drop, effects.dof - 2.0))
     columns = _seen(effects, _wave(time, np.array([found]), weight))
     scale = 10.0 / max(float(np.abs(columns).max()), 1e-300)
-    return Wave(count * len(along), p, drop, 1.0 / found, best[2], columns * scale)
+    return Wave(
+        count=count * len(along),
+        p_value=p,
+        drop=drop,
+        period=1.0 / found,
+        direction=best[2],
+        columns=columns * scale,
+    )
 
 
 def _step(time: Array) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import gammaln
 
 from diagnosis.evidence import ScaledEffect
-from diagnosis.fit import BoolArray, GrossErrors
+from diagnosis.regression import BoolArray, GrossErrors
 from twin.frames import Array
 from twin.model import inner_values
 from twin.record import IntArray, Touches
@@ -36,7 +36,6 @@ def unexplained_near_slip(
     slip that was found, all that adjoin it, since the instant rests upon the touches without them.
 
     Args:
-        touches: All of the run.
         gross: Of the fit.
         effects: That were found.
     """

@@ -28,7 +28,8 @@ from diagnosis.evidence import (
     scanned_grids,
     signatures,
 )
-from diagnosis.fit import Fit, GrossErrors, Memory, Prior, fit_run
+from diagnosis.fit import Fit, Prior, fit_run
+from diagnosis.regression import GrossErrors, Memory
 from diagnosis.residual import Structure, find_structure
 from diagnosis.search.edges import unexplained_near_slip, without
 from diagnosis.search.refine import refined_set
@@ -73,7 +74,6 @@ class DiagnosisTask:
     """What is diagnosed: a run, the starting model, and what is believed of it.
 
     Attributes:
-        run: The measurements.
         model: Machine and effects of the starting model.
         prior: Of its parameters.
         is_known: Whether the prior is an earlier fit, rather than what is usual.
@@ -150,7 +150,6 @@ def refined_named(
     """Named effects with their inner parameters at the best point of their grids, refined.
 
     Args:
-        task: What is diagnosed.
         named: Effects that the user adds.
         progress: Told of the signatures.
     """
@@ -179,7 +178,6 @@ def search_until_stable(
     and only where something is left.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         candidates: Effects that may be found.
         progress: Told of every stage.
@@ -213,7 +211,6 @@ def _until_gross_errors_stay(
     explains them, and if not they are gross errors in the next turn.
 
     Args:
-        task: What is diagnosed.
         added: Effects that the user added.
         candidates: Effects that may be found.
         progress: Told of every stage.

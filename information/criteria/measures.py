@@ -20,6 +20,7 @@ Reference:
     (potential terms).
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -72,7 +73,7 @@ class MeanVariance:
 
 
 @dataclass(frozen=True, eq=False)
-class _Largest:
+class _Largest(ABC):
     """The largest of several variances, and the mean variance of what counts in any case.
 
     Attributes:
@@ -90,9 +91,9 @@ class _Largest:
         """R."""
         return len(self.K)
 
+    @abstractmethod
     def each(self, M: Array) -> tuple[Array, Array]:
         """What the largest is taken of, (J,), and the roots that belong to it."""
-        raise NotImplementedError
 
     def value(self, M: Array, smooth: bool = False) -> float:
         """The largest, or its power mean, and what counts in any case."""
@@ -110,9 +111,9 @@ class _Largest:
         share = (np.maximum(each, 0.0) / max(float(each.max()), 1e-300)) ** (self.sharpness - 1.0)
         return Trace(weight * (self.K + self.mixed(roots, share / share.sum())))
 
+    @abstractmethod
     def mixed(self, roots: Array, share: Array) -> Array:
         """Weighted mean of the forms, (R, R)."""
-        raise NotImplementedError
 
     def shown(self, value: float) -> float:
         """As it is."""

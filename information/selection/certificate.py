@@ -70,7 +70,13 @@ def certificate(
     count = int(chosen.sum())
     best = relaxed(criterion, W, count, chosen, tolerance, quotas)
     rows = W[chosen]
-    return Certificate(len(W), count, criterion.value(rows.T @ rows), best.bound, bool(quotas))
+    return Certificate(
+        candidates=len(W),
+        count=count,
+        value=criterion.value(rows.T @ rows),
+        bound=best.bound,
+        shares=bool(quotas),
+    )
 
 
 def rounded(

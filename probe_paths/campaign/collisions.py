@@ -19,7 +19,7 @@ from twin.frames import Array, apply, inverse
 from twin.machine import Chain, tip
 from twin.record import IntArray, Labels
 
-_MARCHES = 400
+_MARCHES = 400  # steps as long as the clearance; a path that needs more grazes, and is refused
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,15 +50,14 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     Args:
         program: As read from its text.
         standard: What stands on the table.
-        chain: The machine.
 
     Raises:
         BadFile: Line of the first move that comes too near, and what it comes near to.
     """
     probe, setup = program.heading.probe, program.heading.setup
-    table_radius = program.heading.table_radius
-    assert table_radius is not None, "no program is read without it"
-    solid = solid_hull(standard, setup, table_radius)
+    workshop = program.heading.workshop
+    assert workshop is not None, "no program is read without it"
+    solid = solid_hull(standard, setup, workshop)
     moves = _moves(program)
     rotary = [chain.axis_index(name) for name in chain.rotary_axes]
     z = chain.axis_index("Z")
@@ -72,7 +71,9 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     low = straight[
         np.flatnonzero(lowest < top_height(chain, straight.after[:, rotary], solid, probe))
     ]
-    clearance = ToolClearance(chain, standard, setup, probe, table_radius)
+    clearance = ToolClearance(
+        chain=chain, standard=standard, setup=setup, probe=probe, workshop=workshop
+    )
     strokes = _strokes(program, chain)
     if len(low.line):
         _refuse(program, low.line, _marched(clearance, low), np.full(len(low.line), "the standard"))

@@ -39,7 +39,6 @@ class VirtualMachine:
         noise: Standard deviation of the trigger along the normal, mm.
         begin: What its clock says when the campaign begins.
         clock: Speeds.
-        dialect: Of the control.
     """
 
     chain: Chain

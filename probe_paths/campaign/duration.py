@@ -27,7 +27,6 @@ def probing_time(
 
     Args:
         body: What is touched.
-        chain: The machine.
         probe: In the spindle.
         setup: Where the body stands.
         requests: Its touches.

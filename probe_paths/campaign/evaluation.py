@@ -48,9 +48,7 @@ def evaluate(
     Args:
         parts: Of one or several logs.
         standard: As calibrated.
-        chain: The machine.
         u: Standard uncertainty of one touch, mm.
-        dialect: Of the control.
 
     Raises:
         BadFile: Many touches far from the features they are said to be on; logs of two probes, of

@@ -82,7 +82,9 @@ def _judged(ordering: Ordering, plan: TouchPlan, model: Model, noise: float) -> 
     )
     drift = float(sd[:3].max())
     reversal = tuple(float(value) for value in sd[3:])
-    return Order(ordering, len(plan), duration, drift, reversal)
+    return Order(
+        ordering=ordering, touches=len(plan), duration=duration, drift=drift, reversal=reversal
+    )
 
 
 def _sd_beside(C: Array, W: Array) -> Array:

@@ -25,7 +25,6 @@ class Campaign:
     """All programs of one set-up or several, run one after the other.
 
     Attributes:
-        run: The measurements.
         runs: What each program did.
         begin: What the clock said at the run's time zero.
     """

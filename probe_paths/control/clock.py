@@ -38,7 +38,6 @@ class Clock:
         angle, where only rotary axes turn).
 
         Args:
-            chain: The machine.
             steps: Change of the readings, shape (M, A), mm and rad; nan counts as no motion.
             feed: mm/s or rad/s, shape (M,); nan is rapid.
 
@@ -76,7 +75,6 @@ def step_times(
     A touch counts until its contact; its retract belongs to the move that follows.
 
     Args:
-        chain: The machine.
         steps: Of the program, in order.
         clock: Speeds.
         travel: Of each touch until its contact, (N,), mm; None takes the longest path.

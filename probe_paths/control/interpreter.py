@@ -32,7 +32,6 @@ def read_program(path: str | Path, chain: Chain, probe: Probe | None = None) -> 
 
     Args:
         path: The `.H` file; masks (`.A`) stand in the same folder.
-        chain: The machine.
         probe: In the spindle; None takes the one that the program's head states.
 
     Raises:
@@ -76,7 +75,6 @@ def interpret(
         data: Content of the program file.
         path: Its name: it must agree with the program's.
         masks: Where FN 16 finds its masks.
-        chain: The machine.
         probe: In the spindle; None takes the one that the program's head states.
 
     Raises:
@@ -102,7 +100,7 @@ def interpret(
                 f"feature {touch.feature}",
                 "a number of the head's list (;FEATURE <number> IS <name>)",
             )
-    return ReadProgram(path, name, head, features, tuple(steps))
+    return ReadProgram(path=path, name=name, heading=head, features=features, steps=tuple(steps))
 
 
 def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:

@@ -118,7 +118,6 @@ def shared_masks(dialect: Dialect, rotary: Sequence[str]) -> dict[str, str]:
     """Masks that every program of a campaign uses, by file name.
 
     Args:
-        dialect: Of the control.
         rotary: Letters of the machine's rotary axes.
     """
     d = dialect.log_decimals

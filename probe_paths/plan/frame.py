@@ -24,7 +24,6 @@ class ProgramFrame:
     """Converts between axis readings and the words of a program.
 
     Attributes:
-        chain: The machine.
         probe: In the spindle; its length in the tool table.
 
     Raises:

@@ -49,7 +49,6 @@ def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -
     the second round.
 
     Args:
-        chain: The machine.
         rotary: Readings of every request, (N, R), rad.
         overshoot: Of the last motion towards a reading, rad.
         shortest_visit: Fewest touches for which a pose is split over two visits.
@@ -89,7 +88,7 @@ def _visit(
             raise NotReachable(
                 f"pose {name}{rotary[i] / DEG:+.4f}: travel of {name} leaves no room to approach it"
             )
-    return Visit(pose, rotary, side, rotary - side * overshoot, rows)
+    return Visit(pose=pose, rotary=rotary, side=side, before=rotary - side * overshoot, rows=rows)
 
 
 def waypoints(start: Array, end: Array) -> Array:

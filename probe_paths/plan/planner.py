@@ -15,7 +15,7 @@ from probe_paths.plan.clearance import (
     top_height,
 )
 from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import rounded_setup
+from probe_paths.plan.heading import rounded_setup, rounded_workshop
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, rotary_path, visits
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
@@ -41,15 +41,15 @@ class _Task:
         """What can be touched, with the margins of the plan."""
         o = self.options
         return ProbeReach(
-            self.chain,
-            self.setup,
-            self.probe.shape,
-            self.probe.length,
+            chain=self.chain,
+            setup=self.setup,
+            shape=self.probe.shape,
+            length=self.probe.length,
             steepest=o.steepest,
             room=o.smallest_gap,
             standoff=o.standoff,
             search=o.search,
-            table_radius=o.table_radius,
+            workshop=o.workshop,
         )
 
 
@@ -80,8 +80,6 @@ def plan_touches(
     """Plan of all touches of one set-up.
 
     Args:
-        standard: What is touched.
-        chain: The machine.
         probe: In the spindle.
         setup: Where the standard is believed to stand.
         requests: Wanted touches, at any poses, in any order.
@@ -93,11 +91,12 @@ def plan_touches(
         DesignError: A machine or a feature that programs cannot name.
     """
     options = options or PlanOptions()
+    options = replace(options, workshop=rounded_workshop(options.workshop))
     setup = rounded_setup(setup)
     ProgramFrame(chain, probe)
     _check_requests(standard, chain, requests)
     rotary = np.round(requests.rotary / GRID) * GRID
-    task = _Task(standard, chain, probe, setup, options)
+    task = _Task(standard=standard, chain=chain, probe=probe, setup=setup, options=options)
     stops = visits(chain, rotary, options.overshoot, options.shortest_visit)
     stops = _with_heights(task, stops)
     height = np.empty(len(requests))
@@ -130,7 +129,7 @@ def _check_requests(standard: Standard, chain: Chain, requests: Requests) -> Non
 def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
     """Visits with their clearance heights, after checking that the table can turn between them."""
     chain, probe, options = task.chain, task.probe, task.options
-    solid = solid_hull(task.standard, task.setup, options.table_radius)
+    solid = solid_hull(task.standard, task.setup, options.workshop)
     retract = chain.link("Z").range[1] - options.retract
     rotary = np.array([stop.rotary for stop in stops])
     frame = ProgramFrame(chain, probe)
@@ -177,7 +176,13 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     above = touches.start[rows].copy()
     above[:, task.chain.axis_index("Z")] = height[rows]
     o = task.options
-    clearance = ToolClearance(task.chain, task.standard, task.setup, task.probe, o.table_radius)
+    clearance = ToolClearance(
+        chain=task.chain,
+        standard=task.standard,
+        setup=task.setup,
+        probe=task.probe,
+        workshop=o.workshop,
+    )
     reason = touches.reason.copy()
     for before, after in (
         (above, touches.start[rows]),

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from diagnosis.answer import DescriptionFault, Fault
+from diagnosis.faults import DescriptionFault, Fault
 from report.numbers import digits, with_uncertainty
 from report.words import microns
 from twin.units import DEG

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from diagnosis.answer import Correction, GeometryRow, LearntGeometry, Quantity
+from diagnosis.geometry import Correction, GeometryRow, LearntGeometry, Quantity
 from report.numbers import digits, with_uncertainty
 from report.words import microns
 from twin.units import UM, URAD

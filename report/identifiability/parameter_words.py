@@ -14,7 +14,6 @@ def in_words(name: str, chain: Chain) -> str:
 
     Args:
         name: As in `Model.names`: `location(EC0C)`, `geometric(EXX,linear)`, `setup(a): rz`.
-        chain: The machine.
     """
     match = _NAME.match(name)
     if match is None:

@@ -28,7 +28,6 @@ def draw_regions(
     """Bars of the largest shares of variance in every region, coloured by the link they belong to.
 
     Args:
-        chain: The machine.
         regions: As `sensitivity.shares.workspace_regions.regions` gives them.
         totals: What the errors do to |d|, drawn as diamonds with twice their standard error.
     """

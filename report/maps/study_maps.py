@@ -30,7 +30,6 @@ def draw_maps(
     """Draw every map of a study into a folder.
 
     Args:
-        study: The study.
         folder: For the pictures.
         rng: Source of the random machines that show what errors do to the length |d|; None to do
             without.

@@ -136,7 +136,6 @@ def draw_path(study: Study, folder: Path) -> list[tuple[str, str]]:
     """Draw what random machines and single axes do along the trajectory of a study.
 
     Args:
-        study: The study.
         folder: For the pictures.
 
     Returns:

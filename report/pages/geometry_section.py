@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from diagnosis.answer import LearntGeometry
+from diagnosis.geometry import LearntGeometry
 from report.geometry import correction_line, geometry_lines
 from twin.units import UM
 

@@ -16,7 +16,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 _PATIENCE = 300.0  # s; a design report of 8 MB takes a browser 5 s
 
 Printer = Callable[[Path, Path], None]
-"""Prints a page into a PDF that is there already, empty."""
+"""Prints a page into an existing, empty PDF."""
 
 
 def printer() -> Printer:

@@ -50,7 +50,6 @@ def residual_pictures(place: Path, name: str, fit: Fit, z: Array | None = None) 
     Args:
         place: Folder of the pictures.
         name: First word of their names.
-        fit: Any fit.
         z: Residuals over their standard uncertainty where that is more than the touch's own, (N,).
     """
     out = []
@@ -92,7 +91,6 @@ def pattern_pictures(
 
     Args:
         place: Folder of the pictures.
-        fit: Any fit.
         found: Patterns in its residual, the most certain first.
         rng: Shuffles.
     """

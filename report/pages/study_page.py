@@ -43,7 +43,6 @@ def write_study_page(
     """Write report.html of a study by itself, with its maps in three dimensions.
 
     Args:
-        study: The study.
         folder: The results; the pictures lie in it.
         pictures: File and caption of those that are drawn already, in any order.
         project: What the study was made from, for the foot of the page.
@@ -68,7 +67,6 @@ def study_content(study: Study, pictures: Sequence[Shown]) -> dict[str, Any]:
     """What the template `study.html` shows.
 
     Args:
-        study: The study.
         pictures: File and caption of every map.
     """
     v, names = study.volumetric, [s.name for s in study.chain.symbols]
@@ -104,7 +102,6 @@ def draw_study_volumes(
     """Draw volumetric error and S in three dimensions; without OpenGL say so and go on.
 
     Args:
-        study: The study.
         folder: For the pictures.
         remarks: Takes a line where something cannot be drawn.
         stl: STL file of the standard; None for none.

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.fit import BoolArray, Fit
+from diagnosis.fit import Fit
+from diagnosis.regression import BoolArray
 from report.style import DIVERGING, INK, figure, plain, robust_limit, save
 from twin.frames import Array
 from twin.model import Effect, columns

@@ -24,7 +24,6 @@ def draw_reach(reach: PlacesInReach, chain: Chain, blank: Blank) -> Figure:
 
     Args:
         reach: Places, poses, what each touch is beyond.
-        chain: The machine.
         blank: The blank.
     """
     drawn = figure(12.0, 8.4, None)  # a constrained layout would draw everything twice

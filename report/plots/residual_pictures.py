@@ -45,7 +45,6 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[RankedVaria
 
     Args:
         path: PNG.
-        fit: Any fit.
         panels: Some of `rank_variables(fit)`.
     """
     rows = fit.used
@@ -110,7 +109,6 @@ def draw_normal_plot(path: str | Path, fit: Fit, z: Array | None = None) -> None
 
     Args:
         path: PNG.
-        fit: Any fit.
         z: Residuals over their standard uncertainty, (N,); None for `standardised(fit)`.
     """
     z = standardised(fit) if z is None else z

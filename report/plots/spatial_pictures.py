@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.fit import BoolArray, Fit
+from diagnosis.fit import Fit
+from diagnosis.regression import BoolArray
 from diagnosis.residual import pose_vectors
 from report.style import (
     BLUE,

@@ -48,7 +48,6 @@ def jacobian_by_parameter(
     fills fastest.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), mm.
         symbols: P parameters; None for all of `chain.symbols`, in that order.
@@ -108,7 +107,13 @@ def _walk(chain: Chain, q: Array, length: Array) -> list[PoseCache]:
         passed.append((before, R, lever, reading))
     tip = t - R[:, 2] * length
     return [
-        PoseCache(before, after, after if link.carries_workpiece else before, tip - lever, reading)
+        PoseCache(
+            before=before,
+            after=after,
+            carrier=after if link.carries_workpiece else before,
+            arm=tip - lever,
+            reading=reading,
+        )
         for link, (before, after, lever, reading) in zip(chain.links, passed, strict=True)
     ]
 

@@ -19,7 +19,6 @@ def jacobian(
     error counts with the value it has at the reading of the pose, whatever its distribution.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), mm.
         symbols: P parameters; None for all of `chain.symbols`, in that order.
@@ -43,7 +42,6 @@ def sensitivity(
     signed ``n . dp/dE`` of touches (`information.criteria.posterior`) what a touch can tell.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), mm.
         symbols: P parameters; None for all of `chain.symbols`.

@@ -59,7 +59,9 @@ def shared_arrays(
 ) -> SharedArrays:
     """Columns of all poses, and what else the batches share."""
     G = first_order(population.model, q, length)
-    return SharedArrays(population, G, width, tolerance, worst, threads)
+    return SharedArrays(
+        population=population, G=G, width=width, tolerance=tolerance, worst=worst, threads=threads
+    )
 
 
 def bin_width(rms: Array) -> Array:

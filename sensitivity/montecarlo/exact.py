@@ -42,7 +42,6 @@ def exact_check(
         q: Readings of the poses to look at, shape (N, A).
         length: Tool length, mm.
         machines: Number of random machines.
-        rng: Source of the random numbers.
     """
     model = population.model
     touches = at_poses(population.chain, q, length)

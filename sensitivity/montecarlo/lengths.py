@@ -17,8 +17,8 @@ from sensitivity.montecarlo.kernels import MACHINES_A_BLOCK, Kernels, compiled
 from twin.compute import blocks, one_blas_thread
 from twin.frames import Array
 
-BINS = 2048
-_POSES_A_BLOCK = 256
+BINS = 2048  # a quantile is then read to 0.05 % of the longest length
+_POSES_A_BLOCK = 256  # lengths of a block stay in a core's second cache
 _DRAWS_A_BLOCK = 512  # with 256 poses the packing of both factors is small beside the product
 _KEPT = 2**25  # lengths held at once for the worst poses: 128 MiB
 _FEWEST_KEPT = 512
@@ -74,12 +74,12 @@ def count_lengths(
     n, draws = len(G), theta.shape[1]
     counter = np.uint16 if draws <= np.iinfo(np.uint16).max else np.int32
     found = Lengths(
-        draws,
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros((n, BINS), dtype=counter),
-        np.zeros(n, dtype=np.int64),
+        draws=draws,
+        sum=np.zeros(n),
+        squares=np.zeros(n),
+        above=np.zeros(n),
+        histogram=np.zeros((n, BINS), dtype=counter),
+        worst=np.zeros(n, dtype=np.int64),
     )
     kernels = (compiled() if use_compiled else None) or Kernels(_count, _worst)
     reference = worst[0]

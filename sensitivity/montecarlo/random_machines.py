@@ -58,7 +58,6 @@ def volumetric(
         q: Readings, shape (N, A).
         length: Tool length, scalar or (N,), mm.
         draws: S, or at most S.
-        rng: Source of the random numbers.
         progress: Told how many machines are done.
         reference: The worst 5 % are those of the first so many poses, and a later pose counts as
             affected where it reaches their limit; None for all poses.

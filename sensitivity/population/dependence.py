@@ -24,8 +24,8 @@ import numpy as np
 from twin.errors import DesignError, ShapeMismatch
 from twin.frames import Array
 
-_ROUNDING = 1e-9
-_HALVINGS = 60
+_ROUNDING = 1e-9  # of a correlation as typed
+_HALVINGS = 60  # of the correlation: to the last digit
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,6 @@ class Population:
     """All machines that may be drawn.
 
     Attributes:
-        chain: The machine.
         ranges: Smallest and largest peak amplitude of every error.
         distributions: Shapes over the readings.
         dependence: Which errors depend on each other; None for independent ones.
@@ -107,8 +106,16 @@ class Population:
                     effects.append(ComponentError(symbol, shape, sd=sd))
                     continue
                 for n in mix.periods:
-                    effects.append(ComponentError(symbol, shape, float(n), 0.0, sd))
-                    effects.append(ComponentError(symbol, shape, float(n), _QUARTER, sd))
+                    effects.append(
+                        ComponentError(
+                            symbol=symbol, shape=shape, periods=float(n), phase=0.0, sd=sd
+                        )
+                    )
+                    effects.append(
+                        ComponentError(
+                            symbol=symbol, shape=shape, periods=float(n), phase=_QUARTER, sd=sd
+                        )
+                    )
         return Model(self.chain, tuple(effects))
 
     def expected(self, free: str = "") -> Model:
@@ -159,7 +166,6 @@ def draw(population: Population, count: int, rng: np.random.Generator) -> Draws:
     Args:
         population: What to draw from.
         count: S.
-        rng: Source of the random numbers.
     """
     symbols = population.chain.symbols
     mixes = [population.mix_of(s) for s in symbols]

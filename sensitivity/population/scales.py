@@ -23,7 +23,6 @@ def drawn_scales(
     Args:
         population: What to draw from.
         count: S.
-        rng: Source of the random numbers.
         model: Whose parameters the columns are; None for those of `Population.model`.
     """
     chain = population.chain

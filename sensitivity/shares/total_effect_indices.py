@@ -84,7 +84,6 @@ def norm_shares(
         population: What to draw from.
         q: Readings, shape (N, A).
         length: Tool length, scalar or (N,), mm.
-        rng: Source of the random numbers.
         machines: S, pairs of machines.
         compiled: Use numba where it is installed.
 

@@ -25,10 +25,10 @@ POSES = 256
 
 _TOTAL_POSES = 16  # of a region, at which random machines are looked at
 _OUTER = 1.0 / 6.0  # of a travel at either end that counts as its end
-_MIDDLE = (1.0 / 3.0, 2.0 / 3.0)
+_MIDDLE = (1.0 / 3.0, 2.0 / 3.0)  # of a travel: what counts as its middle
 _TURN = 350.0 * DEG  # travel of a rotary axis that has no ends: they meet
-_AROUND = 15.0 * DEG
-_TRIES = 20
+_AROUND = 15.0 * DEG  # on either side of an angle: a region
+_TRIES = 20  # draws of a region before it counts as out of reach
 
 Squeeze = Callable[[Array], Array]
 
@@ -89,7 +89,6 @@ def regions(population: Population, workspace: Workspace) -> tuple[Region, ...]:
 
     Args:
         population: Errors that are expected.
-        workspace: Limits.
     """
     out = []
     for place, readings in _places(workspace):
@@ -148,7 +147,6 @@ def region_totals(
         population: Errors that are expected, independent ones.
         workspace: Limits, tool length.
         found: The regions.
-        rng: Source of the random numbers.
         machines: Pairs of random machines.
 
     Raises:

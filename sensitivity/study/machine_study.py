@@ -68,7 +68,6 @@ class PathStudy:
     """Volumetric error along a trajectory.
 
     Attributes:
-        trajectory: The path.
         volumetric: Statistics at its poses; the worst ones are those of the workspace.
         closed: The same without sampling, as if every error were normally distributed.
         effects: What the error motions of single axes do on the way.
@@ -170,7 +169,6 @@ def run_study(
         workspace: Where to look.
         poses: Number of poses, or their readings, shape (N, A).
         draws: Number of random machines, at most so many with digits.
-        rng: Source of the random numbers.
         progress: Told what is being done.
         tolerance: For the exceedance, mm.
         digits: Significant digits that have to be stable (JCGM 101); 0 for none.
@@ -206,7 +204,9 @@ def run_study(
     start = len(q)
     for pair, first, second, q_plane in planes:
         rows = slice(start, start + len(q_plane))
-        sections.append(Section(pair, first, second, q_plane, found[rows]))
+        sections.append(
+            Section(axes=pair, first=first, second=second, q=q_plane, volumetric=found[rows])
+        )
         start = rows.stop
     machines, checked = _CHECKED
     return Study(

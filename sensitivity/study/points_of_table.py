@@ -83,5 +83,7 @@ def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
             first, last = chain.link(name).range
             follows = q[:, chain.axis_index(name)]
             reached &= (follows >= first - _SLACK) & (follows <= last + _SLACK)
-        out.append(PointOverRotary(place, tuple(turning), each, q, reached))
+        out.append(
+            PointOverRotary(linear=place, axes=tuple(turning), readings=each, q=q, reached=reached)
+        )
     return tuple(out)

@@ -24,7 +24,6 @@ def write_study(study: Study, folder: str | Path, statement: str) -> None:
     workspace.
 
     Args:
-        study: The study.
         folder: Made where it does not exist; files in it are replaced.
         statement: The sampling in one sentence, kept beside its figures.
     """

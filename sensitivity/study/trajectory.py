@@ -28,7 +28,6 @@ class Trajectory:
     """A path through readings.
 
     Attributes:
-        chain: The machine.
         q: Readings, (N, A), mm and rad.
         length: Tool length, mm.
         name: What it is, in words.
@@ -137,7 +136,6 @@ class AlongPath:
     """What some errors do to the tool point along a trajectory.
 
     Attributes:
-        trajectory: The path.
         errors: Effects with their amplitudes, mm and rad.
         deviation: Exact deviation of the tool point in the table frame, (N, 3), mm.
         each: Length of the deviation that each error makes alone, by its name, (N,) each, mm.
@@ -165,7 +163,6 @@ def along_path(trajectory: Trajectory, errors: Sequence[tuple[Effect, Array]]) -
     """Deviation of the tool point along a trajectory, all errors together and each alone.
 
     Args:
-        trajectory: The path.
         errors: Effects with their amplitudes, as an error file holds them.
     """
     chain = trajectory.chain

@@ -107,7 +107,6 @@ def volume(
     """Poses that fill the box of the linear readings.
 
     Args:
-        workspace: Limits.
         rotary: Readings of the rotary axes, rad; an axis left out stands in the middle.
         points: Values of each linear reading.
 
@@ -136,4 +135,4 @@ def volume(
     found = inverse_linear(chain, corners, np.tile(base, (4, 1)), workspace.length)[:, columns]
     T = np.eye(4)
     T[:3, 3], T[:3, :3] = found[0], (found[1:] - found[0]).T
-    return Volume(workspace, names, each, q, T)
+    return Volume(workspace=workspace, axes=names, readings=each, q=q, T_readings_table=T)

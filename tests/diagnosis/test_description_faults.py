@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from simulator_case import read_back, simulate_case
 
-from diagnosis.answer.fault_trial import description_faults, faults_of_refused
-from diagnosis.answer.suspects import Fault
+from diagnosis.faults.suspects import Fault
+from diagnosis.faults.trial import description_faults, faults_of_refused
 from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from report.geometry.fault_words import fault_sentences

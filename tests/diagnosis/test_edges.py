@@ -8,7 +8,7 @@ import pytest
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
 from diagnosis.evidence.effect_signatures import ScaledEffect
-from diagnosis.fit.gross import GrossErrors
+from diagnosis.regression.gross import GrossErrors
 from diagnosis.search.edges import unexplained_near_slip
 from twin.effects.artefact import ArtefactSlip
 from twin.library.catalogue import parse_effect

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from diagnosis.fit.identification import fit_run
-from diagnosis.fit.linear import left_out, solve
+from diagnosis.regression.linear import left_out, solve
 from diagnosis.remarks.run_remarks import (
     FewTouches,
     NoiseMisstated,
@@ -112,7 +112,7 @@ def test_rows_marked_as_held_out_teach_nothing(case) -> None:
     np.testing.assert_array_equal(fits[0].theta, fits[1].theta)
     n = int((split == "test").sum())
     # the held-out error is the noise, within the scatter of n squares (prediction allowed for)
-    assert fits[0].freed_rms == pytest.approx(0.6 * UM, rel=SIGMAS / np.sqrt(2.0 * n))
+    assert fits[0].standardised_test_rms == pytest.approx(0.6 * UM, rel=SIGMAS / np.sqrt(2.0 * n))
 
 
 @pytest.mark.parametrize("seed", [3, 4, 5])

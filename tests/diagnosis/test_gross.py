@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnosis.fit.gross import find_gross
 from diagnosis.fit.identification import fit_run
+from diagnosis.regression.gross import find_gross
 from twin.library.ordinary import ordinary_model
 from twin.units import UM
 

@@ -64,7 +64,7 @@ def test_nothing_hidden_nothing_found(diagnosed) -> None:
     assert d.depends_on == ()
     assert d.plans == ()
     assert verdict_sentence(d).startswith("Nothing is missing")
-    assert d.fit.freed_rms == pytest.approx(added_noise(*NOTHING[:2]), rel=HELD_OUT)
+    assert d.fit.standardised_test_rms == pytest.approx(added_noise(*NOTHING[:2]), rel=HELD_OUT)
     assert min(c.p_value for c in d.candidates) > 1e-3
 
 
@@ -79,7 +79,7 @@ def test_one_effect_is_named_with_its_size(case, diagnosed, name) -> None:
     (step,) = d.steps[1:]
     assert name in names_of(step)
     assert step.p_value < 1e-6
-    assert d.fit.freed_rms == pytest.approx(added_noise(*SINGLE[name]), rel=HELD_OUT)
+    assert d.fit.standardised_test_rms == pytest.approx(added_noise(*SINGLE[name]), rel=HELD_OUT)
     assert d.steps[0].fit.test_rms > d.fit.test_rms
     assert d.steps[0].fit.noise.chi2_ratio > 1.1
     if step.effect.name == name:  # of a rival the size means something else
@@ -132,7 +132,7 @@ def test_two_at_once(case, diagnosed) -> None:
     for step in d.steps[1:]:
         size = amplitude(step.reported)
         assert abs(abs(size.value) - told[step.effect.name]) < WITHIN * size.u
-    rms = [step.fit.freed_rms for step in d.steps]
+    rms = [step.fit.standardised_test_rms for step in d.steps]
     assert rms[0] > rms[1] > rms[2]
     assert rms[2] == pytest.approx(added_noise(*TWO[:2]), rel=HELD_OUT)
 

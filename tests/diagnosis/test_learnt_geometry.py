@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.answer.geometry_functionals import Quantity
-from diagnosis.answer.learnt_geometry import Rung, geometry_rows, learnt_geometry
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.prior import Prior
+from diagnosis.geometry.functionals import Quantity
+from diagnosis.geometry.learnt import Rung, geometry_rows, learnt_geometry
 from report.geometry.geometry_words import correction_line, noted_lines
 from twin.frames import apply, inverse
 from twin.library.ordinary import ordinary_model

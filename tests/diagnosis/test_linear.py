@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnosis.fit.linear import left_out, solve
+from diagnosis.regression.linear import left_out, solve
 
 ROUNDING = 1e-9
 

@@ -10,7 +10,7 @@ from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
-from diagnosis.fit.memory import CLEARLY, Memory, likely_memory, whitener
+from diagnosis.regression.memory import CLEARLY, Memory, likely_memory, whitener
 from diagnosis.remarks.run_remarks import remarks
 from report.words.diagnosis_words import verdict_sentence
 from report.words.remark_words import remark_sentence

@@ -18,8 +18,8 @@ from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.learnt_fit import Learnt
-from diagnosis.fit.memory import Memory
 from diagnosis.fit.prior import Prior
+from diagnosis.regression.memory import Memory
 from diagnosis.remarks.run_remarks import SearchEnded
 from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
 from matstd.cli import main

@@ -19,8 +19,8 @@ from diagnosis.choice.prediction import Choice, chosen_by_prediction, offered, w
 from diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from diagnosis.evidence.evidence import EffectSet
 from diagnosis.fit.identification import fit_run
-from diagnosis.fit.memory import Memory
 from diagnosis.fit.prior import Prior
+from diagnosis.regression.memory import Memory
 from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
 from matstd.inputs import candidates
 from report.words.diagnosis_words import named_value, promise_sentence
@@ -107,7 +107,7 @@ def test_both_time_constants_of_a_body_are_found_within_what_is_stated() -> None
 
 def test_a_large_effect_does_not_hide_what_is_small_beside_it() -> None:
     """Evidence by the size of what is left: half the residual over n rows is n log 2, whatever
-    the model to begin with leaves.
+    the starting model leaves.
     """
     task = task_of(record())
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))

@@ -41,7 +41,7 @@ def test_one_kind_tells_its_whole_story(capsys) -> None:
 def test_kinds_are_found_by_any_word_for_them(capsys) -> None:
     assert main(["effects", "spindle", "growth"]) == 0
     out = capsys.readouterr().out
-    assert out.startswith("thermal-lag(symbol[,sensor or spindle_rpm])  spindle growth and other")
+    assert out.startswith("thermal-lag(symbol[,sensor, spindle_rpm or V_column])  spindle growth")
     assert "cold at time zero" in " ".join(out.split())
     assert main(["effects", "growth"]) == 0
     out = capsys.readouterr().out

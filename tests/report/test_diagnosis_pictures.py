@@ -17,7 +17,13 @@ from report.numbers import with_uncertainty
 from report.pages.compare_page import write_compare_page
 from report.pages.diagnosis_page import write_diagnosis_page
 from report.pages.page import p_value
-from report.plots.effect_pictures import draw_candidates, draw_effect, draw_fall, draw_rivals
+from report.plots.effect_pictures import (
+    draw_candidates,
+    draw_effect,
+    draw_fall,
+    draw_rivals,
+    shown_partial,
+)
 from report.plots.pattern_pictures import draw_pattern
 from report.plots.residual_pictures import (
     draw_normal_plot,
@@ -38,7 +44,7 @@ from twin.effects.backlash import KIND as BACKLASH
 from twin.effects.periodic import KIND as PERIODIC
 from twin.library.ordinary import ordinary_model
 from twin.thermal.thermal_lag import KIND as LAG
-from twin.units import MINUTE, NM, UM
+from twin.units import HOUR, NM, UM
 
 ROUNDING = 1e-9
 SAME = 1e-6  # of quantities of order one, after a second solution of the same equations
@@ -153,12 +159,13 @@ def test_pose_vector_is_the_displacement_that_was_put_in(case):
 def test_partial_residual_of_a_lag_is_its_formula_over_time(warm):
     fit = warm.fit
     (effect,) = warm.found
-    found = partial(fit, effect)
+    found, variable, quantity = shown_partial(partial(fit, effect))
     (amplitude,) = fit.theta[fit.of_effect(effect.name)]
     t = fit.run.touches
     by_hand = amplitude * (1.0 - np.exp(-t.time[found.rows] / effect.tau)) / UM
-    assert found.variable == "time in min"
-    np.testing.assert_allclose(found.x, t.time[found.rows] / MINUTE)
+    assert variable == "time in h"
+    assert quantity in {f"EZ{axis}, µm" for axis in "XYZBC"}  # which body carries it cannot be told
+    np.testing.assert_allclose(found.x, t.time[found.rows] / HOUR)
     np.testing.assert_allclose(found.explained, by_hand, atol=ROUNDING)
     # the lag acts along Z between table and tool; its deviation along the normal is c . explained
     c = (fit.model.columns(t)[:, -1] * amplitude)[found.rows] / (by_hand * UM)
@@ -170,10 +177,10 @@ def test_partial_residual_of_a_lag_is_its_formula_over_time(warm):
 @pytest.mark.parametrize(
     ("kind", "arguments", "tuning", "variable"),
     [
-        (BACKLASH, ["X"], (), "last move of X"),
+        (BACKLASH, ["X"], (), "direction of approach of X"),
         (PERIODIC, ["EXX"], (8.0,), "X within a period of 8 mm"),
         (PERIODIC, ["EXC"], (2.0,), "C in °"),
-        (LAG, ["EXX", "ambient"], (1200.0,), "time in min"),
+        (LAG, ["EXX", "ambient"], (1200.0,), "time in h"),
     ],
 )
 def test_an_effect_is_drawn_over_what_drives_it(fitted, kind, arguments, tuning, variable):
@@ -189,7 +196,7 @@ def test_an_effect_is_drawn_over_what_drives_it(fitted, kind, arguments, tuning,
         residual=base.residual,
         of_effect=lambda name: slice(0, len(theta)),
     )
-    assert partial(fit, effect).variable == variable
+    assert shown_partial(partial(fit, effect))[1] == variable
 
 
 # pictures
@@ -274,7 +281,7 @@ def test_numbers_of_the_steps_stand_on_the_page_as_in_the_result(page, warm):
         row = rf"{fit.rms / UM:.3f} {fit.test_rms / UM:.3f} "
         assert row in text
     (step,) = warm.steps[1:]
-    assert f"+ {step.effect.name}" in text
+    assert "+ growth along Z after switching on [thermal-lag(EZ" in text
     assert p_value(step.p_value) in text
     for one in step.reported:
         assert " ".join(named_value(one)).lower() in text.lower()

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from twin.effects.second_time import Again
-from twin.errors import UnknownEffect
+from twin.errors import BadFile, UnknownEffect
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
 from twin.library.catalogue import parse_effect, proposals
@@ -84,7 +84,7 @@ def test_a_column_of_the_users_own_is_followed_in_steps_of_its_own(touches) -> N
 def test_a_field_is_the_sum_of_lags_that_an_integrator_finds(touches) -> None:
     warm = field(touches)
     assert isinstance(warm, ThermalField)
-    assert warm.name == "thermal-field(Z,bed,frame,spindle_rpm)"
+    assert warm.name == "thermal-field(Z,bed,frame,spindle_rpm,V_flow_l_min)"
     assert parse_effect(warm.name, touches.chain) == warm
     C = columns([warm], touches)
     names = [p.name for p in warm.parameters]
@@ -97,7 +97,30 @@ def test_a_field_is_the_sum_of_lags_that_an_integrator_finds(touches) -> None:
             expected = -solved(touches, warmth, tau, warmth[0])
             np.testing.assert_allclose(first_order_lag, expected, atol=1e-3)
     assert not any(n.startswith("EZ spindle_rpm at once") for n in names)
-    assert C.shape[1] == 6 * (2 * (1 + len(LAGS)) + len(LAGS))
+    assert C.shape[1] == 6 * (3 * (1 + len(LAGS)) + len(LAGS))
+    flow = touches.value["flow_l_min"]
+    half = columns([warm.tuned(2.0)], touches)  # in steps of 2 l/min
+    for values, k in (
+        (flow, names.index("EZ V_flow_l_min at once")),
+        (solved(touches, flow, LAGS[1], flow[0]), names.index("EZ V_flow_l_min 16 min")),
+    ):
+        np.testing.assert_allclose(C[:, k], -values, atol=1e-3)
+        np.testing.assert_allclose(half[:, k], -values / 2.0, atol=1e-3)
+
+
+def test_an_own_column_is_followed_with_a_lag_that_an_integrator_finds(touches) -> None:
+    """Flow of 5 l/min that swings by 3: a step of 1 l/min, in balance at the first record."""
+    offered = {e.name: e for e in proposals(touches, ["thermal-lag"])}
+    lag = offered["thermal-lag(EZZ,V_flow_l_min)"].tuned(900.0, 1.0)
+    assert [p.unit for p in lag.parameters] == ["mm"]
+    flow = touches.value["flow_l_min"]
+    expected = -solved(touches, flow, 900.0, flow[0])
+    np.testing.assert_allclose(columns([lag], touches)[:, 0], expected, atol=1e-3)
+    coarse = columns([lag.tuned(900.0, 10.0)], touches)[:, 0]
+    np.testing.assert_allclose(coarse, expected / 10.0, atol=1e-4)
+    assert list(lag.tuning) == [i.name for i in lag.inner(touches)] == ["tau", "step"]
+    with pytest.raises(UnknownEffect, match="no column 'V_flo_l_min'"):
+        columns([parse_effect("thermal-lag(EZZ,V_flo_l_min)", touches.chain)], touches)
 
 
 def test_an_effect_stands_twice_with_inner_parameters_of_its_own(touches) -> None:
@@ -149,8 +172,18 @@ def test_columns_of_the_users_own_go_through_a_file(touches, tmp_path) -> None:
     text[head + 3] = ",".join(cells)
     (tmp_path / "gap.csv").write_text("\n".join(text) + "\n")
     gap = read_run(tmp_path / "gap.csv")
-    assert gap.touches.value == {}
-    assert any("V_flow_l_min has no number in 1 row; the column" in r for r in gap.remarks)
+    flow = touches.value["flow_l_min"]
+    t = touches.time
+    between = np.interp(t[2], t[[1, 3]], flow[[1, 3]])
+    assert gap.touches.value["flow_l_min"][2] == pytest.approx(between)
+    assert any("V_flow_l_min has no number in 1 row; the readings" in r for r in gap.remarks)
+    bare = "\n".join(text).replace("V_flow_l_min", "V_flow")
+    (tmp_path / "bare.csv").write_text(bare + "\n")
+    with pytest.raises(BadFile, match=r"V_flow: found no unit.*V_flow_bar"):
+        read_run(tmp_path / "bare.csv")
+    (tmp_path / "cold.csv").write_text("\n".join(text).replace("T_bed_degC", "T_bed") + "\n")
+    with pytest.raises(BadFile, match=r"T_bed: found no unit.*T_bed_degC"):
+        read_run(tmp_path / "cold.csv")
 
 
 def test_a_drift_test_read_coarsely_is_no_pile_of_copies(touches) -> None:

@@ -84,7 +84,7 @@ REFUSED = {
     "degree": ("geometric(EXX,13)", UnknownEffect, "a degree of 1 to 12 or one of constant"),
     "shape": ("geometric(EXX,wavy)", UnknownEffect, "a degree of 1 to 12"),
     "itself": ("coupling(EBX,X)", UnknownEffect, "another axis than X itself"),
-    "empty drive": ("thermal-lag(EZZ,)", UnknownEffect, "a sensor or spindle_rpm"),
+    "empty drive": ("thermal-lag(EZZ,)", UnknownEffect, "a sensor, spindle_rpm or an own column"),
     "load on a linear axis": ("gravity(EYZ,C)", UnknownEffect, "a rotary axis that tilts"),
     "same sensor": ("column-bending(Z,a,a)", UnknownEffect, "two different sensors"),
     "stiffness of w": ("stiffness(w)", UnknownEffect, "one of C, B, X, Y, Z, t"),

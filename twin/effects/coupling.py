@@ -12,7 +12,6 @@ from twin.model import (
     Parameter,
     Term,
     Title,
-    Where,
     check_count,
     checked_axis,
     component_symbol,
@@ -32,7 +31,6 @@ class Coupling:
     ``EBX = a u_X u_Z``, u the reading scaled to [-1, 1].
 
     Attributes:
-        symbol: The component error.
         other: Name of the axis it also depends on.
     """
 
@@ -66,8 +64,7 @@ class Coupling:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis."""
-        i = touches.chain.link_index(self.symbol.link)
-        where = Where("twist", i, self.symbol.component)
+        where = touches.chain.twist_of(self.symbol)
         own, other = _factors(touches, self.symbol.link), _factors(touches, self.other)
         products = [f * g for f in own for g in other]
         return tuple(Term(k, where, product) for k, product in enumerate(products))

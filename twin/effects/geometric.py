@@ -13,7 +13,6 @@ from twin.model import (
     Parameter,
     Term,
     Title,
-    Where,
     check_count,
     component_symbol,
     moving_axes,
@@ -71,15 +70,14 @@ class ComponentError:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
-        i = touches.chain.link_index(self.symbol.link)
         amount = shape(
             self.shape,
             touches.reading(self.symbol.link),
-            touches.chain.links[i],
+            touches.chain.link(self.symbol.link),
             self.periods,
             self.phase,
         )
-        return (Term(0, Where("twist", i, self.symbol.component), amount),)
+        return (Term(0, touches.chain.twist_of(self.symbol), amount),)
 
 
 def component(chain: Chain, name: str, shape: ShapeName, **options: float) -> ComponentError:
@@ -108,6 +106,7 @@ class HigherOrder:
     rotary: bool = False
 
     kind = "geometric"
+    is_curve = True
 
     @property
     def name(self) -> str:
@@ -131,13 +130,12 @@ class HigherOrder:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis."""
-        i = touches.chain.link_index(self.symbol.link)
-        where = Where("twist", i, self.symbol.component)
+        where = touches.chain.twist_of(self.symbol)
         q = touches.reading(self.symbol.link)
         if self.rotary:
             harmonics = [f(k * q) for k in range(1, self.degree + 1) for f in (np.sin, np.cos)]
             return tuple(Term(j, where, amount) for j, amount in enumerate(harmonics))
-        u = touches.chain.links[i].scaled(q)
+        u = touches.chain.link(self.symbol.link).scaled(q)
         basis = [np.ones_like(u), u]
         for _ in range(1, self.degree):
             basis.append(2.0 * u * basis[-1] - basis[-2])
@@ -165,7 +163,13 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
         )
     _, periods, phase = match.groups()
     sd = Ranges().sd(chain, symbol)
-    return ComponentError(symbol, word, float(periods or 1.0), float(phase or 0.0) * DEG, sd)
+    return ComponentError(
+        symbol=symbol,
+        shape=word,
+        periods=float(periods or 1.0),
+        phase=float(phase or 0.0) * DEG,
+        sd=sd,
+    )
 
 
 def propose(touches: Touches) -> Iterable[HigherOrder]:

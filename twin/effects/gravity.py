@@ -12,7 +12,6 @@ from twin.model import (
     Parameter,
     Term,
     Title,
-    Where,
     check_count,
     checked_axis,
     component_symbol,
@@ -56,10 +55,9 @@ class RamSag:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
-        i = touches.chain.link_index(self.symbol.link)
-        low, high = touches.chain.links[i].range
+        low, high = touches.chain.link(self.symbol.link).range
         overhang = (high - touches.reading(self.symbol.link)) / (high - low)
-        return (Term(0, Where("twist", i, self.symbol.component), overhang**3),)
+        return (Term(0, touches.chain.twist_of(self.symbol), overhang**3),)
 
 
 @dataclass(frozen=True)
@@ -69,9 +67,6 @@ class TiltSag:
     ``E = a sin 2q``. The weight pulls with m g sin q across and m g cos q along the tilted body;
     the arm that its sag across gives the pull along makes the product of both (P-delta). What the
     weight does in the first harmonic cannot be told from `geometric(EBB,1)` and belongs there.
-
-    Attributes:
-        symbol: The component error.
     """
 
     symbol: Symbol
@@ -96,7 +91,7 @@ class TiltSag:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
-        where = Where("twist", touches.chain.link_index(self.symbol.link), self.symbol.component)
+        where = touches.chain.twist_of(self.symbol)
         return (Term(0, where, np.sin(2.0 * touches.reading(self.symbol.link))),)
 
 
@@ -134,7 +129,7 @@ class OffCentreLoad:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the tilting axis."""
-        where = Where("twist", touches.chain.link_index(self.symbol.link), self.symbol.component)
+        where = touches.chain.twist_of(self.symbol)
         tilt, turn = np.sin(touches.reading(self.symbol.link)), touches.reading(self.table)
         return (Term(0, where, tilt * np.cos(turn)), Term(1, where, tilt * np.sin(turn)))
 

@@ -13,7 +13,6 @@ from twin.model import (
     Parameter,
     Term,
     Title,
-    Where,
     check_count,
     component_symbol,
     moving_axes,
@@ -40,7 +39,6 @@ class Periodic:
     Screw and nut, or scale and head, repeat every pitch.
 
     Attributes:
-        symbol: The component error.
         period: p, mm.
     """
 
@@ -72,7 +70,7 @@ class Periodic:
         """The period, evenly spaced in frequency, fine enough for the travel that was covered."""
         axis = self.symbol.link
         grid = scanned_periods(touches.reading(axis), touches.chain.link(axis).pitch)
-        return (Inner("period", "mm", grid, acts="with a period", over=axis),)
+        return (Inner(name="period", unit="mm", grid=grid, acts="with a period", over=axis),)
 
     def tuned(self, *values: float) -> "Periodic":
         """With this period, mm."""
@@ -93,7 +91,6 @@ class Harmonic:
     line count from the encoder.
 
     Attributes:
-        symbol: The component error.
         harmonic: k.
     """
 
@@ -184,7 +181,7 @@ def _sine_and_cosine(symbol: Symbol) -> Sequence[Parameter]:
 
 def _wave(touches: Touches, symbol: Symbol, factor: float) -> Sequence[Term]:
     """Sine and cosine of factor times the reading, as a twist of the axis."""
-    where = Where("twist", touches.chain.link_index(symbol.link), symbol.component)
+    where = touches.chain.twist_of(symbol)
     argument = factor * touches.reading(symbol.link)
     return (Term(0, where, np.sin(argument)), Term(1, where, np.cos(argument)))
 

@@ -64,4 +64,4 @@ class Again:
 
 def again(effect: Effect, number: int = 2) -> Again | None:
     """An effect another time, or None where it has no inner parameters to differ in."""
-    return Again(effect, number) if isinstance(effect, Tunable) else None
+    return Again(effect, number) if isinstance(effect, Tunable) and effect.tuning else None

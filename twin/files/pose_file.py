@@ -1,4 +1,4 @@
-"""Pose file (CSV): axis readings, a row a pose, `X_mm,...,B_deg,...[,tool_length_mm]`."""
+"""Pose file (CSV): axis readings, one row per pose, `X_mm,...,B_deg,...[,tool_length_mm]`."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -79,7 +79,7 @@ def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
     known = [column for column, _ in reading_columns(chain).values()] + ["tool_length_mm"]
     table.allow_only(known)
     if not len(table):
-        raise BadFile(path, "table", "no rows", "a row a pose")
+        raise BadFile(path, "table", "no rows", "one row per pose")
     q = readings(table, chain)
     for beyond in beyond_travel(chain, q, ROUNDING):
         raise table.bad(int(beyond.rows[0]), beyond.column, beyond.found, beyond.expected)

@@ -1,6 +1,7 @@
 """Columns of a run file as arrays in base units: what can be mended is mended and told."""
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ OWN = re.compile(r"V_(\w+_\w+)\Z")
 """A column of the user's own: name and unit."""
 POINT = ("px_mm", "py_mm", "pz_mm")
 NORMAL = ("nx", "ny", "nz")
+TARGET = ("tx_mm", "ty_mm", "tz_mm")
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
 
 COLDEST, HOTTEST = -60.0, 200.0
@@ -47,6 +49,20 @@ def points(table: CsvTable) -> Array:
     return np.stack([table.numbers(c, largest=FARTHEST) for c in POINT], axis=-1)
 
 
+def targets(table: CsvTable, common: Sequence[float]) -> Array:
+    """Ball centre or reflector of every row in the tool frame, (N, 3), mm: its own or that of all.
+
+    Args:
+        table: The table.
+        common: Place in the head of the file, which a column or cell that is not there means.
+    """
+    cells = [
+        table.numbers(c, empty=v, largest=FARTHEST) if c in table else np.full(len(table), v)
+        for c, v in zip(TARGET, common, strict=True)
+    ]
+    return np.stack(cells, axis=-1) + 0.0  # no negative zeros
+
+
 def normals(table: CsvTable, remarks: list[str]) -> Array:
     """Unit normals; lengths off by rounding are mended and told, others refused."""
     normal = np.stack([table.numbers(c) for c in NORMAL], axis=-1)
@@ -69,10 +85,7 @@ def times(table: CsvTable) -> Array:
 
 
 def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
-    """Temperature of every sensor, (N,) each; gaps are filled and told.
-
-    A value that is missing or absurd is replaced by one between its neighbours in time, linearly;
-    a sensor of which less than half is left is left out.
+    """Temperature of every sensor, (N,) each; missing and absurd values are filled and told.
 
     Args:
         table: The table.
@@ -86,37 +99,59 @@ def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Ar
             continue
         values = table.numbers(column, empty=np.nan, finite=False, largest=np.inf)
         gaps = ~((values >= COLDEST) & (values <= HOTTEST))
-        if gaps.any():
-            fault = _sensor_fault(table, column, values, gaps)
-            if gaps.mean() > MOST_GAPS:
-                remarks.append(f"{fault}; the sensor is left out")
-                continue
-            remarks.append(f"{fault}; the readings before and after it are joined by a line")
-            values = _filled(values, gaps, at)
-        if np.ptp(values) == 0.0:
-            remarks.append(
-                f"{column} is constant at {values[0]:g} degC: it cannot explain anything"
-            )
-        out[match.group(1)] = values
+        filled = _mended(table, column, values, gaps, at, remarks)
+        if filled is not None:
+            out[match.group(1)] = filled
+            if np.ptp(filled) == 0.0:
+                remarks.append(
+                    f"{column} is constant at {filled[0]:g} degC: it cannot explain anything"
+                )
     return out
 
 
-def own_columns(table: CsvTable, remarks: list[str]) -> dict[str, Array]:
-    """Columns `V_name_unit` of the user's own; one with gaps is left out and told."""
+def own_columns(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
+    """Columns `V_name_unit` of the user's own, (N,) each; missing values are filled and told."""
     out = {}
     for column in table.columns:
         match = OWN.match(column)
         if match is None:
             continue
-        values = table.numbers(column, finite=False, largest=np.inf)
-        missing = np.flatnonzero(~np.isfinite(values))
-        if len(missing):
-            line = table.lines[int(missing[0])]
-            gaps = f"line {line}: {column} has no number in {_rows(len(missing))}"
-            remarks.append(f"{gaps}; the column is left out")
-            continue
-        out[match.group(1)] = values
+        values = table.numbers(column, empty=np.nan, finite=False, largest=np.inf)
+        filled = _mended(table, column, values, ~np.isfinite(values), at, remarks)
+        if filled is not None:
+            out[match.group(1)] = filled
     return out
+
+
+def check_units(table: CsvTable) -> None:
+    """Recorded columns say their unit; raises BadFile."""
+    for column in table.columns:
+        name = column[2:]
+        if column.startswith("V_") and not OWN.match(column):
+            expected = f"its unit behind the name, such as V_{name.strip('_') or 'coolant'}_bar"
+        elif column.startswith("T_") and not SENSOR.match(column):
+            expected = f"its unit behind the name: T_{name.partition('_')[0] or 'bed'}_degC"
+        else:
+            continue
+        where = f"line {table.header_line}, column {column}"
+        raise BadFile(table.path, where, "no unit that is known", expected)
+
+
+def _mended(
+    table: CsvTable, column: str, values: Array, gaps: BoolArray, at: Array, remarks: list[str]
+) -> Array | None:
+    """A record whose gaps lie on lines between their neighbours in time, told; None where less than
+    half of it is left.
+    """  # noqa: D205
+    if not gaps.any():
+        return values
+    fault = _record_fault(table, column, values, gaps)
+    if gaps.mean() > MOST_GAPS:
+        what = "sensor" if SENSOR.match(column) else "column"
+        remarks.append(f"{fault}; the {what} is left out")
+        return None
+    remarks.append(f"{fault}; the readings before and after it are joined by a line")
+    return _filled(values, gaps, at)
 
 
 def _filled(values: Array, gaps: BoolArray, at: Array) -> Array:
@@ -127,8 +162,8 @@ def _filled(values: Array, gaps: BoolArray, at: Array) -> Array:
     return out
 
 
-def _sensor_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) -> str:
-    """What is wrong with the readings of a sensor at its gaps."""
+def _record_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) -> str:
+    """What is wrong with a record at its gaps."""
     first = int(np.argmax(gaps))
     rows = _rows(int(gaps.sum()))
     if not np.isfinite(values[gaps]).any():

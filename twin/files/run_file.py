@@ -8,7 +8,7 @@ from pydantic import Field
 
 from twin.errors import BadFile
 from twin.files import run_columns as columns
-from twin.files.machine_file import Vector, read_machine
+from twin.files.machine_file import Coordinate, Vector, read_machine
 from twin.files.pose_file import FARTHEST, reading_columns, readings
 from twin.files.run_checks import checked_run, states_readings
 from twin.files.table import CsvTable
@@ -37,14 +37,18 @@ _OPTIONAL = (
     "spindle_rpm",
     "split",
     "dev_um",
+    *columns.TARGET,
 )
 
 
 class ProbeTable(Table):
-    """`probe`: radius of the ball and length from the gauge point to its centre, mm."""
+    """`probe`: radius of the ball, length from the gauge point to its centre, and how far it stands
+    beside the tool axis, mm.
+    """  # noqa: D205
 
     radius_mm: float = Field(ge=0.0, le=FARTHEST)
     length_mm: float = Field(ge=0.0, le=FARTHEST)
+    offset_mm: tuple[Coordinate, Coordinate] = Field(default=(0.0, 0.0), strict=False)
 
 
 class SetupTable(Table):
@@ -77,7 +81,6 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     refused.
 
     Args:
-        path: The file.
         chain: The machine; None reads the machine file that the head names.
 
     Raises:
@@ -139,6 +142,7 @@ def _machine(path: str | Path, named: str) -> Chain:
 
 def _check_columns(table: CsvTable, chain: Chain) -> None:
     """Needed columns are there, and none that nobody understands."""
+    columns.check_units(table)
     names = [column for column, _ in reading_columns(chain).values()]
     directions = [f"dir{axis}" for axis in chain.axes]
     sensors = [c for c in table.columns if columns.SENSOR.match(c) or columns.OWN.match(c)]
@@ -154,10 +158,13 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
     q = readings(table, chain)
     setups, setup = _setups(table, head)
     time = columns.times(table)
+    probe = head.probe
+    target = columns.targets(table, (*probe.offset_mm, -probe.length_mm))
     touches = Touches(
         chain=chain,
         q=q,
-        length=np.full(n, head.probe.length_mm),
+        length=-target[:, 2],
+        offset=target[:, :2],
         radius=np.full(n, head.probe.radius_mm),
         instrument=head.instrument,
         point=columns.points(table),
@@ -171,17 +178,19 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         force=columns.force(table),
         feature=np.array(table.text("feature") if "feature" in table else [""] * n),
         pose=columns.poses(table, chain, q, setup),
-        value=columns.own_columns(table, remarks),
+        value=columns.own_columns(table, time, remarks),
     )
     signs = columns.approach(table, chain, q, touches.normal_table)
     touches = replace(touches, approach=signs)
     return Run(
-        touches,
-        table.numbers("dev_um") * UM if "dev_um" in table else computed_deviation(touches),
-        columns.uncertainties(table, head.u_um),
-        columns.splits(table),
-        columns.repeats(table),
-        np.array(table.lines),
+        touches=touches,
+        deviation=table.numbers("dev_um") * UM
+        if "dev_um" in table
+        else computed_deviation(touches),
+        u=columns.uncertainties(table, head.u_um),
+        split=columns.splits(table),
+        repeat=columns.repeats(table),
+        line=np.array(table.lines),
     )
 
 

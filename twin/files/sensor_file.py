@@ -41,7 +41,6 @@ class SensorRecord:
         """A run with the temperatures and the spindle speed at its touches.
 
         Args:
-            run: The measurements.
             begin: What the clock said at the run's time zero.
 
         Raises:

@@ -71,7 +71,6 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
     """Write a text file (UTF-8) whole or not at all.
 
     Args:
-        path: The file.
         text: Its text, lines ended by a line feed.
         newline: How lines end in the file: a control wants carriage return and line feed.
     """

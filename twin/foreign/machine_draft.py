@@ -8,7 +8,6 @@ def machine_text(chain: Chain, source: str) -> str:
     """Text of a machine file whose travels are those of some data.
 
     Args:
-        chain: The machine.
         source: What it was made from, for the first line.
 
     Returns:

@@ -41,7 +41,6 @@ def mapped_run(sheet: Sheet, path: str | Path) -> str:
     `feature`, `setup`, `split`). The head stands in the mapping file as it shall stand in the run.
 
     Args:
-        sheet: The table.
         path: The mapping file.
 
     Raises:

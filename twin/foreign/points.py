@@ -59,7 +59,6 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     column is zero and not measured.
 
     Args:
-        sheet: The table.
         unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
 
     Raises:
@@ -85,11 +84,11 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
         )
     names = [bare(c) for c in sheet.columns]
     return PointList(
-        nominal,
-        deviation,
-        np.array(_texts(sheet, names, _NAME, "")),
-        np.array(_texts(sheet, names, _SETUP, "a")),
-        np.array(sheet.lines),
+        nominal=nominal,
+        deviation=deviation,
+        feature=np.array(_texts(sheet, names, _NAME, "")),
+        setup=np.array(_texts(sheet, names, _SETUP, "a")),
+        line=np.array(sheet.lines),
     )
 
 
@@ -98,11 +97,11 @@ def joined_points(lists: Sequence[PointList]) -> PointList:
     if len(lists) == 1:
         return lists[0]
     return PointList(
-        np.concatenate([p.nominal for p in lists]),
-        np.concatenate([p.deviation for p in lists]),
-        np.concatenate([p.feature for p in lists]),
-        np.concatenate([[f"list{i + 1}_{s}" for s in p.setup] for i, p in enumerate(lists)]),
-        np.concatenate([p.line for p in lists]),
+        nominal=np.concatenate([p.nominal for p in lists]),
+        deviation=np.concatenate([p.deviation for p in lists]),
+        feature=np.concatenate([p.feature for p in lists]),
+        setup=np.concatenate([[f"list{i + 1}_{s}" for s in p.setup] for i, p in enumerate(lists)]),
+        line=np.concatenate([p.line for p in lists]),
     )
 
 
@@ -176,7 +175,6 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
     Args:
         points: The list.
         meaning: `part` or `standard`; it decides the sign.
-        chain: The machine.
         u: Standard uncertainty of one coordinate, mm.
 
     Raises:

@@ -40,7 +40,6 @@ class Sheet:
     """One table of a foreign file, as text and numbers.
 
     Attributes:
-        path: The file.
         columns: Names in its header, with their units as they stand there.
         cells: Rows of numbers, each as long as `columns`; "" where a cell is empty.
         lines: Line or row of the file that each of them stands in.

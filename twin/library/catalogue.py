@@ -25,6 +25,7 @@ from twin.effects import (
     gravity,
     location,
     periodic,
+    position_table,
     probe,
     stiffness,
 )
@@ -39,7 +40,6 @@ from twin.thermal import (
     thermal_expansion,
     thermal_field,
     thermal_lag,
-    thermal_static,
 )
 from twin.units import NM
 from twin.words import listed, nearest
@@ -156,7 +156,7 @@ def _parse_again(whole: str, number: str, text: str, chain: Chain) -> Effect:
     effect = parse_effect(whole, chain)
     if not number.isdecimal() or int(number) < 2:
         raise UnknownEffect(f"effect '{text}': expected a number from 2 after {MARK}")
-    if not isinstance(effect, Tunable):
+    if not isinstance(effect, Tunable) or not effect.tuning:
         raise UnknownEffect(
             f"effect '{text}': {effect.kind} has no inner parameter, so a second one is the first"
         )
@@ -303,11 +303,12 @@ for _kind in (
     coupling.KIND,
     backlash.KIND,
     periodic.KIND,
+    position_table.KIND,
     thermal_expansion.KIND,
     thermal_lag.KIND,
-    thermal_static.KIND,
+    follows.STATIC,
     thermal_field.KIND,
-    follows.KIND,
+    follows.FOLLOWS,
     column_bending.KIND,
     gravity.KIND,
     stiffness.KIND,

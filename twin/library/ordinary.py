@@ -38,7 +38,6 @@ def ordinary_model(chain: Chain, ranges: Ranges | None = None) -> Model:
     deviations are those of amplitudes drawn from the ranges with random sign.
 
     Args:
-        chain: The machine.
         ranges: Expected amplitudes; None for the default ones.
     """
     ranges = ranges or Ranges()

@@ -68,7 +68,6 @@ def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
 
     Args:
         text: Such as `backlash(X)=3um`, `probe-lobing=2um,lobes=3`, `drift=X=2um/h,Z=-1um/h`.
-        chain: The machine.
 
     Raises:
         UnknownEffect, UnknownAxis, UnknownSymbol: A name that means nothing here.

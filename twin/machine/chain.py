@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from twin.frames import Array
+from twin.machine.contribution import Where
 from twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
 from twin.units import DEG
 
@@ -126,6 +127,10 @@ class Chain:
     def rotary_axes(self) -> tuple[str, ...]:
         """Names of the programmed rotary axes in chain order."""
         return tuple(ln.name for ln in self.links if ln.kind == "rotary" and ln.programmed)
+
+    def twist_of(self, symbol: Symbol) -> Where:
+        """Where a component error acts."""
+        return Where("twist", self.link_index(symbol.link), symbol.component)
 
     def axis_index(self, name: str) -> int:
         """Column of an axis in an array of readings (N, A).
@@ -294,13 +299,37 @@ def make_chain(
             raise UnknownAxis(key, [n for n, _, _ in parsed])
     zero = np.zeros(3)
     origin = np.array(table_origin, dtype=float)
-    links = [Link("w", "fixed", True, zero, origin, (0.0, 0.0))]
+    links = [
+        Link(
+            name="w",
+            kind="fixed",
+            carries_workpiece=True,
+            direction=zero,
+            point=origin,
+            range=(0.0, 0.0),
+        )
+    ]
     links += [_make_link(n, primed, prog, axes.get(n, Axis())) for n, primed, prog in parsed]
     _check_directions([link for link in links if link.kind == "linear"])
-    links.append(Link("t", "fixed", False, zero, zero, (0.0, 0.0)))
+    links.append(
+        Link(
+            name="t",
+            kind="fixed",
+            carries_workpiece=False,
+            direction=zero,
+            point=zero,
+            range=(0.0, 0.0),
+        )
+    )
     rotary = [link.name for link in links if link.kind == "rotary" and link.programmed]
     assumed = tuple(n for n in rotary if axes.get(n, Axis()).point is None)
-    return Chain(name, notation, tuple(links), origin, assumed)
+    return Chain(
+        name=name,
+        notation=notation,
+        links=tuple(links),
+        table_origin=origin,
+        assumed_points=assumed,
+    )
 
 
 def _check_directions(linear: list[Link]) -> None:
@@ -342,4 +371,13 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
         raise BadValue(f"axis.{name}.direction", f"a vector of length {length:g}", "a unit vector")
     point = np.array(axis.point or (0.0, 0.0, 0.0), dtype=float)
     checked_pitch(kind, name, axis.pitch)
-    return Link(name, kind, primed, direction / length, point, reach, programmed, axis.pitch)
+    return Link(
+        name=name,
+        kind=kind,
+        carries_workpiece=primed,
+        direction=direction / length,
+        point=point,
+        range=reach,
+        programmed=programmed,
+        pitch=axis.pitch,
+    )

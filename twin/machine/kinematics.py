@@ -89,7 +89,6 @@ def carriers(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
     """Nominal poses of the body that each link sits on, of the table and of the tool.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
 
     Returns:
@@ -114,7 +113,6 @@ def table_to_tool(chain: Chain, q: Array) -> Array:
     """Nominal pose T_table_tool (N, 4, 4): takes tool coordinates to table coordinates.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
     """
     _, T_machine_table, T_machine_tool = carriers(chain, q)
@@ -122,9 +120,18 @@ def table_to_tool(chain: Chain, q: Array) -> Array:
 
 
 def tip_in_tool(length: Array | float, n: int) -> Array:
-    """Tool point, or ball centre of a probe, at (0, 0, -L) of the tool frame, shape (N, 3), mm."""
+    """Tool point, or ball centre of a probe, in the tool frame, shape (N, 3), mm.
+
+    Args:
+        length: L of a point on the tool axis at (0, 0, -L), scalar or (N,); or the point itself,
+            (N, 3), for a target beside the axis.
+        n: Number of poses.
+    """
+    length = np.asarray(length, dtype=float)
+    if length.ndim == 2:
+        return length
     tip = np.zeros((n, 3))
-    tip[:, 2] = -np.asarray(length, dtype=float)
+    tip[:, 2] = -length
     return tip
 
 
@@ -132,9 +139,8 @@ def tip(chain: Chain, q: Array, length: Array | float) -> Array:
     """Nominal tool point (ball centre of a probe) in the table frame.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
+        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
 
     Returns:
         Shape (N, 3), mm.
@@ -154,7 +160,6 @@ def place_as_twist(chain: Chain, q: Array) -> Array:
     is tool minus workpiece.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A).
 
     Returns:
@@ -189,9 +194,8 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
     foundation because a component error is tool side minus workpiece side.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
+        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
 
     Returns:
         `Reach`, table frame, mm/mm and mm/rad.
@@ -238,7 +242,6 @@ def exact_table_to_tool(chain: Chain, q: Array, contribution: Contribution) -> A
     motion about the displaced line. No angle is taken for small.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         contribution: What all effects add at these readings; its twist and place are used.
     """
@@ -265,9 +268,8 @@ def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contr
     """Actual tool point in the table frame with every error in it.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
+        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
         contribution: What all effects add at these readings.
 
     Returns:
@@ -281,7 +283,6 @@ def linear_directions(chain: Chain, q: Array) -> Array:
     """Motion of the tip in the table frame per unit of each linear axis.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A).
 
     Returns:
@@ -306,7 +307,7 @@ def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float)
         chain: The machine; exactly three linear axes.
         target: Wanted tip (ball centre), table frame, shape (N, 3), mm.
         q: Readings whose rotary columns are kept, shape (N, A); linear columns are ignored.
-        length: Tool length, scalar or (N,), mm.
+        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
 
     Returns:
         Readings, shape (N, A). Travels are not checked here.

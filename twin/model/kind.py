@@ -1,7 +1,7 @@
 """`Kind`: one word of the library of effects, with all that a user is told about it."""
 
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -142,6 +142,18 @@ def component_symbol(chain: Chain, name: str) -> Symbol:
 def moving_axes(touches: Touches) -> list[str]:
     """Programmed axes that stood at more than one reading, in chain order."""
     return [axis for axis in touches.chain.programmed_axes if np.ptp(touches.reading(axis)) > 1e-6]
+
+
+def moved_components(touches: Touches) -> Iterator[Symbol]:
+    """Component errors of the axes that moved, in the order of the machine's symbols.
+
+    Where nothing moved, as in front of a nest of displacement probes, the axis next to the tool
+    stands for the machine.
+    """
+    axes = moving_axes(touches) or touches.chain.axes[-1:]
+    for symbol in touches.chain.symbols:
+        if symbol.family is Family.COMPONENT and symbol.link in axes:
+            yield symbol
 
 
 def varies(values: Array) -> bool:

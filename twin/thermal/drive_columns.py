@@ -1,25 +1,42 @@
-"""What an effect may follow: a sensor, the spindle speed, or a column of the user's own."""
+"""What an effect may follow: a sensor, the spindle speed, or a column of the user's own.
 
-from collections.abc import Iterable
+A body that is driven settles with its own time constant. What drives it is recorded at the touches
+only, so the equation is integrated exactly for a drive that is straight between two records (or
+constant, for the spindle speed), over whatever times the touches were made at.
+"""
 
 import numpy as np
 
 from twin.errors import UnknownEffect
 from twin.frames import Array
-from twin.model import sensor_record, sensors, varies
+from twin.model import Inner, sensor_record, sensors, varies
 from twin.record import Touches
-from twin.thermal.thermal_lag import SPEED_UNIT, SPINDLE, first_order_lag
 from twin.units import T_REF
 from twin.words import did_you_mean
 
+SPINDLE = "spindle_rpm"
+"""The drive that is no sensor: the spindle speed of the run file."""
+SPEED_UNIT = 1.0e4
+"""Amplitudes after the spindle speed are those at 10 000 rpm, 1/min."""
+OWN = "V_"
+"""Begins a drive that is a column of the user's own, as in the run file."""
+
 PER_KELVIN = 0.2
-"""Usual size of an error per kelvin, over that at 10 000 rpm, as of `thermal-lag`."""
+"""Usual size of an error per kelvin, over that at 10 000 rpm or after a step of an own column."""
 
 
 def drives(touches: Touches) -> list[str]:
-    """Names of the recorded drives of warmth that vary: sensors, then the spindle speed."""
+    """Names of the recorded drives that vary: sensors, the spindle speed, the user's own columns.
+
+    Those of the user's own stand as in the run file, `V_coolant_bar`.
+    """
     rpm = touches.spindle_rpm
-    return [*sensors(touches), *([SPINDLE] if rpm is not None and varies(rpm) else [])]
+    speed = [SPINDLE] if rpm is not None and varies(rpm) else []
+    return [
+        *sensors(touches),
+        *speed,
+        *(f"{OWN}{c}" for c, v in touches.value.items() if varies(v)),
+    ]
 
 
 def is_speed(drive: str) -> bool:
@@ -27,26 +44,48 @@ def is_speed(drive: str) -> bool:
     return drive == SPINDLE
 
 
-def driven(touches: Touches, drive: str, tau: float, effect: str) -> Array:
+def is_own(drive: str) -> bool:
+    """Whether a drive is a column of the user's own."""
+    return drive.startswith(OWN)
+
+
+def amplitude_unit(drive: str, unit: str, sd: float) -> tuple[str, float]:
+    """Unit of the amplitude after a drive, and its usual size.
+
+    Per kelvin after a sensor; at 10 000 rpm after the speed; of a step of an own column.
+
+    Args:
+        drive: The drive; empty for switching on.
+        unit: Of the error, "mm" or "rad".
+        sd: Usual size of the error at 10 000 rpm.
+    """
+    if not drive or is_speed(drive):
+        return unit, sd
+    return (unit if is_own(drive) else f"{unit}/K"), PER_KELVIN * sd
+
+
+def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 1.0) -> Array:
     """What has followed of a drive with a time constant at every touch, (N,).
 
     Args:
-        touches: All of the run.
-        drive: A sensor, followed as its difference from 20 degC, or `spindle_rpm` in units of
-            10 000 rpm.
+        drive: A sensor, followed as its difference from 20 degC, `spindle_rpm` in units of
+            10 000 rpm, or an own column in units of a step.
         tau: Time constant, s; zero follows at once.
         effect: Who asks, for the message.
+        step: Of an own column, in its unit.
 
     Raises:
         UnknownEffect: The drive was not recorded.
     """
+    if is_speed(drive) and touches.spindle_rpm is None:
+        raise UnknownEffect(f"'{effect}': the spindle speed of these touches is unknown")
     if is_speed(drive):
-        if touches.spindle_rpm is None:
-            raise UnknownEffect(f"'{effect}': the spindle speed of these touches is unknown")
-        speed = touches.spindle_rpm / SPEED_UNIT
-        return first_order_lag(touches.time, speed, tau, steps=True) if tau > 0.0 else speed
-    warmth = sensor_record(touches, drive) - T_REF
-    return first_order_lag(touches.time, warmth, tau) if tau > 0.0 else warmth
+        record = np.asarray(touches.spindle_rpm) / SPEED_UNIT
+    elif is_own(drive):
+        record = own_column(touches, drive.removeprefix(OWN)) / step
+    else:
+        record = sensor_record(touches, drive) - T_REF
+    return lagged(touches, record, tau, is_speed(drive)) if tau > 0.0 else record
 
 
 def own_column(touches: Touches, name: str) -> Array:
@@ -58,6 +97,83 @@ def own_column(touches: Touches, name: str) -> Array:
     return touches.value[name]
 
 
-def own_columns(touches: Touches) -> Iterable[str]:
-    """Names of the user's own columns that vary."""
-    return [name for name, values in touches.value.items() if varies(np.asarray(values))]
+def step_of(touches: Touches, drive: str) -> float:
+    """The step in which an own column is followed; 1 of any other drive.
+
+    Example:
+        A pressure that goes from 20 to 40 bar is followed in steps of 10 bar.
+    """
+    return round_step(own_column(touches, drive.removeprefix(OWN))) if is_own(drive) else 1.0
+
+
+def step_inner(touches: Touches, drive: str, name: str = "step") -> Inner:
+    """The step of an own column as an inner parameter: a single value, chosen and not found.
+
+    It stays with the effect, so that the same model means the same on another run.
+    """
+    return Inner(name, "1", np.array([step_of(touches, drive)]), continuous=False)
+
+
+def round_step(values: Array) -> float:
+    """Power of ten next to the standard deviation of a column; 1 of a constant one.
+
+    Example:
+        >>> round_step(np.array([0.0, 30.0]))
+        10.0
+    """
+    spread = float(np.std(values))
+    return float(10.0 ** np.round(np.log10(spread))) if spread > 0.0 else 1.0
+
+
+def lagged(touches: Touches, drive: Array, tau: float, steps: bool = False) -> Array:
+    """`first_order_lag` of a drive (N,) that was recorded at the touches, in every run anew."""
+    out = np.empty_like(drive)
+    for i in range(len(touches.runs)):
+        own = touches.run == i
+        if own.any():
+            out[own] = first_order_lag(touches.since_start[own], drive[own], tau, steps)
+    return out
+
+
+def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) -> Array:
+    """First-order lag of a record, exact between the records.
+
+    ``tau dy/dt = d - y``. With ``x = dt/tau`` and a straight drive from d0 to d1 one step is
+    ``y1 = e^-x y0 + (1 - e^-x) d0 + (1 - (1 - e^-x)/x) (d1 - d0)``; with a constant one it ends
+    before the last term, d0 being the drive that was set at the record before.
+
+    Args:
+        time: Of the records, shape (N,), s, in any order.
+        drive: Values, shape (N,).
+        tau: Time constant, s.
+        steps: Whether the drive is constant from one record to the next, and the body cold (y = 0)
+            at time zero; otherwise straight, and y = d at the first record.
+
+    Returns:
+        Shape (N,), in the unit of the drive.
+    """
+    order = np.argsort(time, kind="stable")
+    t, d = time[order], drive[order]
+    if steps:
+        d, t = np.concatenate([d[:1], d[:-1]]), np.concatenate([[min(0.0, float(t[0]))], t])
+        keep = np.exp(-np.diff(t) / tau)
+        added = (1.0 - keep) * d
+    else:
+        x = np.maximum(np.diff(t) / tau, 1e-12)
+        gone = -np.expm1(-x)
+        keep = np.concatenate([[0.0], 1.0 - gone])
+        added = np.concatenate([d[:1], gone * d[:-1] + (1.0 - gone / x) * np.diff(d)])
+    out = np.empty_like(drive)
+    out[order] = _recursion(keep, added)
+    return out
+
+
+def _recursion(keep: Array, added: Array) -> Array:
+    """y_i = keep_i y_(i-1) + added_i with y before the first zero, in log2(N) vector steps."""
+    factor, y = keep.copy(), added.copy()
+    stride = 1
+    while stride < len(y):
+        y[stride:] += factor[stride:] * y[:-stride].copy()
+        factor[stride:] = factor[stride:] * factor[:-stride]
+        stride *= 2
+    return y

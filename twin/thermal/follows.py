@@ -1,28 +1,65 @@
-"""Any component error in proportion to a column of the user's own."""
+"""Any component error that follows a recorded drive at once: a sensor, or a column of one's own."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from twin.frames import Array
-from twin.machine import Chain, Family, Symbol
+from twin.machine import Chain, Symbol
 from twin.model import (
+    Effect,
     Inner,
     Kind,
     Parameter,
     Term,
     Title,
-    Where,
     check_count,
     component_symbol,
-    moving_axes,
+    moved_components,
+    sensors,
 )
 from twin.record import Touches
-from twin.thermal.drive_columns import own_column, own_columns
+from twin.thermal.drive_columns import OWN, driven, drives, is_own, step_inner, step_of
 from twin.units import UM, URAD
 
-USAGE = "follows(symbol,column)"
+
+@dataclass(frozen=True)
+class ThermalStatic:
+    """A component error that follows a sensor at once, wherever the axis stands.
+
+    ``E = a (T - 20 degC)``. Holds where the sensor sits on what expands, so that nothing lags. One
+    parameter, the amplitude a, mm/K or rad/K: 1 to 30 um/K of a frame or a column.
+
+    Attributes:
+        sensor: Name of the sensor.
+
+    Reference:
+        ISO 230-3 (environmental temperature variation); static thermal models.
+    """
+
+    symbol: Symbol
+    sensor: str
+
+    kind = "thermal-static"
+
+    @property
+    def name(self) -> str:
+        """`thermal-static(EZZ,frame)`."""
+        return f"thermal-static({self.symbol.name},{self.sensor})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        what = "tilt" if self.symbol.is_angular else "growth"
+        return Title(f"{what} {self.symbol.motion} with {self.sensor}", self.symbol.link)
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """The amplitude per kelvin."""
+        return (Parameter("amplitude", f"{self.symbol.unit}/K", _usual(self.symbol)),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A twist of the axis."""
+        warmth = driven(touches, self.sensor, 0.0, self.name)
+        return (Term(0, touches.chain.twist_of(self.symbol), warmth),)
 
 
 @dataclass(frozen=True)
@@ -34,7 +71,6 @@ class Follows:
     effect: the same model means the same on another run.
 
     Attributes:
-        symbol: The component error.
         column: Name of the column without `V_`, its unit included.
         step: s, in the unit of the column.
     """
@@ -58,19 +94,16 @@ class Follows:
     @property
     def parameters(self) -> Sequence[Parameter]:
         """The amplitude of a step."""
-        sd = 20 * URAD if self.symbol.is_angular else 6 * UM
-        return (Parameter("amplitude", self.symbol.unit, sd),)
+        return (Parameter("amplitude", self.symbol.unit, _usual(self.symbol)),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
-        i = touches.chain.link_index(self.symbol.link)
-        amount = own_column(touches, self.column) / self.step
-        return (Term(0, Where("twist", i, self.symbol.component), amount),)
+        amount = driven(touches, OWN + self.column, 0.0, self.name, self.step)
+        return (Term(0, touches.chain.twist_of(self.symbol), amount),)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The step, a single value: it is chosen and not found."""
-        values = own_column(touches, self.column)
-        return (Inner("step", "1", np.array([round_step(values)]), continuous=False),)
+        """The step."""
+        return (step_inner(touches, OWN + self.column),)
 
     def tuned(self, *values: float) -> "Follows":
         """With this step."""
@@ -82,35 +115,52 @@ class Follows:
         return {"step": self.step}
 
 
-def round_step(values: Array) -> float:
-    """Power of ten next to the standard deviation of a column; 1 of a constant one.
-
-    Example:
-        >>> round_step(np.array([0.0, 30.0]))
-        10.0
-    """
-    spread = float(np.std(values))
-    return float(10.0 ** np.round(np.log10(spread))) if spread > 0.0 else 1.0
+def _usual(symbol: Symbol) -> float:
+    """Usual size of an error after a kelvin or a step, mm or rad."""
+    return 20 * URAD if symbol.is_angular else 6 * UM
 
 
-def make(chain: Chain, arguments: Sequence[str]) -> Follows:
+def follower(touches: Touches, symbol: Symbol, drive: str) -> Effect:
+    """The component error that follows a drive, other than the spindle speed, at once."""
+    if is_own(drive):
+        return Follows(symbol, drive.removeprefix(OWN), step_of(touches, drive))
+    return ThermalStatic(symbol, drive)
+
+
+def _make_static(chain: Chain, arguments: Sequence[str]) -> ThermalStatic:
+    """From the component error and the sensor."""
+    check_count(STATIC.usage, arguments, 2, 2)
+    return ThermalStatic(component_symbol(chain, arguments[0]), arguments[1])
+
+
+def _make_own(chain: Chain, arguments: Sequence[str]) -> Follows:
     """From the component error and the column, with or without its `V_`."""
-    check_count(USAGE, arguments, 2, 2)
-    return Follows(component_symbol(chain, arguments[0]), arguments[1].removeprefix("V_"))
+    check_count(FOLLOWS.usage, arguments, 2, 2)
+    return Follows(component_symbol(chain, arguments[0]), arguments[1].removeprefix(OWN))
 
 
-def propose(touches: Touches) -> Iterable[Follows]:
-    """Every component of every axis that moved, else of the one next to the tool, with every
-    column of the user's own that varies.
-    """  # noqa: D205
-    axes = moving_axes(touches) or touches.chain.axes[-1:]
-    for column in own_columns(touches):
-        for symbol in touches.chain.symbols:
-            if symbol.family is Family.COMPONENT and symbol.link in axes:
-                yield Follows(symbol, column, round_step(own_column(touches, column)))
+def _each(touches: Touches, names: Iterable[str]) -> Iterable[Effect]:
+    """Every component of every axis that moved, after each of some drives."""
+    for drive in names:
+        for symbol in moved_components(touches):
+            yield follower(touches, symbol, drive)
 
 
-KIND = Kind(
+STATIC = Kind(
+    word="thermal-static",
+    arguments="symbol,sensor",
+    title="thermal growth without a lag",
+    synonyms="expansion of a frame, thermal displacement, temperature coefficient",
+    formula="E = a (T - 20 degC), at once",
+    units="a: µm/K or µrad/K",
+    typical="frames and columns 1 to 30 µm/K",
+    source="ISO 230-3",
+    make=_make_static,
+    propose=lambda touches: _each(touches, sensors(touches)),
+    classes=(ThermalStatic,),
+)
+
+FOLLOWS = Kind(
     word="follows",
     arguments="symbol,column of the user's own",
     title="what follows a column of your own",
@@ -119,7 +169,7 @@ KIND = Kind(
     units="a: µm or µrad a step; step: unit of the column",
     typical="whatever the column knows",
     source="the user",
-    make=make,
-    propose=propose,
+    make=_make_own,
+    propose=lambda touches: _each(touches, filter(is_own, drives(touches))),
     classes=(Follows,),
 )

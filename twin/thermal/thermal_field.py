@@ -6,13 +6,22 @@ sum predicts. Time constants need not be searched: a lag between two of the fixe
 mean of both.
 """
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Title, Where, moving_axes, refusal
+from twin.model import Inner, Kind, Parameter, Term, Title, Where, moving_axes, refusal
 from twin.record import Touches
-from twin.thermal.drive_columns import PER_KELVIN, driven, drives, is_speed
+from twin.thermal.drive_columns import (
+    OWN,
+    amplitude_unit,
+    driven,
+    drives,
+    is_own,
+    is_speed,
+    step_inner,
+    step_of,
+)
 from twin.units import MINUTE, UM, URAD
 
 USAGE = "thermal-field(axis,drive,...)"
@@ -29,13 +38,15 @@ class ThermalField:
     """All six component errors of an axis after several drives, each at once and through lags.
 
     ``E = sum_d [a_d0 d(t) + sum_k a_dk y_dk(t)]``, ``tau_k dy_dk/dt = d - y_dk``, with
-    d = T - 20 degC of a sensor or n/(10 000 rpm); the speed, which is no state of a body, through
-    lags alone. Holds for small errors of a machine that leads heat linearly. All amplitudes share
-    one prior, whose size is chosen by what it predicts: the data decide how many of them count.
+    d = T - 20 degC of a sensor, n/(10 000 rpm), or an own column in steps; the speed, which is no
+    state of a body, through lags alone. Holds for small errors of a machine that leads heat
+    linearly. All amplitudes share one prior, whose size is chosen by what it predicts: the data
+    decide how many of them count.
 
     Attributes:
         axis: Whose body warms.
-        drives: Names of sensors, or `spindle_rpm`.
+        drives: Names of sensors, `spindle_rpm`, or own columns `V_name_unit`.
+        steps: Of the own columns among them, in their units; empty for 1 each.
 
     Reference:
         ISO 230-3; ridge regression of thermal errors on many sensors.
@@ -43,6 +54,7 @@ class ThermalField:
 
     axis: str
     drives: tuple[str, ...]
+    steps: tuple[float, ...] = ()
 
     kind = "thermal-field"
     is_shrunk = True
@@ -71,30 +83,52 @@ class ThermalField:
             unit, sd = ("mm", 30 * UM) if letter in "XYZ" else ("rad", 100 * URAD)
             for drive, tau in self.places:
                 lag = f"{tau / MINUTE:g} min" if tau else "at once"
-                own = (unit, sd) if is_speed(drive) else (f"{unit}/K", PER_KELVIN * sd)
+                own = amplitude_unit(drive, unit, sd)
                 out.append(Parameter(f"E{letter} {drive} {lag}", *own))
         return tuple(out)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis, one for every parameter."""
         link = touches.chain.link_index(self.axis)
-        amounts = [driven(touches, drive, tau, self.name) for drive, tau in self.places]
+        step = dict(zip(self._own, self.tuning.values(), strict=True))
+        amounts = [driven(touches, d, tau, self.name, step.get(d, 1.0)) for d, tau in self.places]
         return tuple(
             Term(c * len(amounts) + k, Where("twist", link, c), amount)
             for c in range(len(LETTERS))
             for k, amount in enumerate(amounts)
         )
 
+    @property
+    def _own(self) -> list[str]:
+        return [d for d in self.drives if is_own(d)]
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """The steps of own columns."""
+        return [step_inner(touches, d, f"step_{d.removeprefix(OWN)}") for d in self._own]
+
+    def tuned(self, *values: float) -> "ThermalField":
+        """With these steps."""
+        return replace(self, steps=tuple(map(float, values)))
+
+    @property
+    def tuning(self) -> Mapping[str, float]:
+        """The steps."""
+        names = [f"step_{d.removeprefix(OWN)}" for d in self._own]
+        return dict(zip(names, self.steps or [1.0] * len(names), strict=True))
+
 
 def make(chain: Chain, arguments: Sequence[str]) -> ThermalField:
     """From the axis and the drives."""
     if len(arguments) < 2 or not all(arguments):
-        raise refusal(USAGE, arguments, "an axis, then sensors or spindle_rpm")
+        raise refusal(
+            USAGE, arguments, "an axis, then sensors, spindle_rpm or own columns V_name_unit"
+        )
     if len(set(arguments)) < len(arguments):
         raise refusal(USAGE, arguments, "every drive once")
     if arguments[0] not in chain.axes:
         raise refusal(USAGE, arguments, f"an axis of {', '.join(chain.axes)}")
-    return ThermalField(arguments[0], tuple(arguments[1:]))
+    own = [d for d in arguments[1:] if is_own(d)]
+    return ThermalField(arguments[0], tuple(arguments[1:]), (1.0,) * len(own))
 
 
 def propose(touches: Touches) -> Iterable[ThermalField]:
@@ -108,16 +142,18 @@ def field(touches: Touches) -> ThermalField | None:
     """  # noqa: D205
     names = tuple(drives(touches))
     axes = moving_axes(touches) or touches.chain.axes
-    return ThermalField(axes[-1], names) if names else None
+    steps = tuple(step_of(touches, name) for name in names if is_own(name))
+    return ThermalField(axes[-1], names, steps) if names else None
 
 
 KIND = Kind(
     word="thermal-field",
-    arguments="axis,sensor or spindle_rpm,...",
+    arguments="axis,sensor, spindle_rpm or V_column,...",
     title="warming of a body after several drives",
     synonyms="thermal error field, thermal deformation, many sensors, regression, warm-up",
     formula="E = sum of a d + a_k y_k over drives d; tau_k dy_k/dt = d - y_k, tau 4 16 64 256 min",
-    units="a: µm or µrad, per K after a sensor, at 10 000 rpm after the spindle",
+    units="a: µm or µrad, per K after a sensor, at 10 000 rpm after the spindle, per step of an "
+    "own column",
     typical="where many sensors know something: 10 to 100 µm in all",
     source="ISO 230-3; ridge regression on many sensors",
     make=make,

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.linalg import solve_banded
 from scipy.optimize import minimize_scalar
 
-from diagnosis.fit.linear import BoolArray, solve
-from diagnosis.fit.noise import PRIOR_DOF
+from diagnosis.regression.linear import BoolArray, solve
+from diagnosis.regression.noise import PRIOR_DOF
 from twin.frames import Array
 from twin.record import IntArray, Touches
 
@@ -123,14 +123,13 @@ def whitener(memory: Memory, touches: Touches, u: Array, used: BoolArray) -> Whi
 
     Args:
         memory: Of the noise.
-        touches: All of the run.
         u: Standard uncertainty of every touch, (N,), mm.
         used: Rows of the fit, (N,).
     """
     order, before, gap = _before(touches, used, memory.by_place)
     steps = gap / memory.step if memory.step else np.ones(len(before))
     kept = np.where(before >= 0, memory.correlation ** np.maximum(steps, 1e-3), 0.0)
-    return Whitener(used, u[used], order, before, kept)
+    return Whitener(used=used, u=u[used], order=order, before=before, kept=kept)
 
 
 def _before(touches: Touches, used: BoolArray, by_place: bool) -> tuple[IntArray, IntArray, Array]:
@@ -178,7 +177,6 @@ def likely_memory(
     noise left open: a residual alone has lost what the fit took with it, and most of a slow memory.
 
     Args:
-        touches: All of the run.
         u: Standard uncertainty of every touch, (N,), mm.
         used: Rows that count, (N,).
         X: Columns of the model times the root of their prior over the noise, (N, P), not whitened.

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.fit.linear import BoolArray
+from diagnosis.regression.linear import BoolArray
 from twin.frames import Array
 from twin.record import Run
 
@@ -70,7 +70,6 @@ def replicate_factor(run: Run, z: Array, rows: BoolArray) -> tuple[float | None,
     """Noise over stated noise from replicates alone, with its degrees of freedom.
 
     Args:
-        run: The measurements.
         z: Residuals over the stated uncertainty, (N,); the model removes the little that replicates
             differ in.
         rows: Rows to use, (N,).

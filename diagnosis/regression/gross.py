@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from diagnosis.fit.linear import BoolArray, Solution, solve
+from diagnosis.regression.linear import BoolArray, Solution, solve
 from twin.frames import Array
 
 CHANCE = 1e-3

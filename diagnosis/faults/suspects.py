@@ -1,7 +1,7 @@
 """What users get wrong in the description of a machine or a run, as suspects to be tried.
 
 A suspect is one mistake undone: the same readings with another machine, another sign or another
-unit, or with one length of the description left free. `fault_trial` says which of them makes the
+unit, or with one length of the description left free. `trial` says which of them makes the
 run fit. None is ever applied silently.
 """
 

@@ -14,7 +14,8 @@ from itertools import islice
 
 import numpy as np
 
-from diagnosis.answer.suspects import (
+from diagnosis.evidence import Progress, quiet
+from diagnosis.faults.suspects import (
     Fault,
     Suspect,
     corrected,
@@ -23,8 +24,8 @@ from diagnosis.answer.suspects import (
     placed,
     suspects,
 )
-from diagnosis.evidence import Progress, quiet
-from diagnosis.fit import PRIOR_DOF, Fit, fit_run, solve, unit_mistake
+from diagnosis.fit import Fit, fit_run, unit_mistake
+from diagnosis.regression import PRIOR_DOF, solve
 from twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array, apply, inverse

@@ -1,0 +1,10 @@
+"""Faults of the description: what users get wrong in a machine file or a run, tried and named.
+
+In: a run whose deviations are absurd, or whose prior had to be widened. Out: every
+`DescriptionFault` that would make the run fit, with the figures. It is told and never applied.
+"""
+
+from diagnosis.faults.suspects import Fault
+from diagnosis.faults.trial import DescriptionFault, description_faults, faults_of_refused
+
+__all__ = ["DescriptionFault", "Fault", "description_faults", "faults_of_refused"]

@@ -1,0 +1,38 @@
+"""The geometry that a fit has learnt, as a machine's user speaks of it: numbers, no sentences.
+
+In: a `Fit` of the ordinary model. Out: a `LearntGeometry`: squareness, scale, straightness, angular
+errors and lines of the rotary axes with uncertainty, what they do at the ends of the travel, what
+changed since a saved model, corrections of the machine file, and the ladder from the set-up alone.
+"""
+
+from diagnosis.geometry.changes import (
+    changed_since,
+    changing,
+    standing,
+    state_of_standing,
+    with_changes,
+)
+from diagnosis.geometry.functionals import Quantity
+from diagnosis.geometry.learnt import (
+    Correction,
+    Estimate,
+    GeometryRow,
+    LearntGeometry,
+    geometry_rows,
+    learnt_geometry,
+)
+
+__all__ = [
+    "Correction",
+    "Estimate",
+    "GeometryRow",
+    "LearntGeometry",
+    "Quantity",
+    "changed_since",
+    "changing",
+    "geometry_rows",
+    "learnt_geometry",
+    "standing",
+    "state_of_standing",
+    "with_changes",
+]

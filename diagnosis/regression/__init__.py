@@ -1,0 +1,31 @@
+"""Regression with a prior, and the noise about it: what every fit below and above rests on.
+
+In: columns, deviations and weights as arrays. Out: a `Solution` with its covariance, errors of rows
+that were left out, gross errors, and noise that remembers, with a `Whitener` that makes its rows
+independent. Nothing here knows a machine.
+"""
+
+from diagnosis.regression.gross import GrossErrors, find_gross, robust_scale
+from diagnosis.regression.linear import BoolArray, LeftOut, Solution, left_out, solve
+from diagnosis.regression.memory import CLEARLY, Memory, Whitener, likely_memory, whitener
+from diagnosis.regression.noise import PRIOR_DOF, Noise, noise_factor, replicate_factor
+
+__all__ = [
+    "CLEARLY",
+    "PRIOR_DOF",
+    "BoolArray",
+    "GrossErrors",
+    "LeftOut",
+    "Memory",
+    "Noise",
+    "Solution",
+    "Whitener",
+    "find_gross",
+    "left_out",
+    "likely_memory",
+    "noise_factor",
+    "replicate_factor",
+    "robust_scale",
+    "solve",
+    "whitener",
+]

@@ -1,0 +1,109 @@
+"""Columns of the user's own as drives: found with a lag, in fields, kept by a model file."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from diagnosis.answer.comparison import compare
+from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.choice.field import sized_field
+from diagnosis.choice.prediction import offered
+from diagnosis.evidence.effect_signatures import ScaledEffect
+from diagnosis.files.model_file import read_model
+from diagnosis.files.model_writer import write_model
+from diagnosis.fit.prior import Prior
+from diagnosis.search.search_loop import DiagnosisTask
+from twin.library.catalogue import parse_effect
+from twin.library.ordinary import ordinary_model
+from twin.machine.chain import Axis, make_chain
+from twin.record.run import Run
+from twin.record.touches import Setup, Touches
+from twin.units import MINUTE, UM
+
+N = 150
+TAU = 25.0 * MINUTE
+PER_BAR = -0.8
+"""What Z grows by after a bar of coolant pressure, µm."""
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    """A dial gauge along Z for five hours; coolant of 20 to 60 bar, which a column bends under."""
+    rng = np.random.default_rng(6)
+    time = 120.0 * np.arange(N) + rng.uniform(0.0, 30.0, N)
+    pressure = 40.0 + 20.0 * np.sin(time / 2700.0) * np.cos(time / 7000.0)
+    y = solve_ivp(
+        lambda t, y: (np.interp(t, time, pressure) - y) / TAU,
+        (time[0], time[-1]),
+        [pressure[0]],
+        t_eval=time,
+        max_step=30.0,
+        rtol=1e-8,
+    ).y[0]
+    touches = Touches(
+        chain=make_chain("gauge", "[w f Z t]", {"Z": Axis((0.0, 350.0))}),
+        q=np.zeros((N, 1)),
+        length=np.zeros(N),
+        radius=np.zeros(N),
+        point=np.zeros((N, 3)),
+        normal=np.tile([0.0, 0.0, 1.0], (N, 1)),
+        setups=(Setup("a"),),
+        setup=np.zeros(N, dtype=np.int64),
+        time=time,
+        approach=np.zeros((N, 1)),
+        value={"coolant_bar": pressure},
+    )
+    # Z longer on the tool side: a surface that looks up seems to stand lower
+    deviation = -PER_BAR * (y - 40.0) + rng.normal(0.0, 0.5, N)
+    return Run(touches, deviation * UM, np.full(N, 0.5 * UM))
+
+
+def test_a_lag_after_an_own_column_is_found_with_its_size(run, tmp_path) -> None:
+    kinds = ("thermal-lag", "follows", "thermal-field")
+    result = diagnose(run, candidates=[e for e in offered(run.touches) if e.kind in kinds])
+    assert [e.name for e in result.found] == ["thermal-lag(EZZ,V_coolant_bar)"]
+    told = {r.name: r for r in result.steps[-1].reported}
+    assert abs(told["tau_min"].value - TAU / MINUTE) < 3.0 * told["tau_min"].u
+    assert told["tau_min"].u < 3.0
+    step = result.found[0].tuning["step"]
+    assert step == 10.0
+    assert abs(told["amplitude_um"].value - PER_BAR * step) < 3.0 * told["amplitude_um"].u
+    write_model(tmp_path / "model.toml", result.fit, "run.csv")
+    saved = read_model(tmp_path / "model.toml")
+    assert [e.tuning["step"] for e in saved.model.effects if e.kind == "thermal-lag"] == [step]
+    higher = {"coolant_bar": 10.0 * run.touches.value["coolant_bar"]}
+    # the same pressure in another spread, as another day has: what is predicted goes with it
+    other = replace(run.touches, value=higher)
+    lag = next(e for e in saved.model.effects if e.kind == "thermal-lag")
+    np.testing.assert_allclose(lag.response(other), 10.0 * lag.response(run.touches))
+    again = compare(run, saved.model, saved.estimates)
+    assert again.rms < 1.1 * result.fit.rms
+
+
+def test_a_field_of_own_columns_predicts_what_a_lag_between_its_own_does(run) -> None:
+    """No lag of the field is that of the machine; those around it stand in for it together."""
+    start = ordinary_model(run.touches.chain)
+    task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
+    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
+    warm = next(e for e in offered(run.touches) if e.kind == "thermal-field")
+    assert warm.name == "thermal-field(Z,V_coolant_bar)"
+    groups = np.array_split(np.arange(N), 5)
+    sized = sized_field(task, (), gross, warm, groups)
+    held = np.arange(N) % 30 < 10
+    split = np.where(held, "test", "train").astype("U5")
+    part = replace(task, run=replace(run, split=split))
+    fit = part.fit((sized,), gross)
+    assert np.sqrt(np.mean(fit.residual[held] ** 2)) < 0.8 * UM
+    assert np.sqrt(np.mean(part.fit((), gross).residual[held] ** 2)) > 4.0 * UM
+
+
+def test_a_field_of_own_columns_keeps_its_steps_in_a_model_file(run, tmp_path) -> None:
+    start = ordinary_model(run.touches.chain)
+    task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
+    warm = next(e for e in offered(run.touches) if e.kind == "thermal-field")
+    bare = parse_effect(warm.name, run.touches.chain)
+    assert (bare.steps, warm.steps) == ((1.0,), (10.0,))
+    write_model(tmp_path / "model.toml", task.fit((ScaledEffect(warm),)), "run.csv")
+    assert warm in read_model(tmp_path / "model.toml").model.effects
