@@ -106,7 +106,7 @@ class HigherOrder:
     rotary: bool = False
 
     kind = "geometric"
-    is_curve = True
+    is_told_whole = True
 
     @property
     def name(self) -> str:
