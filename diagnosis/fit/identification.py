@@ -24,7 +24,7 @@ from diagnosis.regression import (
     whitener,
 )
 from twin.display import Shown
-from twin.effects import setup_errors
+from twin.effects import SetupError, setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Effect, Model, Parameter, columns
@@ -76,7 +76,7 @@ class Fit(Shown):
 
     run: Run
     model: Model
-    setups: tuple[Effect, ...]
+    setups: tuple[SetupError, ...]
     tangents: tuple[Tangent, ...]
     prior: Prior
     X: Array
@@ -125,11 +125,26 @@ class Fit(Shown):
 
     @cached_property
     def residual(self) -> Array:
-        """Measured minus predicted, all rows, (N,), mm."""
+        """Measured minus predicted, all rows, (N,), mm.
+
+        In a set-up of which no touch was used nobody knows where the standard stands: its rows are
+        freed of that, so that they tell how well the machine is predicted.
+        """
         z = (self.y - self.X @ self.solution.phi) * self.weight
         if self.whitener is not None:
             z[self.used] = self.whitener.coloured(z[self.used])
+        for rows, part in self.unseen_setups:
+            S = self.X[rows, part]
+            z[rows] -= S @ np.linalg.lstsq(S, z[rows], rcond=None)[0]
         return z * self.u
+
+    @cached_property
+    def unseen_setups(self) -> tuple[tuple[NDArray[np.int64], slice], ...]:
+        """Rows and parameters of every set-up of which no touch was used."""
+        setup = self.run.touches.setup
+        numbers = {s.name: i for i, s in enumerate(self.run.touches.setups)}
+        rows = [(np.flatnonzero(setup == numbers[s.setup]), s.name) for s in self.setups]
+        return tuple((r, self.of_effect(name)) for r, name in rows if not self.used[r].any())
 
     @property
     def weight(self) -> float:
@@ -243,7 +258,10 @@ class Fit(Shown):
         the rows that the file marks `test`, each by itself, else one pose after the other.
         """
         if self.test_rows.any():
-            spread = (self.solution.spread(self.X[self.test_rows]) ** 2).sum(axis=1)
+            X = self.X.copy()
+            for rows, part in self.unseen_setups:
+                X[rows, part] = 0.0
+            spread = (self.solution.spread(X[self.test_rows]) ** 2).sum(axis=1)
             error = self.residual[self.test_rows] / np.sqrt(1.0 + spread)
             return float(np.sqrt(np.mean(error**2)))
         return self.weight * self.held_out.rms * float(np.sqrt(np.mean(self.u[self.used] ** 2)))
