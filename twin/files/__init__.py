@@ -10,7 +10,15 @@ from twin.files.pose_file import read_poses, reading_columns
 from twin.files.run_file import SetupTable, read_run
 from twin.files.run_writer import write_run
 from twin.files.sensor_file import SensorRecord, read_sensors
-from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.files.toml import (
+    Table,
+    check_format,
+    checked,
+    one_line_end,
+    parse_toml,
+    read_bytes,
+    read_text,
+)
 from twin.files.whole import (
     NOT_WRITABLE,
     refuse_own_input,
@@ -30,7 +38,9 @@ __all__ = [
     "check_format",
     "checked",
     "errors_toml",
+    "one_line_end",
     "parse_toml",
+    "read_bytes",
     "read_errors",
     "read_machine",
     "read_poses",
