@@ -6,6 +6,7 @@ from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
 from artefact.reach import ProbeReach
 from artefact.worth import Calibration, CriterionOptions, TouchOptions
+from probe_paths.language import Dialect, read_dialect
 from probe_paths.plan import PlanOptions, Probe
 from twin.units import DEG, KG_M3, UM, URAD
 
@@ -28,6 +29,11 @@ def probe(project: Project) -> Probe:
         body_radius=0.5 * stated.body_diameter_mm,
         nose_radius=0.5 * stated.nose_diameter_mm,
     )
+
+
+def dialect(project: Project) -> Dialect:
+    """Words of the control for which programs are written."""
+    return read_dialect(project.control, project.path.parent)
 
 
 def plan_options(project: Project) -> PlanOptions:

@@ -49,7 +49,7 @@ def simulate(
     """Run program files on the twin and evaluate the logs that they leave.
 
     Args:
-        programs: `.H` files with their masks beside them, in the order in which they are run.
+        programs: Files, masks of `.H` files beside them, in the order in which they are run.
         standard: The true one, which is also the calibrated one.
         machine: As it really is; the evaluation knows only its nominal chain.
         rng: For the noise of the trigger.
@@ -60,7 +60,7 @@ def simulate(
         NotReachable: A touch without contact; the program stopped there.
         DesignError: A program made for another standard.
     """
-    texts = [read_program(path, machine.chain, probe) for path in programs]
+    texts = [read_program(path, machine.chain, probe, machine.dialect) for path in programs]
     for text in texts:
         check_moves(text, standard, machine.chain)
     runs = run_programs(texts, standard, machine, rng)
