@@ -34,6 +34,7 @@ KIND = Kind(
     word="clamp-lift", arguments="", formula="EZC = h after a backward turn, else 0", units="h: µm",
     typical="1 to 10 µm", source="a wedge that clamps",
     make=lambda chain, arguments: ClampLift(), propose=lambda touches: [ClampLift()],
+    title="lift of the table by its clamp",
 )  # fmt: skip
 
 

@@ -50,4 +50,5 @@ HOSE = Kind.of(
     units="a: µm; x, width, y: mm",
     typical="some µm",
     source="seen behind the ram",
+    title="lift of the ram by its hose",
 )

@@ -18,6 +18,7 @@ from diagnosis.fit import fit_run
 from matstd.from_project import (
     blank,
     dialect,
+    feeds,
     placement_options,
     plan_options,
     probe,
@@ -92,7 +93,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         organisation=project.standard.organisation,
     )
     progress("probing programs", 0, 1)
-    programs = make_programs(plan, dialect(project))
+    programs = make_programs(plan, dialect(project), feeds(project))
     paths = programs.write(folder / "programs")
     machines = []
     for seed in range(project.machines):

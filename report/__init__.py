@@ -6,6 +6,7 @@ pictures, and HTML pages that stand alone. Nothing is decided here: what is a nu
 is a number in a result.
 
     style   paper, colours and labels of every picture
+    effects what effects are called
     words   sentences, for pages and for the console
     identifiability
             what touches can know, in words and in result files
@@ -38,7 +39,17 @@ from report.plots import (
 from report.scenes import Scene, draw_standard, draw_values, draw_volumes
 from report.words import comparison_sentence, study_words, verdict_sentence
 
-PARTS = ("style", "words", "geometry", "identifiability", "maps", "plots", "scenes", "pages")
+PARTS = (
+    "style",
+    "effects",
+    "words",
+    "geometry",
+    "identifiability",
+    "maps",
+    "plots",
+    "scenes",
+    "pages",
+)
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

@@ -19,8 +19,8 @@ OURS = ("next_measurement_*.csv", "pictures/*.png", *REPORT_FILES)
 """Results that not every diagnosis leaves."""
 
 
-TOLD = 4
-"""Effects that look like a found one, that are named on the console."""
+WIDE = 40
+"""Letters of a cell of words, so that the table of figures fits beside them."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -153,21 +153,21 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     from rich.table import Column, Table
 
     from matstd.console import console, say
+    from report.effects import plan_words, rival_words
     from report.geometry import fault_sentences, ladder_sentence, noted_lines
-    from report.words import remark_sentence, rivals_words, verdict_sentence
+    from report.words import remark_sentence, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
-    right = [
-        Column(word, justify="right") for word in ("p", "fitted µm", "held out µm", "chi²/dof")
-    ]
-    words = [Column(word, overflow="fold", no_wrap=True) for word in ("effect", "size")]
-    table = Table(*words, *right, box=None)
+    right = ("p", "fitted µm", "held out µm", "chi²/dof")
+    numbers = [Column(word, justify="right", no_wrap=True) for word in right]
+    words = [Column(word, overflow="fold", max_width=WIDE) for word in ("effect", "size")]
+    table = Table(*words, *numbers, box=None)
     for step in result.steps:
         table.add_row(*_row(step))
     console().print(table)
     for step in result.steps:
-        if step.effect is not None and step.confusion is not None and step.confusion.rivals:
-            say(f"- {step.effect.name} cannot be told from {rivals_words(step, TOLD)}")
+        if step.effect is not None and (rivals := rival_words(step)):
+            say(f"- {rivals}")
     for sentence in fault_sentences(result.faults):
         say(f"- {sentence}", style="bold")
     for line in (ladder_sentence(result.geometry), *noted_lines(result.geometry)):
@@ -180,19 +180,22 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
             "--add NAME one of them"
         )
     for i, plan in enumerate(result.plans, start=1):
-        say(f"- next_measurement_{i}.csv would tell {' from '.join(plan.tells_apart)}")
+        say(f"- next_measurement_{i}.csv would tell {plan_words(plan)}")
     first = "" if args.no_report else "report.html, "
     say(f"{args.output}: look at {first}diagnosis.json, model.toml")
 
 
 def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
+    from rich.markup import escape
+
+    from report.effects import effect_cell
     from report.numbers import digits
     from report.words import values
     from twin.units import UM
 
     return (
-        step.effect.name if step.effect is not None else "starting model",
+        escape("\n".join(filter(None, effect_cell(step)))) if step.effect else "starting model",
         ", ".join(value for _, value in values(step)[:2]),
         f"{step.p_value:.0e}" if step.effect is not None else "",
         f"{step.fit.rms / UM:.3f}",

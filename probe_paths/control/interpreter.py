@@ -98,7 +98,7 @@ def interpret(
     head, features = heading(blocks, path)
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
-    runner = Runner(blocks, places, frame, path, name, masks, head.lines)
+    runner = Runner(blocks, places, frame, path, name, masks, head.log_lines)
     state = State(path, frame, np.full(len(chain.axes), np.nan), np.zeros(len(chain.axes)))
     steps = runner.run(0, state)
     runner.check_logged()

@@ -91,7 +91,7 @@ def make_programs(
     for i, part in enumerate(parts):
         setup = "".join(c for c in plan.setup.name.upper() if c.isalnum() or c == "_")
         name = checked_name(f"{dialect.prefix}_{setup}_{i + 1}")
-        masks[f"{name}.A"] = head_mask(language.LOG, name, writer.heading.lines)
+        masks[f"{name}.A"] = head_mask(language.LOG, name, writer.heading.log_lines)
         title = f"FREEFORM STANDARD, PART {i + 1} OF {len(parts)}"
         file = f"{name}{language.ENDING}"
         # the head states the duration, which is known once the program has been read back

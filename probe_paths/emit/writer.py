@@ -26,6 +26,7 @@ from probe_paths.plan import (
     ProgramFrame,
     TouchPlan,
     Visit,
+    calibration_hash,
     home_readings,
     stated_serial,
     waypoints,
@@ -70,8 +71,9 @@ class Writer:
             standard=plan.standard.name,
             setup=plan.setup,
             probe=plan.probe,
-            table_radius=plan.options.table_radius,
+            workshop=plan.options.workshop,
             serial=stated_serial(plan.standard.serial),
+            calibration=calibration_hash(plan.standard),
         )
         top = plan.chain.link("Z").range[1]
         self.top = top - plan.options.retract

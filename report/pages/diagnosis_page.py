@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer import Detectable, Diagnosis, Step, Verdict
+from diagnosis.answer import Detectable, Diagnosis, Plan, Step, Verdict
 from diagnosis.fit import file_unit
+from report.effects import class_words, effect_cell, plan_words
 from report.geometry import fault_sentences
 from report.numbers import digits, unit_words
 from report.pages.geometry_section import geometry_section
@@ -40,8 +41,7 @@ from report.words import (
     verdict_sentence,
 )
 from twin.files import reading_columns
-from twin.library import kinds
-from twin.record import Touches
+from twin.library import kinds, parse_effect
 from twin.units import UM
 
 PAGE = "report.html"
@@ -67,7 +67,7 @@ def write_diagnosis_page(
         title: What was diagnosed: the name of the run file.
         rng: Shuffles residuals, to show what chance looks like.
     """
-    folder = Path(folder)
+    folder, chain = Path(folder), result.run.touches.chain
     place = folder / PICTURES
     place.mkdir(parents=True, exist_ok=True)
     if len(result.steps) > 1:
@@ -90,7 +90,7 @@ def write_diagnosis_page(
         ],
         is_bad=result.verdict is Verdict.UNEXPLAINED,
         um=UM,
-        steps=[_step(result, i) for i in range(len(result.steps))],
+        steps=[_step(step) for step in result.steps],
         effects=[_effect(result, i, place) for i in range(1, len(result.steps))],
         patterns=pattern_pictures(place, result.fit, result.left, rng),
         before=residual_pictures(place, "before", result.start),
@@ -98,7 +98,8 @@ def write_diagnosis_page(
         on_standard=_on_standard(result, place),
         geometry=geometry_section(result.geometry),
         detectable=_detectable(result.detectable),
-        plans=[_plan(p.tells_apart, p.touches, p.separation) for p in result.plans],
+        candidates=[(parse_effect(c.effect, chain), c) for c in result.candidates],
+        plans=[_plan(p) for p in result.plans],
         gross=gross_rows(result.fit),
         **setting(result.run, result.fit),
     )
@@ -116,11 +117,12 @@ def _on_standard(result: Diagnosis, place: Path) -> list[Picture]:
     return [Picture("on_standard.png", "Touched points in the frame of the standard, by residual.")]
 
 
-def _step(result: Diagnosis, i: int) -> dict[str, Any]:
+def _step(step: Step) -> dict[str, Any]:
     """Row of the table of steps."""
-    step = result.steps[i]
+    title, name = effect_cell(step) if step.effect is not None else ("starting model", "")
     return {
-        "effect": step.effect.name if step.effect is not None else "starting model",
+        "title": title,
+        "name": name,
         "size": sizes(step, most=2) if step.effect is not None else "",
         "p": step.p_value if step.effect is not None else None,
         "rms": step.fit.rms / UM,
@@ -142,13 +144,14 @@ def _effect(result: Diagnosis, i: int, place: Path) -> dict[str, Any]:
         draw_effect(place / name, result.fit, step.effect, colour)
     kind = next((k for k in kinds() if k.word == step.effect.kind), None)
     return {
-        "name": step.effect.name,
+        "effect": step.effect,
+        "words": class_words(step),
         "picture": name,
         "caption": _FORM if form else _COURSE,
         "kind": kind,
         "values": values(step),
         "more": len(values(step)) < len(step.reported),
-        "alike": _alike(step),
+        "alike": len(step.confusion.rivals) if step.confusion else 0,
         "against": _against(step),
         "by_user": step.is_named,
         "rivals": _rivals(step, i, place, colour),
@@ -166,11 +169,6 @@ _FORM = (
 )
 
 
-def _alike(step: Step) -> list[str]:
-    """Names of what cannot be told from an effect, the likeliest first."""
-    return [r.effect.name for r in step.confusion.rivals] if step.confusion else []
-
-
 def _against(step: Step) -> list[dict[str, Any]]:
     """Everything that explains the same touches, by the odds against it."""
     if step.confusion is None:
@@ -179,7 +177,7 @@ def _against(step: Step) -> list[dict[str, Any]]:
     rivals += [(r, False) for r in step.confusion.told_apart[:NEXT]]
     return [
         {
-            "effect": r.effect.name,
+            "effect": r.effect,
             "odds": odds(r.log_odds),
             "overlap": r.overlap,
             "is_confused": is_confused,
@@ -218,7 +216,8 @@ def _detectable(found: Sequence[Detectable]) -> list[dict[str, Any]]:
     by_kind: dict[str, list[Detectable]] = {}
     for d in found:
         by_kind.setdefault(d.effect.kind, []).append(d)
-    return [_kind_row(kind, by_kind[kind]) for kind in sorted(by_kind)]
+    titles = {kind.word: kind.title for kind in kinds()}
+    return [{"title": titles[k], **_kind_row(k, by_kind[k])} for k in sorted(by_kind)]
 
 
 def _kind_row(kind: str, found: Sequence[Detectable]) -> dict[str, Any]:
@@ -229,7 +228,7 @@ def _kind_row(kind: str, found: Sequence[Detectable]) -> dict[str, Any]:
         "best": _sized(seen[0]) if seen else None,
         "worst": _sized(seen[-1]) if len(seen) > 1 else None,
         "all": [_sized(d) for d in seen],
-        "hidden": [d.effect.name for d in found if d.largest is None],
+        "hidden": [d.effect for d in found if d.largest is None],
     }
 
 
@@ -237,7 +236,7 @@ def _sized(d: Detectable) -> dict[str, Any]:
     """Size of one effect in the unit of its file, and the deviation that it causes."""
     suffix, factor = file_unit(d.unit)
     return {
-        "effect": d.effect.name,
+        "effect": d.effect,
         "size": (d.size or 0.0) / factor,
         "unit": unit_words(suffix),
         "largest": (d.largest or 0.0) / UM,
@@ -245,8 +244,9 @@ def _sized(d: Detectable) -> dict[str, Any]:
     }
 
 
-def _plan(names: tuple[str, str], touches: Touches, separation: float) -> dict[str, Any]:
+def _plan(plan: Plan) -> dict[str, Any]:
     """Table of the touches of a plan: where the axes go, and what is touched."""
+    touches = plan.touches
     columns = reading_columns(touches.chain)
     axes = list(touches.chain.programmed_axes)
     rows = []
@@ -255,4 +255,4 @@ def _plan(names: tuple[str, str], touches: Touches, separation: float) -> dict[s
         where = [str(touches.feature[i]), touches.setups[touches.setup[i]].name]
         rows.append([*where, *cells, *(f"{v:.3f}" for v in touches.point[i])])
     head = ["feature", "set-up", *(columns[a][0] for a in axes), "px_mm", "py_mm", "pz_mm"]
-    return {"names": names, "head": head, "rows": rows, "separation": separation}
+    return {"words": plan_words(plan), "head": head, "rows": rows, "separation": plan.separation}

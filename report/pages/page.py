@@ -6,6 +6,7 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
+from report.effects import effect_title
 from report.numbers import digits as digits
 from report.numbers import percent, signed
 from report.pages.contents import with_contents
@@ -34,6 +35,7 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
     )
     environment.filters |= {
         "digits": digits,
+        "effect_title": effect_title,
         "percent": percent,
         "p_value": p_value,
         "unbroken": unbroken,

@@ -10,6 +10,7 @@ from diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Ste
 from diagnosis.fit import Fit
 from diagnosis.regression import BoolArray
 from diagnosis.residual import Partial, Seen, binned, partial
+from report.effects import effect_cell, effect_title
 from report.numbers import noun, shown
 from report.plots.residual_pictures import kept
 from report.style import (
@@ -26,10 +27,10 @@ from report.style import (
     plain,
     save,
     series,
-    tidy,
 )
 from report.words import microns
 from twin.frames import Array
+from twin.library import parse_effect
 from twin.model import Effect
 from twin.units import UM
 
@@ -41,6 +42,9 @@ TEN = float(np.log(10.0))
 SLOW, SCATTERED = 0.01, 0.3
 """Mean squared step over the variance, up to which a course is slow, and up to which it is one: a
 cycle of a dozen touches is in between."""
+
+ROW = 0.34
+"""Height of a bar with two lines of words, inch."""
 
 RATIO = 12.0
 """Between the largest and the smallest error of a fall, from which its scale is logarithmic."""
@@ -93,7 +97,17 @@ def _held_words(diagnosis: Diagnosis) -> str:
 
 
 def _step_words(step: Step) -> str:
-    return "starting\nmodel" if step.effect is None else "+ " + tidy(step.effect.name)
+    return (
+        "starting\nmodel"
+        if step.effect is None
+        else "+ " + "\n".join(filter(None, effect_cell(step)))
+    )
+
+
+def _named(effect: Effect) -> str:
+    """An effect beside its bar: title, below it its name."""
+    title = effect_title(effect)
+    return title if title == effect.name else f"{title}\n{effect.name}"
 
 
 def _value(ax: Any, x: float, y: float, above: bool, colour: str) -> None:
@@ -127,7 +141,7 @@ def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
         diagnosis: With at least one candidate.
     """
     shown = [c for c in diagnosis.candidates if np.isfinite(c.log_odds)][:MOST_BARS]
-    drawn = figure(1.3 + 0.25 * max(len(shown), 3))
+    drawn = figure(1.3 + ROW * max(len(shown), 3))
     ax = drawn.subplots()
     odds = np.array([c.log_odds for c in shown]) / TEN
     y = np.arange(len(shown))[::-1]
@@ -143,7 +157,8 @@ def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
             fontsize=7.5,
             color=SOFT,
         )
-    ax.set_yticks(y, [c.effect for c in shown])
+    chain = diagnosis.run.touches.chain
+    ax.set_yticks(y, [_named(parse_effect(c.effect, chain)) for c in shown])
     ax.set_xlabel("evidence for the effect by itself against none: powers of ten of the odds")
     ax.margins(x=0.14)
     ax.set_ylim(-0.7, len(shown) - 0.3)
@@ -173,7 +188,10 @@ def _class_legend(drawn: Any, diagnosis: Diagnosis) -> None:
 
     classes = _classes(diagnosis)
     handles = [
-        Patch(color=colour, label=effect.name + (" and what looks the same" if names[1:] else ""))
+        Patch(
+            color=colour,
+            label=effect_title(effect) + (" and what looks the same" if names[1:] else ""),
+        )
         for effect, names, colour in classes
     ]
     if handles:
@@ -193,10 +211,10 @@ def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE)
     """
     told = confusion.told_apart[: max(2, MOST_BARS - len(confusion.rivals))]
     rows = [*confusion.rivals[:MOST_BARS], *told]
-    names = [confusion.effect.name, *(r.effect.name for r in rows)]
+    names = [_named(e) for e in (confusion.effect, *(r.effect for r in rows))]
     behind = np.array([0.0, *(max(r.log_odds, -CONFUSED) for r in rows)]) / TEN
     alike = 1 + min(len(confusion.rivals), MOST_BARS)
-    drawn = figure(1.1 + 0.25 * len(names))
+    drawn = figure(1.1 + ROW * len(names))
     ax = drawn.subplots()
     y = np.arange(len(names))[::-1]
     ax.axvspan(-CONFUSED / TEN, CONFUSED / TEN, color=LINE, alpha=0.45, lw=0)
@@ -296,12 +314,12 @@ def _course(ax: Any, found: Partial, effect: Effect, colour: str) -> None:
     order = np.argsort(found.x, kind="stable")
     x, y = found.x[order], found.explained[order]
     if not found.driver.column:
-        ax.plot(x[[0, -1]], x[[0, -1]], color=colour, lw=1.8, zorder=4, label=effect.name)
+        ax.plot(x[[0, -1]], x[[0, -1]], color=colour, lw=1.8, zorder=4, label=effect_title(effect))
         return
     if len(np.unique(x)) > 12 and _roughness(found) < SCATTERED:
-        ax.plot(x, y, color=colour, lw=1.8, zorder=4, label=effect.name)
+        ax.plot(x, y, color=colour, lw=1.8, zorder=4, label=effect_title(effect))
     else:
-        ax.plot(x, y, "_", ms=7, mew=1.6, color=colour, zorder=4, label=effect.name)
+        ax.plot(x, y, "_", ms=7, mew=1.6, color=colour, zorder=4, label=effect_title(effect))
 
 
 def _roughness(found: Partial) -> float:

@@ -18,7 +18,7 @@ from report.style.colours import (
     WASH,
     series,
 )
-from report.style.labels import axis_of, axis_title, reading_label, robust_limit, tidy
+from report.style.labels import axis_of, axis_title, reading_label, robust_limit
 from report.style.sheet import WIDTH, figure, nothing, plain, save
 
 __all__ = [
@@ -43,5 +43,4 @@ __all__ = [
     "robust_limit",
     "save",
     "series",
-    "tidy",
 ]

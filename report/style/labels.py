@@ -40,9 +40,3 @@ def robust_limit(values: Array, share: float = 0.99) -> float:
     """End of a symmetric scale that a few large values do not decide; 1 where all are zero."""
     limit = float(np.quantile(np.abs(values), share)) if len(values) else 0.0
     return limit or 1.0
-
-
-def tidy(text: str) -> str:
-    """A name on two lines at most, broken where an effect's arguments begin."""
-    head, bracket, rest = text.partition("(")
-    return f"{head}\n({rest}" if bracket and len(text) > 16 else text

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from diagnosis.answer import Comparison, Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Condition, Shape, Side, Structure
+from report.effects import class_words, words_of_name
 from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
 from report.words.remark_words import memory_words
 from twin.record import Run
@@ -178,15 +179,8 @@ def _places(diagnosis: Diagnosis, step: Step) -> list[float]:
 
 def _added(diagnosis: Diagnosis, step: Step, most: int) -> str:
     """An effect with its leading numbers, and whether another one would do as well."""
-    name = step.effect.name if step.effect is not None else ""
-    rivals = step.confusion.rivals if step.confusion else ()
-    told = [sizes(step, most)] if most and step.reported else []
-    if len(rivals) == 1:
-        told.append(f"or {rivals[0].effect.name}")
-    elif rivals:
-        told.append(f"or one of {len(rivals)} effects that look the same")
-    clauses = [c for c in (", ".join(told), _alike(step, _places(diagnosis, step))) if c]
-    return f"{name} ({'; '.join(clauses)})" if clauses else name
+    told = [sizes(step, most) if most else "", _alike(step, _places(diagnosis, step))]
+    return class_words(step, [clause for clause in told if clause])
 
 
 def _them(steps: Sequence[Step]) -> str:
@@ -277,7 +271,8 @@ def learnt_lines(fit: Fit, told: Mapping[str, Sequence[Reported]]) -> list[str]:
         f"chi-square per degree of freedom {chi2}."
     )
     sizes = {name: ", ".join(" ".join(v) for v in number_words(r)) for name, r in told.items()}
-    return [first, *(f"{name}: {words}" for name, words in sizes.items() if words)]
+    chain = fit.run.touches.chain
+    return [first, *(f"{words_of_name(name, chain)}: {w}" for name, w in sizes.items() if w)]
 
 
 def _memory(fit: Fit) -> str:
@@ -286,10 +281,3 @@ def _memory(fit: Fit) -> str:
     if memory is None:
         return ""
     return memory_words(memory.correlation, memory.step, memory.by_place)
-
-
-def rivals_words(step: Step, most: int = 2) -> str:
-    """What an effect cannot be told from, in a cell of a table."""
-    names = [r.effect.name for r in step.confusion.rivals] if step.confusion else []
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return (", ".join(names[:most]) if more else listed(names) if names else "") + more

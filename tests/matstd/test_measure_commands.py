@@ -44,8 +44,11 @@ def test_sizes_and_what_is_left_are_said_in_words(folder, tmp_path, capsys, monk
     run = str(folder / "run.csv")
     assert main(["diagnose", run, "-o", str(tmp_path / "out"), "--no-report"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith("missing effect: The model lacks one effect: backlash(Y) (amplitude")
-    (row,) = [line for line in lines if line.startswith(" backlash(Y)")]
+    assert lines[0].startswith(
+        "missing effect: The model lacks one effect: reversal of Y (amplitude"
+    )
+    assert "[backlash(Y)]. With it" in lines[0]
+    (row,) = [line for line in lines if line.startswith(" reversal of Y ")]
     assert "±" in row
     assert "µm" in row
 
@@ -131,8 +134,8 @@ def test_a_named_effect_is_not_called_missing(folder, tmp_path, capsys) -> None:
     words = ["diagnose", str(folder / "run.csv"), "--add", "probe-radius", "--no-report"]
     assert main([*words, "-o", str(tmp_path / "o")]) == 0
     told = capsys.readouterr().out
-    assert "The model lacks one effect: backlash(Y)" in told
-    assert "Added by name: probe-radius" in told
+    assert "The model lacks one effect: reversal of Y" in told
+    assert "Added by name: effective radius of the ball" in told
 
 
 def test_a_file_is_no_folder(folder, tmp_path, capsys) -> None:

@@ -281,7 +281,7 @@ def test_numbers_of_the_steps_stand_on_the_page_as_in_the_result(page, warm):
         row = rf"{fit.rms / UM:.3f} {fit.test_rms / UM:.3f} "
         assert row in text
     (step,) = warm.steps[1:]
-    assert f"+ {step.effect.name}" in text
+    assert "+ growth along Z after switching on [thermal-lag(EZ" in text
     assert p_value(step.p_value) in text
     for one in step.reported:
         assert " ".join(named_value(one)).lower() in text.lower()

@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from report.style.colours import series
-from report.style.labels import robust_limit, tidy
+from report.style.labels import robust_limit
 
 
 def test_no_colour_comes_twice() -> None:
@@ -22,8 +22,3 @@ def test_a_scale_that_few_values_do_not_decide() -> None:
     values = np.concatenate([np.linspace(-1.0, 1.0, 999), [500.0]])
     assert robust_limit(values) < 1.01
     assert robust_limit(np.zeros(3)) == 1.0
-
-
-def test_long_names_take_two_lines() -> None:
-    assert tidy("drift") == "drift"
-    assert tidy("thermal-lag(EZZ,spindle)") == "thermal-lag\n(EZZ,spindle)"

@@ -1,16 +1,18 @@
 """What holds for every effect of the library, whatever its physics."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_up import MACHINES, made_up
+from made_up import MACHINES, arm_poses, made_up
 
 from twin.library.catalogue import parse_effect, proposals
 from twin.library.ordinary import ordinary_model
 from twin.machine.contribution import Contribution
 from twin.model.effect import Effect, Tunable, contribution
 from twin.model.model import Model, columns
+from twin.record.instrument import Instrument
 from twin.thermal.drive_columns import first_order_lag
 from twin.thermal.thermal_field import field
 from twin.units import NM
@@ -20,12 +22,18 @@ SECOND_ORDER = 60 * NM
 RELATIVE_ROUNDING = 1e-9
 
 
-RUNS = {label: made_up(label) for label in MACHINES}
+RUNS = {label: made_up(label) for label in MACHINES} | {"arm": arm_poses()}
 ALL = [
     (label, e)
     for label, touches in RUNS.items()
-    for e in (*proposals(touches), field(touches))  # a field is weighed against what is proposed
+    if label in MACHINES
+    for e in (
+        *proposals(touches),
+        *proposals(replace(touches, instrument=Instrument.LASER), ["position-table"]),
+        field(touches),  # weighed against what is proposed
+    )
 ]
+ALL += [("arm", e) for e in proposals(RUNS["arm"], ["joint-sag"])]
 # thirty of a kind on a machine are the same code: every one that differs in kind and in axis
 SOME = list(
     {

@@ -106,6 +106,7 @@ class HigherOrder:
     rotary: bool = False
 
     kind = "geometric"
+    is_told_whole = True
 
     @property
     def name(self) -> str:

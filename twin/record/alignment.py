@@ -16,7 +16,7 @@ import numpy as np
 from twin.frames import Array, apply, pose
 from twin.machine import tip
 from twin.record.run import Run
-from twin.record.touches import Setup, Touches, computed_deviation
+from twin.record.touches import Touches, computed_deviation
 
 SHIFT = 0.3
 """Displacement (mm) from which a set-up is moved: lever arms off by so much turn 50 µrad of a
@@ -61,7 +61,7 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     """
     t = run.touches
     centre = t.point + t.radius[:, None] * t.normal
-    reached = tip(t.chain, t.q, t.length)
+    reached = tip(t.chain, t.q, t.target)
     setups, moved = list(t.setups), []
     for i, setup in enumerate(t.setups):
         rows = t.setup == i
@@ -78,7 +78,7 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
         shift = float(np.linalg.norm(change))
         turn = float(np.arccos(np.clip(0.5 * (np.trace(R) - 1.0), -1.0, 1.0)))
         if shift > SHIFT or turn > TURN:
-            setups[i] = Setup(setup.name, T)
+            setups[i] = replace(setup, T_table_artefact=T)
             moved.append(Moved(setup.name, shift, turn))
     if not moved:
         return run, ()

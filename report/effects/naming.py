@@ -1,0 +1,120 @@
+"""What effects are called: the words of a workshop first, the name in brackets behind them.
+
+An effect that the run cannot tell from others is told as their class: what all of them are, which
+bodies may carry it, what else it may be, and the names.
+"""
+
+from collections.abc import Sequence
+
+from diagnosis.answer import Plan, Step
+from twin.library import parse_effect, title_of
+from twin.machine import Chain
+from twin.model import Effect, Title
+from twin.words import listed
+
+TOLD = 4
+"""Bodies, titles or names that are told one by one; of more the first ones."""
+
+_BODIES = {"t": "the tool", "w": "the workpiece", "standard": "the standard", "probe": "the probe"}
+
+
+def effect_title(effect: Effect) -> str:
+    """`reversal of X`, `growth along Z after switching on, carried by B`: one effect in words."""
+    return _whole(title_of(effect))
+
+
+def effect_words(effect: Effect) -> str:
+    """`reversal of X [backlash(X)]`."""
+    title = effect_title(effect)
+    return " ".join([title, _bracket([effect], title)]).rstrip()
+
+
+def words_of_name(name: str, chain: Chain) -> str:
+    """The same of a name that stands in a file.
+
+    Raises:
+        UnknownEffect, UnknownAxis, UnknownSymbol: It is no name of an effect of this machine.
+    """
+    return effect_words(parse_effect(name, chain))
+
+
+def effect_cell(step: Step) -> tuple[str, str]:
+    """An added effect in a table: what its class has in common, and its name."""
+    effects = _members(step)
+    text, bodies, _ = _class(effects)
+    alone = effect_title(effects[0])
+    return text if len(bodies) > 1 else alone, _bracket(effects, alone)
+
+
+def class_words(step: Step, told: Sequence[str] = ()) -> str:
+    """An added effect in a sentence: `growth along Z after switching on (12 min; ...) [...]`.
+
+    Args:
+        step: With an effect.
+        told: Clauses that stand in round brackets behind the title, before those of its class.
+    """
+    effects = _members(step)
+    text, bodies, others = _class(effects)
+    alone = effect_title(effects[0])
+    clauses = list(told)
+    if len(bodies) > 1:
+        clauses.append(f"which body carries it cannot be told: {_few(bodies)}")
+    if others:
+        clauses.append(f"it may as well be {_few(others)}")
+    title = text if len(bodies) > 1 else alone
+    bracket = _bracket(effects, alone)
+    return " ".join([title, *([f"({'; '.join(clauses)})"] if clauses else []), bracket]).rstrip()
+
+
+def rival_words(step: Step) -> str:
+    """`thermal-lag(EZB) cannot be told from thermal-lag(EZX) and thermal-lag(EZY)`; else empty."""
+    own, *rivals = [e.name for e in _members(step)]
+    return f"{own} cannot be told from {_few(rivals, 'and')}" if rivals else ""
+
+
+def plan_words(plan: Plan) -> str:
+    """What a plan tells apart: `reversal of X [backlash(X)] from reversal of Y [backlash(Y)]`."""
+    chain = plan.touches.chain
+    one, other = plan.tells_apart
+    if plan.periods_of:
+        periods = ", ".join((one.rpartition("@")[2], *other.rpartition("@")[2].split(",")))
+        return f"the periods {periods} mm of {words_of_name(plan.periods_of, chain)} apart"
+    return f"{words_of_name(one, chain)} from {words_of_name(other, chain)}"
+
+
+def _members(step: Step) -> list[Effect]:
+    """The effect of a step with everything that it cannot be told from, the likeliest first."""
+    assert step.effect is not None
+    rivals = step.confusion.rivals if step.confusion else ()
+    return [step.effect, *(r.effect for r in rivals)]
+
+
+def _class(effects: Sequence[Effect]) -> tuple[str, list[str], list[str]]:
+    """Text of the first title, the bodies of all that share it, and the titles of the rest."""
+    titles = [title_of(e) for e in effects]
+    text = titles[0].text
+    bodies = [_BODIES.get(t.carrier, t.carrier) for t in titles if t.text == text]
+    others = [_whole(t) for t in titles if t.text != text]
+    return text, list(dict.fromkeys(bodies)), list(dict.fromkeys(others))
+
+
+def _whole(title: Title) -> str:
+    """A title with the body that carries the effect where its text does not say it."""
+    text, carrier = title
+    is_said = not carrier or carrier in _BODIES or f" of {carrier} " in f"{text} ".replace(",", " ")
+    return text if is_said else f"{text}, carried by {carrier}"
+
+
+def _few(words: list[str], last: str = "or") -> str:
+    """`Z, Y, X or B`, or the first ones and how many more there are."""
+    if len(words) <= TOLD:
+        return listed(words, last)
+    return f"{', '.join(words[:TOLD])} {last} {len(words) - TOLD} more"
+
+
+def _bracket(effects: Sequence[Effect], title: str) -> str:
+    """`[thermal-lag(EZB) or one of 3 more]`; empty for an effect that is called by its name."""
+    name, more = effects[0].name, len(effects) - 1
+    if not more:
+        return "" if name == title else f"[{name}]"
+    return f"[{name} or {effects[1].name if more == 1 else f'one of {more} more'}]"

@@ -1,0 +1,96 @@
+"""Effects in sentences: the words of a workshop first, a class told as a class, names behind."""
+
+from types import SimpleNamespace
+
+import pytest
+from made_up import made_up
+
+from report.effects.naming import (
+    class_words,
+    effect_cell,
+    effect_words,
+    plan_words,
+    rival_words,
+    words_of_name,
+)
+from twin.library.catalogue import parse_effect
+
+LAGS = ["thermal-lag(EZZ)", "thermal-lag(EZY)", "thermal-lag(EZX)", "thermal-lag(EZB)"]
+
+
+def step(*names):
+    """A step whose effect cannot be told from the ones behind it."""
+    chain = made_up("hsm600u").chain
+    first, *rest = [parse_effect(name, chain) for name in names]
+    rivals = [SimpleNamespace(effect=e) for e in rest]
+    return SimpleNamespace(effect=first, confusion=SimpleNamespace(rivals=rivals))
+
+
+def test_a_class_that_differs_in_its_body_alone_is_told_as_one() -> None:
+    assert class_words(step(*LAGS), ["time constant 12 min"]) == (
+        "growth along Z after switching on (time constant 12 min; which body carries it cannot be "
+        "told: Z, Y, X or B) [thermal-lag(EZZ) or one of 3 more]"
+    )
+    assert effect_cell(step(*LAGS)) == (
+        "growth along Z after switching on",
+        "[thermal-lag(EZZ) or one of 3 more]",
+    )
+    assert rival_words(step(*LAGS)) == (
+        "thermal-lag(EZZ) cannot be told from thermal-lag(EZY), thermal-lag(EZX) and "
+        "thermal-lag(EZB)"
+    )
+
+
+def test_what_else_it_may_be_is_told_beside_the_bodies() -> None:
+    assert class_words(step("backlash(X)", "geometric(EXX,3)")) == (
+        "reversal of X (it may as well be positioning error of X) [backlash(X) or geometric(EXX,3)]"
+    )
+    words = class_words(step(*LAGS[:2], "drift", "backlash(X)"))
+    assert (
+        "cannot be told: Z or Y; it may as well be drift of the set-up or reversal of X)" in words
+    )
+
+
+def test_an_effect_alone_names_its_body_where_its_title_does_not() -> None:
+    assert class_words(step("thermal-lag(EZB)")) == (
+        "growth along Z after switching on, carried by B [thermal-lag(EZB)]"
+    )
+    assert effect_cell(step("backlash(X)")) == ("reversal of X", "[backlash(X)]")
+    assert rival_words(step("backlash(X)")) == ""
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("gravity(EYZ)", "sag of Z along Y [gravity(EYZ)]"),
+        ("coupling(EBX,Z)", "tilt of X about Y, which changes with Z [coupling(EBX,Z)]"),
+        ("stiffness(t)", "compliance of the tool [stiffness(t)]"),
+        ("probe-lobing", "lobes of the probe [probe-lobing]"),
+        (
+            "gravity(EBB,C)",
+            "tilt under a load off the centre of C, carried by B [gravity(EBB,C)]",
+        ),
+    ],
+)
+def test_names_in_words(name, words) -> None:
+    chain = made_up("hsm600u").chain
+    assert words_of_name(name, chain) == effect_words(parse_effect(name, chain)) == words
+
+
+def test_many_rivals_are_counted_beyond_the_first() -> None:
+    many = step("backlash(X)", *(f"geometric(E{c}{a},3)" for c in "XYZ" for a in "XY"))
+    assert rival_words(many).endswith("geometric(EYX,3), geometric(EYY,3) and 2 more")
+    words = class_words(many)
+    assert "straightness of X along Y, positioning error of Y or 2 more) [backlash(X) or" in words
+    assert words.endswith("or one of 6 more]")
+
+
+def test_plans_say_what_they_tell_apart() -> None:
+    touches = made_up("hsm600u")
+    plan = SimpleNamespace(
+        touches=touches, tells_apart=("backlash(X)", "backlash(Y)"), periods_of=""
+    )
+    assert plan_words(plan) == "reversal of X [backlash(X)] from reversal of Y [backlash(Y)]"
+    periods = ("periodic(EXX)@10", "periodic(EXX)@5,3.333")
+    plan = SimpleNamespace(touches=touches, tells_apart=periods, periods_of="periodic(EXX)")
+    assert plan_words(plan).startswith("the periods 10, 5, 3.333 mm of positioning error of X")
