@@ -78,6 +78,7 @@ def run(args: argparse.Namespace) -> int:
 
     from artefact.body import read_standard
     from matstd.console import say
+    from matstd.progress import stages
     from probe_paths.campaign import simulate
     from probe_paths.control import stated_probe
     from twin.errors import DesignError
@@ -95,7 +96,8 @@ def run(args: argparse.Namespace) -> int:
     record = read_sensors(args.sensors) if args.sensors else None
     machine = _machine(args, record, for_errors)
     probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
-    campaign = simulate(args.programs, standard, machine, for_noise, probe)
+    with stages() as show:
+        campaign = simulate(args.programs, standard, machine, for_noise, probe, show)
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
     for name, text in campaign.logs.items() if args.logs else ():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
