@@ -21,6 +21,7 @@ from twin.files.toml import (
 )
 from twin.files.whole import (
     NOT_WRITABLE,
+    UNFINISHED,
     refuse_own_input,
     refuse_to_overwrite,
     write_whole,
@@ -29,6 +30,7 @@ from twin.files.whole import (
 
 __all__ = [
     "NOT_WRITABLE",
+    "UNFINISHED",
     "MachineTables",
     "Pair",
     "SensorRecord",
