@@ -146,7 +146,14 @@ def _wide(
         raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     return _present(
-        PositioningTest(axis, columns[0], columns[1], columns[2], columns[3], columns[4])
+        PositioningTest(
+            axis=axis,
+            target=columns[0],
+            deviation=columns[1],
+            cycle=columns[2],
+            direction=columns[3],
+            line=columns[4],
+        )
     )
 
 
