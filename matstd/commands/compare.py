@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
-    from report.geometry import fault_sentences, ladder_sentence, noted_lines
+    from report.geometry import copy_lines, fault_sentences, ladder_sentence, noted_lines
     from report.numbers import signed
     from report.words import (
         comparison_sentence,
@@ -103,6 +103,8 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
     for sentence in fault_sentences(found.faults):
         say(f"- {sentence}", style="bold")
+    for line in copy_lines(found.run.touches, found.geometry, found.faults):
+        say(f"- {line}")
     for line in (ladder_sentence(found.geometry), *noted_lines(found.geometry)):
         say(f"- {line}")
     for remark in found.remarks:

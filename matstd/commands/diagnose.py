@@ -154,7 +154,13 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
     from matstd.console import console, say
     from report.effects import plan_words, rival_words
-    from report.geometry import fault_sentences, ladder_sentence, noted_lines, trend_lines
+    from report.geometry import (
+        copy_lines,
+        fault_sentences,
+        ladder_sentence,
+        noted_lines,
+        trend_lines,
+    )
     from report.words import remark_sentence, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
@@ -170,6 +176,8 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
             say(f"- {rivals}")
     for sentence in fault_sentences(result.faults):
         say(f"- {sentence}", style="bold")
+    for line in copy_lines(result.run.touches, result.geometry, result.faults):
+        say(f"- {line}")
     for line in trend_lines(result.trend):
         say(f"- {line}", style="bold")
     noted = () if result.trend else noted_lines(result.geometry)

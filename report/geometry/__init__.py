@@ -4,6 +4,7 @@ In: a `LearntGeometry`, `DescriptionFault`s. Out: lines of a table and for the c
 copy into a machine file, a sentence for each mistake.
 """
 
+from report.geometry.copy_lines import copy_lines
 from report.geometry.fault_words import fault_sentences
 from report.geometry.geometry_words import (
     correction_line,
@@ -18,6 +19,7 @@ from report.geometry.trend_words import change_sentences, trend_lines
 
 __all__ = [
     "change_sentences",
+    "copy_lines",
     "correction_line",
     "fault_sentences",
     "geometry_lines",

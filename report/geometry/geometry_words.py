@@ -160,4 +160,6 @@ def correction_line(correction: Correction) -> str:
     was = ", ".join(f"{v:g}" for v in correction.stated)
     unit, factor = ("µrad", URAD) if key == "direction" else ("µm", UM)
     u = ", ".join("-" if v is None else digits(v / factor, 2) for v in correction.u)
+    if len(correction.found) == 1:
+        return f"{correction.key} = {numbers}  # was {was}, ± {u} {unit}"
     return f"[{table}] {key} = [{numbers}]  # was [{was}], ± [{u}] {unit}"
