@@ -24,7 +24,7 @@ WRONG = {
     "direction": (TABLE, TABLE + "direction = [0.0, 0.0, -1.0]\n"),
     "ball": ("radius_mm = 3.0", "radius_mm = 2.9"),
 }
-"""Run: what stands right, in the machine file or in the head of the run, and what the user wrote."""
+"""Run: what is right, in the machine file or in the head of the run, and what the user wrote."""
 
 POSES = 4
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from diagnosis.faults import DescriptionFault, Fault
-from diagnosis.geometry import Correction, LearntGeometry
+from diagnosis.geometry import Correction, GeometryRow, LearntGeometry
 from report.geometry.geometry_words import correction_line
 from twin.machine import LETTERS, Chain
 from twin.record import Touches
@@ -25,9 +25,14 @@ def copy_lines(
     """
     found = [c for f in faults for one in (f, *f.alike) for c in _undone(touches, one)]
     keys = {c.key for c in found}
-    far = {row.axes[-1] for row in geometry.rows if row.is_beyond_expected}
-    found += [c for c in geometry.corrections if c.key not in keys and c.key.split(".")[1] in far]
+    far = {_key(row) for row in geometry.rows if row.is_beyond_expected}
+    found += [c for c in geometry.corrections if c.key not in keys and c.key in far]
     return [f"to copy: {correction_line(c)}" for c in found]
+
+
+def _key(row: GeometryRow) -> str:
+    """The key of a machine file that a line or a squareness would be put right in."""
+    return f"axis.{row.axes[-1]}.{'direction' if row.symbol[1] in 'ABC' else 'point'}"
 
 
 def _undone(touches: Touches, fault: DescriptionFault) -> Iterator[Correction]:
