@@ -4,7 +4,7 @@ In: a `LearntGeometry`, `DescriptionFault`s, a `Trend`. Out: lines of a table an
 numbers to copy into a machine file, a sentence for each mistake and for what changed between runs.
 """
 
-from report.geometry.console_lines import console_lines
+from report.geometry.console_words import console_lines
 from report.geometry.fault_words import fault_sentences
 from report.geometry.geometry_words import (
     correction_line,
