@@ -9,7 +9,7 @@ import numpy as np
 from artefact.body import Standard
 from artefact.reach import Workshop, clearance_in_workshop, still_frames, table_face
 from probe_paths.plan.probe import Probe
-from twin.frames import Array, apply, inverse, turn
+from twin.frames import Array, apply, inverse
 from twin.machine import Chain, linear_directions, table_to_tool, tip
 from twin.record import Labels, Setup
 
@@ -97,10 +97,12 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
         shift = np.einsum("vi,vi->v", up, T_table_still[:, :3, 3])
         most = (along @ solid.points[mine].T + solid.radii[mine]).max(axis=1)
         highest = np.maximum(highest, most + shift)
-    outline = turn(table_to_tool(chain, q)[:, None], probe.outline())  # (V, M, 3)
-    below = np.einsum("vmi,vi->vm", outline, up).min(axis=1)
+    T_table_tool = table_to_tool(chain, q)
+    up_in_tool = np.einsum("vji,vj->vi", T_table_tool[:, :3, :3], up)
+    below = (up_in_tool @ probe.outline().T).min(axis=1)
     below = np.minimum(below, -probe.radius)
-    level: Array = highest - below - np.einsum("vi,vi->v", up, tip(chain, q, probe.length))
+    gauge_to_ball = np.array([0.0, 0.0, -probe.length])
+    level: Array = highest - below - np.einsum("vi,vi->v", up, apply(T_table_tool, gauge_to_ball))
     return level
 
 
