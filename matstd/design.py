@@ -15,7 +15,15 @@ from artefact.place import Placement, design_standard
 from cad_out.verify import export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.fit import fit_run
-from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
+from matstd.from_project import (
+    blank,
+    dialect,
+    feeds,
+    placement_options,
+    plan_options,
+    probe,
+    probe_reach,
+)
 from matstd.reach import check_reach
 from matstd.streams import streams
 from probe_paths.campaign import VirtualMachine, simulate
@@ -85,7 +93,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         organisation=project.standard.organisation,
     )
     progress("probing programs", 0, 1)
-    programs = make_programs(plan)
+    programs = make_programs(plan, dialect(project), feeds(project))
     paths = programs.write(folder / "programs")
     machines = []
     for seed in range(project.machines):
@@ -156,7 +164,10 @@ def _prove(
     population = project.population
     errors = drawn_errors(population, rng_errors)
     machine = VirtualMachine(
-        project.chain, lambda touches: contribution(errors, touches), noise=project.noise
+        project.chain,
+        lambda touches: contribution(errors, touches),
+        noise=project.noise,
+        dialect=dialect(project),
     )
     campaign = simulate(programs, placement.standard, machine, rng_noise)
     fit = fit_run(campaign.run, population.expected())

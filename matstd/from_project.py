@@ -1,12 +1,17 @@
 """What a project asks for, in the terms of placement and planning."""
 
+import numpy as np
+
 from artefact.body import Base, Limits, Material
-from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, Project
+from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, BodyTable, Project
 from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
-from artefact.reach import ProbeReach
+from artefact.reach import ProbeReach, Solid, Workshop, covering_solids, round_table, still_frames
 from artefact.worth import Calibration, CriterionOptions, TouchOptions
+from probe_paths.emit import Feeds
+from probe_paths.language import Dialect
 from probe_paths.plan import PlanOptions, Probe
+from twin.frames import pose, rotation
 from twin.units import DEG, KG_M3, UM, URAD
 
 _LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
@@ -23,17 +28,88 @@ def probe(project: Project) -> Probe:
     return Probe(
         radius=project.probe_radius,
         length=project.probe_length,
-        stylus_length=stated.stylus_length_mm or 0.0,
-        stylus_radius=0.5 * (stated.stylus_diameter_mm or 0.0),
-        body_radius=0.5 * stated.body_diameter_mm,
+        stack=tuple((end, 0.5 * diameter) for end, diameter in stated.stack_mm or ()),
         nose_radius=0.5 * stated.nose_diameter_mm,
+    )
+
+
+def workshop(project: Project) -> Workshop:
+    """What stands beside the standard; bodies that are drawn elsewhere are covered by boxes.
+
+    Raises:
+        BadFile: A mesh that cannot be read.
+        DesignError: A body on an axis that does not carry the workpiece.
+    """
+    stated = project.workshop.table
+    if stated is None:
+        table = round_table(project.table_radius)
+    else:
+        a, b = stated.sides_mm or (stated.diameter_mm or 0.0,) * 2
+        table = Solid(
+            round_table().name,
+            (0.5 * a, 0.5 * b),
+            stated.sides_mm is None,
+            stated.height_mm - stated.thickness_mm,
+            stated.height_mm,
+        )
+    bodies = [solid for body in project.workshop.bodies for solid in _solids(project, body)]
+    made = Workshop(table, tuple(bodies))
+    still_frames(made.on, project.chain, np.zeros((1, len(project.chain.axes))))
+    return made
+
+
+def _solids(project: Project, body: BodyTable) -> list[Solid]:
+    """One body as the prisms that a program can state."""
+    x, y, z = body.at_mm
+    if body.stl is not None:
+        place = pose(rotation(np.array([0.0, 0.0, body.turned_deg * DEG])), np.array([x, y, z]))
+        return covering_solids(project.path.parent / body.stl, body.name, place, body.on)
+    assert body.height_mm is not None
+    a, b = body.sides_mm or (body.diameter_mm or 0.0,) * 2
+    return [
+        Solid(
+            body.name,
+            (0.5 * a, 0.5 * b),
+            body.sides_mm is None,
+            z,
+            z + body.height_mm,
+            x,
+            y,
+            body.turned_deg * DEG,
+            body.on,
+        )
+    ]
+
+
+def dialect(project: Project) -> Dialect:
+    """Words and numbers of the control."""
+    stated = project.workshop
+    return Dialect(
+        folder=stated.folder,
+        tool=stated.tool,
+        preset=stated.preset,
+        result_height=stated.height_read,
+    )
+
+
+def feeds(project: Project) -> Feeds:
+    """Feeds of the programs, and where a file ends."""
+    stated = project.workshop
+    return Feeds(
+        probing=float(stated.probing_feed_mm_min),
+        approach=float(stated.approach_feed_mm_min),
+        turning=float(stated.turning_feed_deg_min),
+        touches_per_file=stated.touches_per_file,
     )
 
 
 def plan_options(project: Project) -> PlanOptions:
     """How carefully touches are made: with half the room that they are chosen for."""
     return PlanOptions(
-        smallest_gap=0.5 * _room(project), table_radius=project.limits.table_radius_mm
+        smallest_gap=0.5 * _room(project),
+        clearance=project.workshop.clearance_mm,
+        retract=project.workshop.retract_mm,
+        workshop=workshop(project),
     )
 
 
@@ -55,7 +131,7 @@ def probe_reach(project: Project) -> ProbeReach:
         shape=tool.shape,
         length=tool.length,
         room=_room(project),
-        table_radius=project.limits.table_radius_mm,
+        workshop=workshop(project),
     )
 
 

@@ -22,9 +22,8 @@ from artefact.reach import (
     turned,
 )
 from artefact.worth import poses_within
-from matstd.from_project import blank, placement_options, probe, probe_reach
+from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
 from probe_paths.plan import (
-    PlanOptions,
     home_readings,
     readings_at,
     solid_hull,
@@ -133,7 +132,7 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
 
     By what every standard has: its base, and its highest sphere, taken over the middle.
     """
-    made, options, chain = blank(project), PlanOptions(), project.chain
+    made, options, chain = blank(project), plan_options(project), project.chain
     fit, top = made.fittings, made.base.thickness
     middle = np.array([0.0, 0.0, max(fit.sphere_heights)])
     ball = DatumSphere(
@@ -155,8 +154,8 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
         holes=(),
         blank_height=made.height,
     )
-    solid = solid_hull(least, wanted.setup, wanted.table_radius)
-    tool = replace(probe(project), length=wanted.length, stylus_length=0.5 * wanted.length)
+    solid = solid_hull(least, wanted.setup, wanted.workshop)
+    tool = probe(project).at_length(wanted.length)
     path = np.tile(home_readings(chain), (2 * len(poses) + 1, 1))
     path[1::2] = poses
     turning = swing_height(chain, path, solid, tool)[::2] + 0.5 * options.clearance

@@ -6,5 +6,14 @@ field of one of the tables, and a check beside it if it can contradict another.
 
 from artefact.brief.project_file import Project, read_project
 from artefact.brief.standard_tables import BASE_THICKNESS, CORNER_RADIUS, StandardTable
+from artefact.brief.workshop_tables import BodyTable, probe_models
 
-__all__ = ["BASE_THICKNESS", "CORNER_RADIUS", "Project", "StandardTable", "read_project"]
+__all__ = [
+    "BASE_THICKNESS",
+    "CORNER_RADIUS",
+    "BodyTable",
+    "Project",
+    "StandardTable",
+    "probe_models",
+    "read_project",
+]

@@ -15,6 +15,13 @@ from artefact.brief.standard_tables import (
     check_body,
     check_standard,
 )
+from artefact.brief.workshop_tables import (
+    ProbeTable,
+    WorkshopTable,
+    check_workshop,
+    checked_probe,
+    table_radius,
+)
 from sensitivity.montecarlo import MACHINES_A_BATCH
 from sensitivity.population import Population
 from twin.errors import BadFile, UnknownAxis
@@ -33,21 +40,6 @@ from twin.units import DEG, UM
 
 FARTHEST = 1e6
 """A reading beyond this (mm, degrees) is a slip; larger whole numbers are no floating ones."""
-
-
-class ProbeTable(Table):
-    """`[probe]`: the ball, its distance from the gauge point, and what stands above it.
-
-    The stylus reaches from the ball centre to the body, the body to the gauge line, the nose of the
-    spindle above it.
-    """
-
-    radius_mm: float = Field(gt=0.0, le=25.0)
-    length_mm: float = Field(gt=0.0)
-    stylus_length_mm: float | None = Field(default=None, gt=0.0)
-    stylus_diameter_mm: float | None = Field(default=None, gt=0.0)
-    body_diameter_mm: float = Field(default=50.0, gt=0.0)
-    nose_diameter_mm: float = Field(default=90.0, gt=0.0)
 
 
 class MonteCarloTable(Table):
@@ -80,6 +72,7 @@ class ProjectTable(Table):
     machine: str
     seed: int = Field(ge=0)
     probe: ProbeTable
+    workshop: WorkshopTable = WorkshopTable()
     workspace: dict[str, object] = Field(default_factory=dict)
     montecarlo: MonteCarloTable = MonteCarloTable()
     errors: ErrorsTable = ErrorsTable()
@@ -101,7 +94,9 @@ class Project:
         seed: Of all random numbers.
         probe_radius: mm.
         probe_length: Gauge point to ball centre, mm.
-        probe: The same, and what stands above the ball.
+        probe: The same, and what stands above the ball, as `stack_mm`.
+        workshop: What stands beside the standard, and the control.
+        table_radius: Of the table's face, or of the largest disc on it, mm.
         workspace: Smallest and largest reading of every programmed axis, mm or rad.
         poses: Number of poses for the maps.
         draws: Number of random machines for the maps; at most so many where digits are asked for.
@@ -125,6 +120,8 @@ class Project:
     probe_radius: float
     probe_length: float
     probe: ProbeTable
+    workshop: WorkshopTable
+    table_radius: float
     workspace: dict[str, tuple[float, float]]
     poses: int
     draws: int
@@ -174,16 +171,22 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
             f"{2 * MACHINES_A_BATCH} or more: stable digits need two batches",
         )
     check_standard(table.standard, path)
-    check_body(table.blank, table.limits, table.standard, table.probe.radius_mm, path)
+    probe = checked_probe(table.probe, path)
+    assert probe.radius_mm is not None
+    assert probe.length_mm is not None
+    room = _table_radius(table, path)
+    check_body(table.blank, table.limits, table.standard, probe.radius_mm, room, path)
     name, setup = next(iter(table.setup.items()))
     return Project(
         path=path,
         machine_path=machine_path,
         chain=chain,
         seed=table.seed,
-        probe_radius=table.probe.radius_mm,
-        probe_length=table.probe.length_mm,
-        probe=_checked_probe(table.probe, path),
+        probe_radius=probe.radius_mm,
+        probe_length=probe.length_mm,
+        probe=probe,
+        workshop=table.workshop,
+        table_radius=room,
         workspace=workspace,
         poses=poses,
         draws=table.montecarlo.draws,
@@ -198,6 +201,18 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         noise=table.simulation.noise_um * UM,
         machines=table.simulation.machines,
     )
+
+
+def _table_radius(table: ProjectTable, path: Path) -> float:
+    """Of the table's face, which is stated once at most."""
+    check_workshop(table.workshop, path)
+    stated = table_radius(table.workshop)
+    if stated is None:
+        return table.limits.table_radius_mm
+    if "table_radius_mm" in table.limits.model_fields_set:
+        raise BadFile(path, "limits.table_radius_mm", f"{table.limits.table_radius_mm:g}",
+                      "no such key beside [workshop.table]")  # fmt: skip
+    return stated
 
 
 def _workspace(
@@ -235,15 +250,3 @@ def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
     if not low <= high:
         raise BadFile(path, key, [low, high], "the smaller number first")
     return low, high
-
-
-def _checked_probe(probe: ProbeTable, path: Path) -> ProbeTable:
-    """A stylus that is thinner than the ball and ends between ball and gauge point."""
-    length, diameter = probe.stylus_length_mm, probe.stylus_diameter_mm
-    if length is not None and not probe.radius_mm < length < probe.length_mm:
-        expected = f"between radius_mm = {probe.radius_mm:g} and length_mm = {probe.length_mm:g}"
-        raise BadFile(path, "probe.stylus_length_mm", f"{length:g}", expected)
-    if diameter is not None and diameter >= 2.0 * probe.radius_mm:
-        expected = f"less than the ball, {2.0 * probe.radius_mm:g}"
-        raise BadFile(path, "probe.stylus_diameter_mm", f"{diameter:g}", expected)
-    return probe

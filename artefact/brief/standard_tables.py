@@ -78,7 +78,12 @@ def check_standard(wanted: StandardTable, path: Path) -> None:
 
 
 def check_body(
-    blank: BlankTable, limits: LimitsTable, wanted: StandardTable, ball_mm: float, path: Path
+    blank: BlankTable,
+    limits: LimitsTable,
+    wanted: StandardTable,
+    ball_mm: float,
+    table_radius_mm: float,
+    path: Path,
 ) -> None:
     """Refuse a blank and limits that no standard can meet.
 
@@ -87,11 +92,12 @@ def check_body(
         limits: What is allowed.
         wanted: The standard.
         ball_mm: Radius of the probe's ball.
+        table_radius_mm: Of the table's face.
 
     Raises:
         BadFile: The key and what it contradicts.
     """
-    sides, table = blank.base_mm, 2.0 * limits.table_radius_mm
+    sides, table = blank.base_mm, 2.0 * table_radius_mm
     if min(sides) < 160.0:
         raise BadFile(path, "blank.base_mm", list(sides), "160 mm or more either way")
     if max(sides) > table:

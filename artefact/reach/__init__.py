@@ -2,17 +2,13 @@
 
 In: machine, probe and set-up (`ProbeReach`), a standard, wanted touches (`Requests`). Out: masks of
 those that can be made, the reason against each of the others, axis readings, and the touches as the
-twin's effects understand them. A new hindrance is one more look in `ProbeReach`.
+twin's effects understand them. A new hindrance is one more look in `ProbeReach`; a body beside the
+standard is a `Solid` of the `Workshop`.
 """
 
 from artefact.reach.face_of_table import table_face
-from artefact.reach.probe_clearance import (
-    TABLE_RADIUS,
-    TABLE_THICKNESS,
-    ProbeShape,
-    clearance,
-    clearance_on_table,
-)
+from artefact.reach.mesh_cover import covering_solids
+from artefact.reach.probe_clearance import ProbeShape, clearance
 from artefact.reach.touchable import Mask, ProbeReach, Requests, joined
 from artefact.reach.within_reach import (
     ANGLE,
@@ -23,23 +19,35 @@ from artefact.reach.within_reach import (
     spread_poses,
     turned,
 )
+from artefact.reach.workshop import (
+    TABLE,
+    Solid,
+    Workshop,
+    clearance_in_workshop,
+    round_table,
+    still_frames,
+)
 
 __all__ = [
     "ANGLE",
-    "TABLE_RADIUS",
-    "TABLE_THICKNESS",
+    "TABLE",
     "Limit",
     "Mask",
     "PlacesInReach",
     "ProbeReach",
     "ProbeShape",
     "Requests",
+    "Solid",
+    "Workshop",
     "clearance",
-    "clearance_on_table",
+    "clearance_in_workshop",
+    "covering_solids",
     "joined",
     "places_on",
     "reach_of",
+    "round_table",
     "spread_poses",
+    "still_frames",
     "table_face",
     "turned",
 ]

@@ -4,16 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Plate, Standard, rows, unit
-from artefact.reach.face_of_table import table_face
+from artefact.body import Standard, rows, unit
 from twin.errors import ShapeMismatch
-from twin.frames import Array, apply, inverse, turn
-
-TABLE_RADIUS = 160.0
-"""Of the rotary table's face where nobody says otherwise, mm."""
-
-TABLE_THICKNESS = 60.0
-"""How much of the table below its face is kept clear, mm."""
+from twin.frames import Array
 
 _GROWTH = 1.15  # ratio of neighbouring stations along the tool axis
 _THIN = 4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped
@@ -161,50 +154,6 @@ def clearance(
         better = finer > room[tight]
         room[tight[better]], nearest[tight[better]] = finer[better], body[better]
     return Clearance(room, nearest)
-
-
-def clearance_on_table(
-    standard: Standard,
-    T_table_artefact: Array,
-    T_table_tool: Array,
-    centre: Array,
-    probe: ProbeShape,
-    table: Plate,
-    enough: float = 2.0,
-) -> Clearance:
-    """How near the probe comes to the standard and to the table under it; from below.
-
-    The ball itself is looked at against the table, which it is not meant to touch.
-
-    Args:
-        standard: In the artefact frame.
-        T_table_artefact: Where it stands.
-        T_table_tool: Of which the rotation tells the tool axis, shape (N, 4, 4).
-        centre: Ball centres, table frame, shape (N, 3), mm.
-        probe: Stylus, stem and body.
-        table: With the table's face at height zero (`table_face`).
-        enough: Room beyond which the exact figure does not matter, mm.
-
-    Returns:
-        Room and the nearest body, which may be `the table`.
-    """
-    T_artefact_table = inverse(T_table_artefact)
-    T_face_table = inverse(table_face(T_table_artefact))
-    axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
-    near = clearance(standard, apply(T_artefact_table, centre), axis, probe, enough)
-    above = np.full(len(centre), -np.inf)
-    for places, radii in (probe.rough_cover(), probe.fine_cover()):
-        tight = np.flatnonzero(above < enough)
-        balls = centre[tight, None] + turn(T_table_tool[tight, None], places)
-        balls = apply(T_face_table, balls.reshape(-1, 3))
-        gap = table.distance(balls).reshape(len(tight), len(radii)) - radii
-        above[tight] = np.maximum(above[tight], gap.min(axis=1, initial=np.inf))
-    above = np.minimum(above, table.distance(apply(T_face_table, centre)) - probe.ball_radius)
-    on_table = above < near.distance
-    return Clearance(
-        np.where(on_table, above, near.distance),
-        np.where(on_table, "the table", near.body.astype(str)),
-    )
 
 
 def _room(

@@ -4,19 +4,14 @@ Whoever chooses touches and whoever plans them asks here; they differ only in th
 """
 
 from collections import Counter
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Meeting, Plate, Standard, contact
-from artefact.reach.probe_clearance import (
-    TABLE_RADIUS,
-    TABLE_THICKNESS,
-    Clearance,
-    ProbeShape,
-    clearance_on_table,
-)
+from artefact.body import Meeting, Standard, contact
+from artefact.reach.probe_clearance import Clearance, ProbeShape
+from artefact.reach.workshop import Workshop, clearance_in_workshop, still_frames
 from twin.frames import Array, apply, inverse, turn
 from twin.machine import Chain, inverse_linear, linear_directions, table_to_tool
 from twin.record import IntArray, Labels, Setup, Touches, linear_approach
@@ -79,8 +74,7 @@ class ProbeReach:
         room: Smallest gap between the probe above its ball and anything solid, mm.
         standoff: Gap between ball and surface at the start of a touch, mm.
         search: How far beyond the expected contact the travel must reach, mm.
-        table_radius: Of the table's face, mm.
-        table_thickness: Of what is kept clear below it, mm.
+        workshop: What stands there beside the standard.
     """
 
     chain: Chain
@@ -91,13 +85,17 @@ class ProbeReach:
     room: float = 2.0
     standoff: float = 5.0
     search: float = 3.0
-    table_radius: float = TABLE_RADIUS
-    table_thickness: float = TABLE_THICKNESS
+    workshop: Workshop = field(default_factory=Workshop)
 
     @property
     def radius(self) -> float:
         """Of the ball, mm."""
         return self.shape.ball_radius
+
+    @property
+    def table_radius(self) -> float:
+        """Of the largest disc that the table's face holds, mm."""
+        return self.workshop.table_radius
 
     def readings(self, wanted: Requests, gap: float = 0.0) -> Array:
         """Axis readings with the ball this far off the surface along the normal, (N, A).
@@ -277,11 +275,16 @@ class ProbeReach:
         poses = self._pose_kinematics(wanted)
         place = self.setup.T_table_artefact
         centre = apply(place, wanted.point + (self.radius + gap) * wanted.normal)
-        r = self.table_radius
-        table = Plate((r, r), r, -self.table_thickness, 0.0)
-        T_table_tool = poses.T_table_tool[poses.index]
-        return clearance_on_table(
-            standard, place, T_table_tool, centre, self.shape, table, enough=self.room
+        frames = still_frames(self.workshop.on, self.chain, poses.q)
+        return clearance_in_workshop(
+            standard,
+            place,
+            poses.T_table_tool[poses.index],
+            centre,
+            self.shape,
+            self.workshop,
+            {name: T[poses.index] for name, T in frames.items()},
+            enough=self.room,
         )
 
     def _way_down(self, standard: Standard, wanted: Requests) -> Labels:

@@ -16,6 +16,7 @@ from diagnosis.answer.next_measurement import (
     plan,
 )
 from diagnosis.answer.one_set import ToldSet, told_set
+from diagnosis.answer.several import settled
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from diagnosis.choice import (
@@ -95,11 +96,23 @@ def diagnose(
     start = model or ordinary_model(run.touches.chain)
     belief = prior or Prior.of_effects(start.effects)
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
-    library = offered(run.touches) if candidates is None else list(candidates)
+    return settled(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
+
+
+def _diagnosed(
+    task: DiagnosisTask,
+    named: Sequence[Effect],
+    candidates: Sequence[Effect] | None,
+    progress: Progress,
+    rng: np.random.Generator | None,
+) -> Diagnosis:
+    """What a task lacks; arguments as of `diagnose`."""
+    touches = task.run.touches
+    library = offered(touches) if candidates is None else list(candidates)
     added = refined_named(task, named, progress)
     if len(added) > 1:
         check_distinct(ResidualSpace.of(task.fit()), added)
-    known = {e.name for e in (*start.effects, *(a.effect for a in added))}
+    known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
     final = search_until_stable(task, added, single, progress)

@@ -7,6 +7,7 @@ from typing import Any
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.next_measurement import Plan
+from diagnosis.answer.trend import Trend
 from diagnosis.choice import Choice
 from diagnosis.faults import DescriptionFault
 from diagnosis.fit import Fit, Reported
@@ -97,6 +98,7 @@ class Diagnosis(Tabular):
         faults: Mistakes in the description that would make the run fit.
         remarks: What else a user should know.
         choice: How the set was chosen by prediction; None where the search left nothing to choose.
+        trend: What changed between several runs; None for a single one.
     """
 
     run: Run
@@ -113,6 +115,7 @@ class Diagnosis(Tabular):
     faults: tuple[DescriptionFault, ...]
     remarks: tuple[Remark, ...]
     choice: Choice | None = None
+    trend: Trend | None = None
 
     def columns(self) -> dict[str, list[Any]]:
         """Every step in which the error falls; the first is the starting model."""

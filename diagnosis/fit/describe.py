@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
+from scipy.linalg import orth
 
 from diagnosis.fit.identification import Fit
 from diagnosis.regression import BoolArray
@@ -17,6 +18,9 @@ AT_END = 1e-3
 
 UNSEEN = 0.99
 """Share of its prior uncertainty that a parameter keeps if no touch sees it."""
+
+ALIKE = 1e-6
+"""Singular values of columns below this share of the largest are rounding: they say the same."""
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
@@ -105,7 +109,7 @@ def reported(
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
     out = list(_inner(fit, effect, wider, settled or {}))
-    if getattr(effect, "is_shrunk", False):
+    if getattr(effect, "is_shrunk", False) or getattr(effect, "is_curve", False):
         out.append(explained_rms(fit, effect, theta, covariance))
     elif len(theta) > 1:
         out.append(size(effect, theta, covariance, _is_seen(fit, place)))
@@ -128,9 +132,16 @@ def reported(
 def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
     """Deviation that an effect of many parameters explains, root mean square over the rows used.
 
-    Of parameters that share what they know neither one nor their length means anything.
+    Of parameters that share what they know neither one nor their length means anything. Of a curve
+    it is what only the curve explains: its lowest terms are straight lines and parabolas, which
+    stand in the model under other names.
     """
     C = columns([effect], fit.run.touches)[fit.used]
+    if getattr(effect, "is_curve", False):
+        others = [e for e in fit.effects if e.name != effect.name]
+        unit = fit.u[fit.used][:, None]
+        Q = orth(columns(others, fit.run.touches)[fit.used] / unit, rcond=ALIKE)
+        C = C - unit * (Q @ (Q.T @ (C / unit)))
     explained = C @ theta
     rms = float(np.sqrt(np.mean(explained**2)))
     # d rms / d theta = C^T C theta / (n rms)

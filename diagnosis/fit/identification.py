@@ -170,14 +170,18 @@ class Fit(Shown):
     def groups(self) -> tuple[NDArray[np.int64], ...]:
         """Rows of the fit, by numbers within it, of every table pose in every set-up.
 
-        With fewer than `MIN_POSES` poses blocks of touches in the order of probing instead.
+        With fewer than `MIN_POSES` poses blocks of touches in the order of probing instead, and so
+        in a set-up of one pose: without any touch nobody knows where the standard stands.
         """
         t = self.run.touches
         key = np.column_stack([t.setup, t.pose])[self.used]
         label = np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
         if label.max() + 1 < MIN_POSES:
             return tuple(np.array_split(np.arange(len(label)), min(BLOCKS, len(label))))
-        return tuple(np.flatnonzero(label == k) for k in range(label.max() + 1))
+        groups = [np.flatnonzero(label == k) for k in range(label.max() + 1)]
+        poses = np.bincount(np.unique(key, axis=0)[:, 0])
+        cuts = [min(BLOCKS, len(g)) if poses[key[g[0], 0]] == 1 else 1 for g in groups]
+        return tuple(p for g, n in zip(groups, cuts, strict=True) for p in np.array_split(g, n))
 
     @cached_property
     def held_out(self) -> LeftOut:

@@ -5,12 +5,20 @@ errors and lines of the rotary axes with uncertainty, what they do at the ends o
 changed since a saved model, corrections of the machine file, and the ladder from the set-up alone.
 """
 
+from diagnosis.geometry.changes import (
+    changed_since,
+    changing,
+    standing,
+    state_of_standing,
+    with_changes,
+)
 from diagnosis.geometry.functionals import Quantity
 from diagnosis.geometry.learnt import (
     Correction,
     Estimate,
     GeometryRow,
     LearntGeometry,
+    geometry_rows,
     learnt_geometry,
 )
 
@@ -20,5 +28,11 @@ __all__ = [
     "GeometryRow",
     "LearntGeometry",
     "Quantity",
+    "changed_since",
+    "changing",
+    "geometry_rows",
     "learnt_geometry",
+    "standing",
+    "state_of_standing",
+    "with_changes",
 ]

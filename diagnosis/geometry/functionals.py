@@ -79,15 +79,27 @@ def _is_probed(fit: Fit, axis: str) -> bool:
     return bool(np.ptp(fit.run.touches.reading(axis)[fit.used]) > 0.0)
 
 
+def _probed(fit: Fit, axis: str) -> tuple[float, float]:
+    """Least and largest reading that was probed, of several runs that every one of them probed.
+
+    Beyond what a run probed its geometry is anybody's guess, and so is what changed there.
+    """
+    t = fit.run.touches[fit.used]
+    own = [t.reading(axis)[t.run == i] for i in np.unique(t.run)]
+    low, high = max(float(q.min()) for q in own), min(float(q.max()) for q in own)
+    if high <= low:  # runs that have nothing in common
+        low, high = float(t.reading(axis).min()), float(t.reading(axis).max())
+    return low, high
+
+
 def _along_axis(fit: Fit, axis: str) -> Touches:
     """Poses along an axis over the probed readings: linear axes in the middle, rotary at zero."""
     t = fit.run.touches[fit.used]
     chain = t.chain
     q = np.zeros((POINTS, len(chain.axes)))
     for name in chain.linear_axes:
-        q[:, chain.axis_index(name)] = 0.5 * (t.reading(name).min() + t.reading(name).max())
-    own = t.reading(axis)
-    q[:, chain.axis_index(axis)] = np.linspace(own.min(), own.max(), POINTS)
+        q[:, chain.axis_index(name)] = np.mean(_probed(fit, name))
+    q[:, chain.axis_index(axis)] = np.linspace(*_probed(fit, axis), POINTS)
     return at_poses(chain, q, float(np.mean(t.length)))
 
 
@@ -244,16 +256,17 @@ def _line_of(fit: Fit, axis: str) -> dict[int, Array]:
     tool relative to the table. Of that, what the location errors of the axis would do by least
     squares beside a rigid motion of the standard is where its line appears to be, as seen from the
     tool: `EX0C` and an opposite `EX0t` are the same there. With the tool at both ends of what was
-    probed along every linear axis: from one place a turned standard looks like a displaced line.
+    probed along the linear axes across the line, to which ISO 230-1 refers its squareness: from one
+    place a turned standard looks like a displaced line.
     """
     t = fit.run.touches[fit.used]
     chain = t.chain
     link = chain.link(axis)
     sweep = _along_axis(fit, axis)
     places_of_tool = []
-    for linear in chain.linear_axes:
-        readings = t.reading(linear)
-        for end in (readings.min(), readings.max()):
+    across = [a for a in chain.linear_axes if abs(chain.link(a).direction @ link.direction) < 0.5]
+    for linear in across or chain.linear_axes:
+        for end in _probed(fit, linear):
             q = sweep.q.copy()
             q[:, chain.axis_index(linear)] = end
             places_of_tool.append(q)

@@ -16,7 +16,8 @@ from enum import Enum
 import numpy as np
 
 from diagnosis.fit import Fit, Prior, fit_run
-from diagnosis.geometry.functionals import Quantity, functionals
+from diagnosis.geometry.changes import changed_since, of_first, since_first_run, standing, state
+from diagnosis.geometry.functionals import Functional, Quantity, functionals
 from twin.frames import Array
 from twin.machine import LETTERS, Link
 from twin.model import Model
@@ -26,7 +27,11 @@ DETERMINED = 3.0
 expectation has a say of more than a tenth, ``1 / 3^2``, in the estimate."""
 
 CLEAR = 3.0
-"""Standard uncertainties from which a change, or what exceeds the expectation, is no chance."""
+"""Standard uncertainties from which what exceeds the expectation is no chance."""
+
+CHANGED = 4.0
+"""Standard uncertainties from which a change is none: some fifty quantities are looked at, of which
+one in three hundred such tables exceeds this by chance; of 3 one in eight would."""
 
 SHARED = 0.3
 """Correlation of estimates from which a parameter is named as one that a quantity is shared with;
@@ -59,7 +64,11 @@ class GeometryRow:
         expected: Standard deviation before the run.
         is_determined: Whether the run, rather than the expectation, decides it.
         shared_with: Parameters that it cannot be separated from, where it is not determined.
-        before: The same in an earlier model, if there was one.
+        before: The same in an earlier model, or in the first of several runs.
+        change: Now less before; None without a before.
+        course: The same in every run, in their order, where there are several; None in a run that
+            does not determine it.
+        steps: What changed into every run but the first; None where either is not determined.
     """
 
     quantity: Quantity
@@ -72,6 +81,9 @@ class GeometryRow:
     is_determined: bool
     shared_with: tuple[str, ...] = ()
     before: Estimate | None = None
+    change: Estimate | None = None
+    course: tuple[Estimate | None, ...] = ()
+    steps: tuple[Estimate | None, ...] = ()
 
     @property
     def at_ends(self) -> Estimate:
@@ -85,26 +97,34 @@ class GeometryRow:
         return self.is_determined and abs(self.estimate.value) > bound
 
     @property
-    def change(self) -> Estimate | None:
-        """Now less before; None without a before."""
-        if self.before is None:
-            return None
-        u = float(np.hypot(self.estimate.u, self.before.u))
-        return Estimate(self.estimate.value - self.before.value, u)
+    def has_changed(self) -> bool:
+        """Whether it differs from before, or one run from the next, by more than chance."""
+        return (self.is_determined and _is_clear(self.change)) or any(map(_is_clear, self.steps))
 
     @property
-    def has_changed(self) -> bool:
-        """Whether it differs from before by more than chance."""
-        change = self.change
-        if change is None or not self.is_determined:
+    def has_changed_since_model(self) -> bool:
+        """Whether the first run differs from an earlier model by more than chance."""
+        first = self.course[0] if self.course else self.estimate if self.is_determined else None
+        if first is None or self.before is None:
             return False
-        return abs(change.value) > CLEAR * change.u
+        u = float(np.hypot(first.u, self.before.u))
+        return _is_clear(Estimate(first.value - self.before.value, u))
+
+    def has_changed_into(self, run: int) -> bool:
+        """Whether it differs from the run before by more than chance; the first run is 0."""
+        return run > 0 and _is_clear(self.steps[run - 1])
+
+
+def _is_clear(change: Estimate | None) -> bool:
+    return change is not None and abs(change.value) > CHANGED * change.u
 
 
 class Rung(Enum):
     """Steps of the ladder from what a user starts with."""
 
     SETUP = "set-up alone"
+    MODEL = "the geometry of the model"
+    COMMON = "one geometry for all runs"
     GEOMETRY = "geometry"
     EFFECTS = "effects"
 
@@ -169,8 +189,8 @@ def learnt_geometry(
     """
     rungs = ladder(fit) if start is None else ladder(start, fit)
     if before is not None:
-        own = Prior.of_effects(fit.model.effects)
-        fit = fit_run(fit.run, fit.model, own, gross=fit.gross)
+        before = of_first(before, fit.model)
+        fit = fit_run(fit.run, since_first_run(fit.model), gross=fit.gross)
     rows = geometry_rows(fit, before)
     return LearntGeometry(rows, rungs, corrections(fit, rows))
 
@@ -178,31 +198,55 @@ def learnt_geometry(
 def geometry_rows(fit: Fit, before: Prior | None = None) -> tuple[GeometryRow, ...]:
     """Every quantity of the geometry, axis by axis; arguments as of `learnt_geometry`."""
     machine = len(fit.model.parameters)
-    theta, C = fit.theta[:machine], fit.covariance[:machine, :machine]
-    prior = fit.prior.root[:machine, :machine]
-    # peaks are chosen between both models, so that choosing them favours neither
-    peaks = theta if before is None else 0.5 * (theta + _padded(before, machine))
-    rows = []
-    for one in functionals(fit, peaks):
-        w = one.weights
-        u = float(np.sqrt(w @ C @ w))
-        sd = float(np.linalg.norm(w @ prior))
-        is_determined = u * DETERMINED < sd
-        rows.append(
-            GeometryRow(
-                quantity=one.quantity,
-                symbol=one.symbol,
-                axes=one.axes,
-                unit=one.unit,
-                estimate=Estimate(float(w @ theta), u),
-                lever=one.lever,
-                expected=sd / max(fit.widened, 1.0),
-                is_determined=is_determined,
-                shared_with=() if is_determined else _shared_with(fit, w),
-                before=None if before is None else _estimate(before, w),
-            )
-        )
-    return tuple(rows)
+    theta = fit.theta[:machine]
+    has_course = bool(changed_since(fit.model))
+    states = [state(fit.model, r) for r in range(len(fit.run.touches.runs) if has_course else 1)]
+    # peaks are chosen between all states, so that choosing them favours none
+    known = [L @ theta for L in states] + ([] if before is None else [_padded(before, machine)])
+    return tuple(_row(fit, one, states, before) for one in functionals(fit, np.mean(known, axis=0)))
+
+
+def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | None) -> GeometryRow:
+    """One quantity of the last state, with its course over all of them."""
+    machine = len(one.weights)
+    every = np.stack([one.weights @ L for L in states])
+    sd = float(np.linalg.norm(one.weights @ fit.prior.root[:machine, :machine]))
+    values = [_of(fit, w) for w in every]
+    is_known = [e.u * DETERMINED < sd for e in values]
+    course = tuple(e if k else None for e, k in zip(values, is_known, strict=True))
+    steps = [
+        _of(fit, every[i + 1] - every[i]) if is_known[i] and is_known[i + 1] else None
+        for i in range(len(every) - 1)
+    ]
+    earlier = None if before is None else _estimate(before, one.weights)
+    change = None
+    if earlier is not None:
+        u = float(np.hypot(values[-1].u, earlier.u))
+        change = Estimate(values[-1].value - earlier.value, u)
+    elif steps and is_known[0]:
+        earlier, change = values[0], _of(fit, every[-1] - every[0])
+    return GeometryRow(
+        quantity=one.quantity,
+        symbol=one.symbol,
+        axes=one.axes,
+        unit=one.unit,
+        estimate=values[-1],
+        lever=one.lever,
+        expected=sd / max(fit.widened, 1.0),
+        is_determined=is_known[-1],
+        shared_with=() if is_known[-1] else _shared_with(fit, every[-1]),
+        before=earlier,
+        change=change,
+        course=course if steps else (),
+        steps=tuple(steps),
+    )
+
+
+def _of(fit: Fit, weights: Array) -> Estimate:
+    """A linear function of the parameters of the model."""
+    part = slice(len(weights))
+    value = float(weights @ fit.theta[part])
+    return Estimate(value, float(np.sqrt(weights @ fit.covariance[part, part] @ weights)))
 
 
 def _padded(known: Prior, count: int) -> Array:
@@ -238,6 +282,12 @@ def ladder(geometry: Fit, effects: Fit | None = None) -> tuple[LadderStep, ...]:
     """
     alone = fit_run(geometry.run, Model(geometry.model.chain, ()), gross=geometry.gross)
     fits = [(Rung.SETUP, alone), (Rung.GEOMETRY, geometry)]
+    if changed_since(geometry.model):
+        common = Model(geometry.model.chain, standing(geometry.model))
+        own = slice(len(common.parameters))
+        prior = Prior(geometry.prior.mean[own], geometry.prior.root[own, own])
+        rung = Rung.COMMON if len(geometry.run.touches.runs) > 1 else Rung.MODEL
+        fits.insert(1, (rung, fit_run(geometry.run, common, prior, gross=geometry.gross)))
     fits += [] if effects is None else [(Rung.EFFECTS, effects)]
     return tuple(LadderStep(rung, fit.rms, fit.test_rms) for rung, fit in fits)
 

@@ -187,7 +187,7 @@ def _drivers(effect: Effect, touches: Touches) -> Mapping[Driver, Array]:
     periods = [value for inner, value in scanned if inner.acts == "with a period"]
     out: dict[Driver, Array] = {}
     if any(inner.unit == "s" for inner, _ in scanned):
-        out[Driver("time_s")] = touches.time
+        out[Driver("time_s")] = touches.since_start
     for axis in touches.chain.programmed_axes:
         q, is_rotary = touches.reading(axis), touches.chain.link(axis).kind == "rotary"
         out |= {Driver(f"{axis}_mm", period): q % period for period in periods}
@@ -199,7 +199,7 @@ def _drivers(effect: Effect, touches: Touches) -> Mapping[Driver, Array]:
     out |= {Driver(f"T_{sensor}_degC"): v for sensor, v in touches.temperature.items()}
     if "spindle_rpm" in known:
         out[Driver("spindle_rpm")] = known["spindle_rpm"]
-    out[Driver("time_s")] = touches.time
+    out[Driver("time_s")] = touches.since_start
     return {k: v for k, v in out.items() if np.ptp(v) > 0.0}
 
 

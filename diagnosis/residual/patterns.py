@@ -57,7 +57,7 @@ def variables(touches: Touches) -> dict[str, Array]:
         rotary = chain.link(axis).kind == "rotary"
         column = f"{axis}_{'deg' if rotary else 'mm'}"
         out[column] = touches.reading(axis) / (DEG if rotary else 1.0)
-    out["time_s"] = touches.time
+    out["time_s"] = touches.since_start
     out |= {f"T_{sensor}_degC": values for sensor, values in touches.temperature.items()}
     out |= {f"p{c}_mm": touches.point[:, i] for i, c in enumerate("xyz")}
     out |= {f"n{c}": touches.normal[:, i] for i, c in enumerate("xyz")}

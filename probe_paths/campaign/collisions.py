@@ -55,9 +55,9 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
         BadFile: Line of the first move that comes too near, and what it comes near to.
     """
     probe, setup = program.heading.probe, program.heading.setup
-    table_radius = program.heading.table_radius
-    assert table_radius is not None, "no program is read without it"
-    solid = solid_hull(standard, setup, table_radius)
+    workshop = program.heading.workshop
+    assert workshop is not None, "no program is read without it"
+    solid = solid_hull(standard, setup, workshop)
     moves = _moves(program)
     rotary = [chain.axis_index(name) for name in chain.rotary_axes]
     z = chain.axis_index("Z")
@@ -72,7 +72,7 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
         np.flatnonzero(lowest < top_height(chain, straight.after[:, rotary], solid, probe))
     ]
     clearance = ToolClearance(
-        chain=chain, standard=standard, setup=setup, probe=probe, table_radius=table_radius
+        chain=chain, standard=standard, setup=setup, probe=probe, workshop=workshop
     )
     strokes = _strokes(program, chain)
     if len(low.line):

@@ -160,8 +160,8 @@ class _PartReader:
         if len(words) != 2 or words[0] != "PGM":
             raise self._refusal("PGM <name>")
         self.place += 1
-        heading = parse_heading(self.lines[self.place : self.place + 7], self.path)
-        self.place += len(heading.lines)
+        heading, count = parse_heading(self.lines[self.place :], self.path)
+        self.place += count
         day, start = self._date(), self._head_clock()
         self._pairs(("TOOL", "PRESET"), is_needed=False)
         calibration = self._pairs(("R", "L"))

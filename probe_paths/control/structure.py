@@ -126,9 +126,9 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
     starts = [i for i, (_, text) in enumerate(remarks) if text.startswith("STANDARD ")]
     if not starts:
         raise BadFile(path, "head", "no comment ';STANDARD ... SETUP ...'", "the program's head")
-    head = parse_heading(remarks[starts[0] : starts[0] + 7], path)
-    if head.table_radius is None:
-        found = "no comments ';STYLUS ... BODY ...' and ';NOSE ... TABLE ...'"
+    head, _ = parse_heading(remarks[starts[0] :], path)
+    if head.workshop is None:
+        found = "no comments ';STACK ...' and ';BODY ...'"
         raise BadFile(path, "head", found, "what must be kept clear: emit the program anew")
     features: dict[int, str] = {}
     for line, text in remarks:

@@ -83,7 +83,7 @@ def make_programs(
     for i, part in enumerate(parts):
         setup = "".join(c for c in plan.setup.name.upper() if c.isalnum() or c == "_")
         name = k.checked_name(f"{writer.dialect.prefix}_{setup}_{i + 1}")
-        masks[f"{name}.A"] = head_mask(name, writer.heading.lines)
+        masks[f"{name}.A"] = head_mask(name, writer.heading.log_lines)
         title = f"FREEFORM STANDARD, PART {i + 1} OF {len(parts)}"
         # the head states the duration, which is known once the program has been read back
         duration = _duration(writer.text(name, title, part, 0.0), name, masks, plan, clock)

@@ -22,6 +22,7 @@ from probe_paths.plan import (
     ProgramFrame,
     TouchPlan,
     Visit,
+    calibration_hash,
     home_readings,
     stated_serial,
     waypoints,
@@ -63,8 +64,9 @@ class Writer:
             standard=plan.standard.name,
             setup=plan.setup,
             probe=plan.probe,
-            table_radius=plan.options.table_radius,
+            workshop=plan.options.workshop,
             serial=stated_serial(plan.standard.serial),
+            calibration=calibration_hash(plan.standard),
         )
         top = plan.chain.link("Z").range[1]
         self.retract = k.line({"Z": top - plan.options.retract}, words="M91")

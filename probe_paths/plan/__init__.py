@@ -16,7 +16,7 @@ from probe_paths.plan.clearance import (
     top_height,
 )
 from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import Heading, parse_heading, stated_serial
+from probe_paths.plan.heading import Heading, calibration_hash, parse_heading, stated_serial
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, waypoints
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
@@ -33,6 +33,7 @@ __all__ = [
     "ToolClearance",
     "TouchPlan",
     "Visit",
+    "calibration_hash",
     "home_readings",
     "nearest_neighbours",
     "parse_heading",

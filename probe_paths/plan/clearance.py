@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from artefact.body import Plate, Standard
-from artefact.reach import TABLE_THICKNESS, clearance_on_table, table_face
+from artefact.body import Standard
+from artefact.reach import Workshop, clearance_in_workshop, still_frames, table_face
 from probe_paths.plan.probe import Probe
-from twin.frames import Array, apply, turn
+from twin.frames import Array, apply, inverse, turn
 from twin.machine import Chain, linear_directions, table_to_tool, tip
 from twin.record import Labels, Setup
 
@@ -25,14 +25,19 @@ cut every 7 degrees, between which nothing within 300 mm of an axis rises by 0.6
 
 
 class SolidHull(NamedTuple):
-    """Balls (points with radii) whose hull holds everything solid on the table, table frame."""
+    """Balls (points with radii) whose hull holds everything solid, table frame.
+
+    What another axis than the innermost one carries stands in it where that axis takes it while
+    all between it and the table read zero (`on`).
+    """
 
     points: Array  # (K, 3)
     radii: Array  # (K,)
+    on: Labels  # (K,), empty for what moves with the table
 
 
-def solid_hull(standard: Standard, setup: Setup, table_radius: float) -> SolidHull:
-    """Corners of base, core and columns, the spheres, and the rim of the table."""
+def solid_hull(standard: Standard, setup: Setup, workshop: Workshop) -> SolidHull:
+    """Corners of base, core and columns, the spheres, and the corners of all other bodies."""
     points = [_box(standard.base.half_size, 0.0, standard.base.thickness)]
     for column in standard.columns.values():
         corners = _box(column.patch.half_size, -column.patch.depth, column.top)
@@ -42,10 +47,15 @@ def solid_hull(standard: Standard, setup: Setup, table_radius: float) -> SolidHu
     solid = np.concatenate(points)
     centres = np.array([s.centre for s in standard.spheres]).reshape(-1, 3)
     on_table = apply(setup.T_table_artefact, np.concatenate([solid, centres]))
-    rim = apply(table_face(setup.T_table_artefact), _ring(table_radius, 0.0))
-    radii = np.zeros(len(on_table) + len(rim))
+    T_table_face = table_face(setup.T_table_artefact)
+    bodies = [apply(T_table_face, body.corners()) for body in workshop.solids]
+    all_points = np.concatenate([on_table, *bodies])
+    radii = np.zeros(len(all_points))
     radii[len(solid) : len(on_table)] = [s.radius for s in standard.spheres]
-    return SolidHull(np.concatenate([on_table, rim]), radii)
+    carried = [""] * len(on_table)
+    for corners, body in zip(bodies, workshop.solids, strict=True):
+        carried += [body.on] * len(corners)
+    return SolidHull(all_points, radii, np.array(carried))
 
 
 def _box(half_size: tuple[float, float], low: float, high: float) -> Array:
@@ -80,7 +90,13 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
     """
     q = readings_at(chain, rotary)
     up = linear_directions(chain, q)[:, :, chain.linear_axes.index("Z")]
-    highest = (up @ solid.points.T + solid.radii).max(axis=1)
+    highest = np.full(len(q), -np.inf)
+    for on, T_still_table in still_frames(solid.on.tolist(), chain, q).items():
+        mine, T_table_still = solid.on == on, inverse(T_still_table)
+        along = np.einsum("vji,vj->vi", T_table_still[:, :3, :3], up)
+        shift = np.einsum("vi,vi->v", up, T_table_still[:, :3, 3])
+        most = (along @ solid.points[mine].T + solid.radii[mine]).max(axis=1)
+        highest = np.maximum(highest, most + shift)
     outline = turn(table_to_tool(chain, q)[:, None], probe.outline())  # (V, M, 3)
     below = np.einsum("vmi,vi->vm", outline, up).min(axis=1)
     below = np.minimum(below, -probe.radius)
@@ -133,14 +149,14 @@ class ToolClearance:
     Attributes:
         setup: Where it is believed to stand.
         probe: In the spindle.
-        table_radius: Of the table's face, mm.
+        workshop: What stands there beside it.
     """
 
     chain: Chain
     standard: Standard
     setup: Setup
     probe: Probe
-    table_radius: float
+    workshop: Workshop
 
     def gap(self, q: Array) -> tuple[Array, Labels]:
         """Gap between the probe above its ball and anything solid at readings (N, A).
@@ -148,13 +164,14 @@ class ToolClearance:
         Returns:
             Smallest gap (N,), mm, and the name of what is nearest (N,).
         """
-        near = clearance_on_table(
+        near = clearance_in_workshop(
             self.standard,
             self.setup.T_table_artefact,
             table_to_tool(self.chain, q),
             tip(self.chain, q, self.probe.length),
             self.probe.shape,
-            Plate((self.table_radius,) * 2, self.table_radius, -TABLE_THICKNESS, 0.0),
+            self.workshop,
+            still_frames(self.workshop.on, self.chain, q),
         )
         return near.distance, near.body
 

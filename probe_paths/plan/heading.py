@@ -1,16 +1,20 @@
-"""What a program and its log say of themselves: standard, set-up, probe, features.
+"""What a program and its log say of themselves: standard, set-up, probe, workshop, features.
 
 The operator needs these lines to mount the standard, and whoever reads the text back needs them to
-know where it was believed to stand. They are comments of the program and literal lines of the log.
+know where it was believed to stand and what stands round it. They are comments of the program; the
+first of them are literal lines of its log, which names the workshop by a hash alone.
 """
 
+import hashlib
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from artefact.body import Standard
+from artefact.reach import TABLE, Solid, Workshop
 from probe_paths.plan.probe import Probe
 from twin.errors import BadFile, DesignError
 from twin.frames import Array, fixed_xyz, fixed_xyz_angles, pose
@@ -18,13 +22,18 @@ from twin.record import Setup
 from twin.units import DEG
 
 _NAME = re.compile(r"[A-Za-z0-9_.+-]{1,24}\Z")
-_SERIAL = re.compile(r"SERIAL ([A-Za-z0-9_.+-]{1,24})")
+_SOLID_NAME = re.compile(r"[A-Za-z0-9_.+-]{1,16}\Z")
 _NUMBER = r"([+-]\d+\.\d+)"
 _ORIGIN = re.compile(rf"ORIGIN X{_NUMBER} Y{_NUMBER} Z{_NUMBER}")
 _TURNED = re.compile(rf"TURNED A{_NUMBER} B{_NUMBER} C{_NUMBER}")
-_STYLUS = re.compile(rf"STYLUS L{_NUMBER} R{_NUMBER} BODY R{_NUMBER}")
-_NOSE = re.compile(rf"NOSE R{_NUMBER} TABLE R{_NUMBER}")
 _PROBE = re.compile(rf"PROBE RADIUS {_NUMBER} LENGTH TO BALL CENTRE {_NUMBER}")
+_STATED = re.compile(r"(SERIAL|CALIBRATION|WORKSHOP) ([A-Za-z0-9_.+-]{1,24})")
+_STACK = re.compile(rf"STACK TO{_NUMBER} R{_NUMBER}")
+_NOSE = re.compile(rf"NOSE R{_NUMBER}")
+_SOLID = re.compile(rf"BODY (\S+) (BOX|DISC) A{_NUMBER} B{_NUMBER} Z{_NUMBER} TO{_NUMBER}")
+_PLACE = re.compile(rf"AT X{_NUMBER} Y{_NUMBER} C{_NUMBER} ON (\S+)")
+_EARLIER = re.compile(r"(STYLUS L.* BODY R.*|NOSE R.* TABLE R.*)")
+_TABLE_WORD, _HASH = "TABLE", 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,21 +43,25 @@ class Heading:
     Attributes:
         standard: Name of the standard, as its file has it.
         setup: Where it is believed to stand.
-        probe: In the spindle.
-        table_radius: Of the rotary table's face, mm; None where neither it nor the shape of the
-            probe above its ball is stated, as in logs of earlier programs.
+        probe: In the spindle; in a log its ball and length alone.
+        workshop: What stands beside the standard; None in a log.
         serial: Number of the standard, as far as a program can state it; empty where it has none.
+        calibration: Hash of the faces and places of the standard; empty in logs of earlier
+            programs.
+        stated: Hash of probe and workshop; likewise.
     """
 
     standard: str
     setup: Setup
     probe: Probe
-    table_radius: float | None = None
+    workshop: Workshop | None = None
     serial: str = ""
+    calibration: str = ""
+    stated: str = ""
 
     @property
-    def lines(self) -> list[str]:
-        """Its lines, four at least; numbers with six decimals, mm and degrees."""
+    def log_lines(self) -> list[str]:
+        """What the log repeats, four at least; numbers with six decimals, mm and degrees."""
         for name in (self.standard, self.setup.name):
             if not _NAME.match(name):
                 raise DesignError(
@@ -57,36 +70,80 @@ class Heading:
                 )
         T_table_artefact, probe = self.setup.T_table_artefact, self.probe
         angles = fixed_xyz_angles(T_table_artefact[:3, :3]) / DEG
+        named = {
+            "SERIAL": self.serial,
+            "CALIBRATION": self.calibration,
+            "WORKSHOP": self.workshop_hash,
+        }
         return [
             f"STANDARD {self.standard} SETUP {self.setup.name}",
             "ORIGIN " + _words("XYZ", T_table_artefact[:3, 3]),
             "TURNED " + _words("ABC", angles),
             f"PROBE RADIUS {probe.radius:+.6f} LENGTH TO BALL CENTRE {probe.length:+.6f}",
-            *self._workshop,
-            *([f"SERIAL {self.serial}"] if self.serial else []),
+            *(f"{name} {value}" for name, value in named.items() if value),
         ]
 
     @property
-    def _workshop(self) -> list[str]:
-        """The probe above its ball, and the table that it is kept clear of."""
-        if self.table_radius is None:
+    def lines(self) -> list[str]:
+        """All lines of the program's head."""
+        return [*self.log_lines, *self._workshop_lines]
+
+    @property
+    def workshop_hash(self) -> str:
+        """Of probe and workshop, as stated where only the log speaks; empty where it says none."""
+        if self.workshop is None:
+            return self.stated
+        ball = f"{self.probe.radius:.6f} {self.probe.length:.6f}"
+        text = "\n".join([ball, *self._workshop_lines])
+        return hashlib.sha256(text.encode("ascii")).hexdigest()[:_HASH].upper()
+
+    @property
+    def _workshop_lines(self) -> list[str]:
+        """The probe above its ball, and what it is kept clear of."""
+        if self.workshop is None:
             return []
-        probe = self.probe
         return [
-            f"STYLUS L{probe.stylus_length:+.6f} R{probe.stylus_radius:+.6f} "
-            f"BODY R{probe.body_radius:+.6f}",
-            f"NOSE R{probe.nose_radius:+.6f} TABLE R{self.table_radius:+.6f}",
+            *(f"STACK TO{end:+.6f} R{radius:+.6f}" for end, radius in self.probe.stack),
+            f"NOSE R{self.probe.nose_radius:+.6f}",
+            *(line for solid in self.workshop.solids for line in _solid_lines(solid)),
         ]
 
 
-def _words(letters: str, values: Array) -> str:
+def _solid_lines(solid: Solid) -> Iterator[str]:
+    """A body in two lines."""
+    name = _TABLE_WORD if solid.name == TABLE else solid.name
+    if not _SOLID_NAME.match(name):
+        raise DesignError(
+            f"body '{name}' cannot stand in a program: expected 1 to 16 letters, digits, _ . + or -"
+        )
+    shape, (a, b) = "DISC" if solid.is_disc else "BOX", solid.half_size
+    yield f"BODY {name} {shape} A{a:+.3f} B{b:+.3f} Z{solid.low:+.3f} TO{solid.high:+.3f}"
+    place = _words("XYC", np.array([solid.x, solid.y, solid.turn / DEG]), 3)
+    yield f"AT {place} ON {solid.on or _TABLE_WORD}"
+
+
+def _words(letters: str, values: Array, decimals: int = 6) -> str:
     # + 0.0 turns a negative zero, also one that rounding brings about, into a positive one
-    return " ".join(f"{a}{round(v, 6) + 0.0:+.6f}" for a, v in zip(letters, values, strict=True))
+    return " ".join(
+        f"{a}{round(float(v), decimals) + 0.0:+.{decimals}f}"
+        for a, v in zip(letters, values, strict=True)
+    )
 
 
 def stated_serial(serial: str) -> str:
     """A serial number in the letters that a program can state."""
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", serial.strip())[:24]
+
+
+def calibration_hash(standard: Standard) -> str:
+    """Short hash of all faces and places of a standard: another calibration, another hash."""
+    numbers: list[Array] = []
+    for patch in standard.patches:
+        numbers += [patch.T_artefact_patch, patch.heights, np.array(patch.half_size)]
+    numbers += [np.append(sphere.centre, sphere.radius) for sphere in standard.spheres]
+    numbers.append(np.array([standard.base.thickness]))
+    text = " ".join(f"{v + 0.0:.6f}" for part in numbers for v in np.round(part, 6).ravel())
+    return hashlib.sha256(text.encode("ascii")).hexdigest()[:_HASH].upper()
 
 
 def rounded_setup(setup: Setup) -> Setup:
@@ -96,11 +153,27 @@ def rounded_setup(setup: Setup) -> Setup:
     return Setup(setup.name, pose(fixed_xyz(angles), np.round(T_table_artefact[:3, 3], 6)))
 
 
-def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> Heading:
+def rounded_workshop(workshop: Workshop) -> Workshop:
+    """The workshop as a program can state it, likewise."""
+    table, *bodies = (_rounded(solid) for solid in workshop.solids)
+    return Workshop(table, tuple(bodies))
+
+
+def _rounded(solid: Solid) -> Solid:
+    numbers = {name: round(getattr(solid, name), 3) for name in ("low", "high", "x", "y")}
+    a, b = solid.half_size
+    turn = round(solid.turn / DEG, 3) * DEG
+    return replace(solid, half_size=(round(a, 3), round(b, 3)), turn=turn, **numbers)
+
+
+def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[Heading, int]:
     """Heading from its lines, each with its line number in the file; further ones may follow.
 
+    Returns:
+        The heading, and how many lines it has.
+
     Raises:
-        BadFile: A line missing or spelt otherwise.
+        BadFile: A line missing or spelt otherwise, a workshop that is not the one of its hash.
     """
     where = f"line {lines[0][0]}" if lines else "head"
     if len(lines) < 4:
@@ -112,23 +185,80 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> Heading
     angles = _numbers(_TURNED, lines[2], path, "TURNED A.. B.. C..")
     radius, length = _numbers(_PROBE, lines[3], path, "PROBE RADIUS .. LENGTH TO BALL CENTRE ..")
     T_table_artefact = pose(fixed_xyz(angles * DEG), origin)
-    # programs of earlier versions stated neither shape and table nor the serial number
-    more = [text for _, text in lines[4:]]
-    shape, table_radius = {}, None
-    if more and more[0].startswith("STYLUS "):
-        expected = "STYLUS L.. R.. BODY R.., then NOSE R.. TABLE R.."
-        stylus = _numbers(_STYLUS, lines[4], path, expected)
-        around = _numbers(_NOSE, lines[min(5, len(lines) - 1)], path, expected)
-        names = ("stylus_length", "stylus_radius", "body_radius", "nose_radius")
-        shape = dict(zip(names, [*stylus.tolist(), float(around[0])], strict=True))
-        table_radius, more = float(around[1]), more[2:]
-    serial = _SERIAL.fullmatch(more[0]) if more else None
-    return Heading(
+    stated, count = {}, 4
+    for _, text in lines[4:]:
+        if match := _STATED.fullmatch(text.strip()):
+            stated[match[1]] = match[2]
+        elif not _EARLIER.fullmatch(text.strip()):
+            break
+        count += 1
+    head = Heading(
         standard=words[1],
         setup=Setup(words[3], T_table_artefact),
-        probe=Probe(float(radius), float(length), **shape),
-        table_radius=table_radius,
-        serial=serial[1] if serial else "",
+        probe=Probe(float(radius), float(length)),
+        serial=stated.get("SERIAL", ""),
+        calibration=stated.get("CALIBRATION", ""),
+        stated=stated.get("WORKSHOP", ""),
+    )
+    if len(lines) == count or not lines[count][1].startswith("STACK "):
+        return head, count
+    try:
+        return _with_workshop(head, list(lines), count, path)
+    except BadFile:
+        raise
+    except DesignError as error:  # a probe or a body that cannot be
+        raise BadFile(path, f"line {lines[count][0]} and after", str(error), "a probe") from None
+
+
+def _with_workshop(
+    head: Heading, lines: list[tuple[int, str]], count: int, path: str | Path
+) -> tuple[Heading, int]:
+    """The heading with the shape of the probe and the bodies that follow."""
+    first, stack = lines[count][0], []
+    while count < len(lines) and lines[count][1].startswith("STACK "):
+        end, radius = _numbers(_STACK, lines[count], path, "STACK TO.. R..").tolist()
+        stack.append((end, radius))
+        count += 1
+    lines.append((lines[-1][0], "the end of the head"))
+    nose = _numbers(_NOSE, lines[count], path, "NOSE R..")
+    probe = Probe(head.probe.radius, head.probe.length, tuple(stack), float(nose[0]))
+    count += 1
+    solids = []
+    while lines[count][1].startswith("BODY "):
+        solids.append(_solid(lines[count], lines[count + 1], path))
+        count += 2
+    if not solids or solids[0].name != TABLE:
+        found = repr(lines[count][1])
+        raise BadFile(path, f"line {lines[count][0]}", found, f"BODY {_TABLE_WORD} and others")
+    whole = replace(head, probe=probe, workshop=Workshop(solids[0], tuple(solids[1:])))
+    if whole.workshop_hash != head.stated:
+        raise BadFile(
+            path,
+            f"line {first}",
+            f"a probe and bodies of hash {whole.workshop_hash}",
+            f"WORKSHOP {head.stated or '<hash>'}, as stated: emit the program anew",
+        )
+    return whole, count
+
+
+def _solid(shape: tuple[int, str], place: tuple[int, str], path: str | Path) -> Solid:
+    """A body from its two lines."""
+    found, at = _SOLID.fullmatch(shape[1].strip()), _PLACE.fullmatch(place[1].strip())
+    if found is None:
+        raise BadFile(path, f"line {shape[0]}", repr(shape[1]), "BODY <name> BOX|DISC A B Z TO")
+    if at is None:
+        raise BadFile(path, f"line {place[0]}", repr(place[1]), "AT X.. Y.. C.. ON <axis>|TABLE")
+    a, b, low, high = (float(found[i]) for i in range(3, 7))
+    return Solid(
+        name=TABLE if found[1] == _TABLE_WORD else found[1],
+        half_size=(a, b),
+        is_disc=found[2] == "DISC",
+        low=low,
+        high=high,
+        x=float(at[1]),
+        y=float(at[2]),
+        turn=float(at[3]) * DEG,
+        on="" if at[4] == _TABLE_WORD else at[4],
     )
 
 

@@ -15,7 +15,7 @@ from probe_paths.plan.clearance import (
     top_height,
 )
 from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import rounded_setup
+from probe_paths.plan.heading import rounded_setup, rounded_workshop
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, rotary_path, visits
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
@@ -49,7 +49,7 @@ class _Task:
             room=o.smallest_gap,
             standoff=o.standoff,
             search=o.search,
-            table_radius=o.table_radius,
+            workshop=o.workshop,
         )
 
 
@@ -91,6 +91,7 @@ def plan_touches(
         DesignError: A machine or a feature that programs cannot name.
     """
     options = options or PlanOptions()
+    options = replace(options, workshop=rounded_workshop(options.workshop))
     setup = rounded_setup(setup)
     ProgramFrame(chain, probe)
     _check_requests(standard, chain, requests)
@@ -128,7 +129,7 @@ def _check_requests(standard: Standard, chain: Chain, requests: Requests) -> Non
 def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
     """Visits with their clearance heights, after checking that the table can turn between them."""
     chain, probe, options = task.chain, task.probe, task.options
-    solid = solid_hull(task.standard, task.setup, options.table_radius)
+    solid = solid_hull(task.standard, task.setup, options.workshop)
     retract = chain.link("Z").range[1] - options.retract
     rotary = np.array([stop.rotary for stop in stops])
     frame = ProgramFrame(chain, probe)
@@ -180,7 +181,7 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
         standard=task.standard,
         setup=task.setup,
         probe=task.probe,
-        table_radius=o.table_radius,
+        workshop=o.workshop,
     )
     reason = touches.reason.copy()
     for before, after in (

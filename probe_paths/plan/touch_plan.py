@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from artefact.body import Standard
-from artefact.reach import ProbeReach, Requests
+from artefact.reach import ProbeReach, Requests, Workshop
 from probe_paths.plan.order import Visit
 from probe_paths.plan.probe import Probe
 from twin.frames import Array
@@ -42,7 +42,7 @@ class PlanOptions:
         anchor: Sphere touched on every visit; empty for the first of the standard.
         anchor_tilt: Angle between the anchor touch's normal and the tool axis, rad.
         shortest_visit: Fewest touches for which a pose is visited twice, half of them each time.
-        table_radius: Of the rotary table's face, kept clear.
+        workshop: What stands beside the standard and is kept clear.
         tolerated: How many requests may be refused before the whole plan is.
     """
 
@@ -56,7 +56,7 @@ class PlanOptions:
     anchor: str = ""
     anchor_tilt: float = 40.0 * DEG
     shortest_visit: int = 4
-    table_radius: float = ProbeReach.table_radius
+    workshop: Workshop = field(default_factory=Workshop)
     tolerated: int = 0
 
 

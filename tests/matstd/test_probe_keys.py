@@ -38,9 +38,7 @@ def test_the_keys_reach_planner_and_placement(tmp_path):
     expected = Probe(
         radius=3.0,
         length=160.0,
-        stylus_length=40.0,
-        stylus_radius=1.5,
-        body_radius=31.0,
+        stack=((40.0, 1.5), (160.0, 31.0)),
         nose_radius=50.0,
     )
     assert probe(found) == expected

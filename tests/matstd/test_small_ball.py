@@ -18,7 +18,11 @@ PROJECT = Path(__file__).parents[2] / "examples" / "machines" / "vertical.toml"
 
 @pytest.mark.parametrize("diameter", [2.0, 3.0, 4.0, 6.0, 8.0])
 def test_a_ball_of_any_size_has_room(diameter: float) -> None:
-    project = replace(read_project(PROJECT), probe_radius=0.5 * diameter)
+    read = read_project(PROJECT)
+    stated = read.probe
+    stack = [(stated.stack_mm[0][0], diameter * 2.0 / 3.0), *stated.stack_mm[1:]]
+    stated = stated.model_copy(update={"stack_mm": stack})
+    project = replace(read, probe_radius=0.5 * diameter, probe=stated)
     made, wanted = blank(project), probe_reach(project)
     sphere = DatumSphere("SPH1", np.array([0.0, 0.0, 100.0]), 12.5, 6.0, 9.0, 30.0)
     bare = Standard("bare", "", made.material, made.base, None, (), (sphere,), (), 220.0)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from artefact.reach.workshop import Workshop
 from probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.virtual_run import run_program
@@ -113,7 +114,7 @@ def test_a_feature_number_mixed_up_is_found_when_the_log_is_evaluated(
 def test_gaps_to_the_table_by_hand(chain, small):
     """At B = C = 0 the body hangs over the table: its lower face is its distance above it."""
     clearance = ToolClearance(
-        chain, small, Setup("a"), Probe(stylus_length=60.0, body_radius=20.0), 160.0
+        chain, small, Setup("a"), Probe(stack=((60.0, 2.0), (160.0, 20.0))), Workshop()
     )
     # ball centre at x 120, y 120 and 5 mm above the table, beside the base of 80 x 80
     q = np.zeros((1, len(chain.axes)))

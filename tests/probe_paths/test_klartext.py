@@ -104,7 +104,7 @@ def test_a_heading_survives_its_lines():
     T_table_artefact = pose(rotation(np.array([0.1, -0.2, 3.0])), np.array([1.23456789, -2.0, 3.0]))
     setup = rounded_setup(Setup("b", T_table_artefact))
     head = Heading("FFS-600U", setup, Probe(2.998765, 160.25))
-    back = parse_heading(list(enumerate(head.lines, start=5)), "A.H")
+    back, _ = parse_heading(list(enumerate(head.lines, start=5)), "A.H")
     assert (back.standard, back.setup.name) == ("FFS-600U", "b")
     np.testing.assert_allclose(back.setup.T_table_artefact, setup.T_table_artefact, atol=1e-12)
     assert abs(back.probe.radius - head.probe.radius) < ROUNDING

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from artefact.reach.touchable import Requests
+from artefact.reach.workshop import Workshop
 from probe_paths.plan.clearance import solid_hull, swing_height, top_height
 from probe_paths.plan.order import LONGEST_TURN, nearest_neighbours, visits, waypoints
 from probe_paths.plan.planner import plan_touches
@@ -109,7 +110,9 @@ def test_safe_height_is_above_every_point_of_the_standard(plan, chain, small):
         points.append(s.point(uv))
     solid = apply(plan.setup.T_table_artefact, np.concatenate(points))
     angle = np.linspace(0.0, 2.0 * np.pi, 200)
-    rim = plan.options.table_radius * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    rim = plan.options.workshop.table_radius * np.column_stack(
+        [np.cos(angle), np.sin(angle), 0 * angle]
+    )
     solid = np.concatenate([solid, rim])
     z = chain.axis_index("Z")
     for v, visit in enumerate(plan.visits):
@@ -122,7 +125,7 @@ def test_safe_height_is_above_every_point_of_the_standard(plan, chain, small):
 
 
 def test_swing_height_covers_every_position_in_between(chain, small):
-    solid = solid_hull(small, Setup("a"), 160.0)
+    solid = solid_hull(small, Setup("a"), Workshop())
     path = np.array([[0.0, 0.0], [90.0 * DEG, -90.0 * DEG]])
     highest = swing_height(chain, path, solid, Probe())[0]
     share = np.linspace(0.0, 1.0, 50)[:, None]
@@ -183,9 +186,9 @@ def test_the_stylus_that_would_rub_is_refused(golden):
     small, chain = golden.standard(), golden.machine()
     q = np.array([0.0, -75.0]) * DEG
     wanted = requests_at(small, "SPH2", np.array([[np.pi, 0.3]]), q)
-    slim = Probe(body_radius=8.0, stylus_length=100.0)
+    slim = Probe(stack=((100.0, 2.0), (160.0, 8.0)))
     plan = plan_touches(small, chain, slim, Setup("a"), wanted, PlanOptions(anchor="SPH2"))
     assert np.sum(plan.request >= 0) == 1
-    fat = Probe(body_radius=60.0, stylus_length=15.0, nose_radius=60.0)
+    fat = Probe(stack=((15.0, 2.0), (160.0, 60.0)), nose_radius=60.0)
     with pytest.raises(NotReachable, match="between probe and"):
         plan_touches(small, chain, fat, Setup("a"), wanted, PlanOptions())

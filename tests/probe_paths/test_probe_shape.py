@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from artefact.reach.touchable import ProbeReach
+from artefact.reach.workshop import Solid, Workshop, round_table
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.control.interpreter import interpret
 from probe_paths.control.steps import Move, ProbeStep
@@ -28,7 +29,7 @@ from twin.machine.kinematics import table_to_tool, tip
 from twin.record.touches import Setup
 from twin.units import DEG
 
-WIDE = Probe(stylus_length=40.0, stylus_radius=1.5, body_radius=31.0, nose_radius=50.0)
+WIDE = Probe(stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)
 """A common one: stem of 3 x 40 mm, body of 62 mm, spindle nose of 100 mm."""
 
 CLOUD = 2.0
@@ -85,11 +86,7 @@ def cylinder_gap(points, centre, axis, probe):
     across = np.linalg.norm(points - centre - along[:, None] * axis, axis=1)
     low = 0.0
     gaps = []
-    for high, radius in (
-        (probe.stylus_length, probe.stylus_radius),
-        (probe.length, probe.body_radius),
-        (probe.length + NOSE_HEIGHT, probe.nose_radius),
-    ):
+    for high, radius in (*probe.stack, (probe.length + NOSE_HEIGHT, probe.nose_radius)):
         beyond = np.maximum(np.maximum(low - along, along - high), 0.0)
         gaps.append(np.hypot(np.maximum(across - radius, 0.0), beyond).min())
         low = high
@@ -111,7 +108,7 @@ def wide(golden, small, chain):
 
 @pytest.fixture(scope="module")
 def points(wide, small):
-    return cloud(small, wide.setup, wide.options.table_radius)
+    return cloud(small, wide.setup, wide.options.workshop.table_radius)
 
 
 def test_every_touch_keeps_its_gap_or_is_refused_by_name(wide, points, golden, small, chain):
@@ -131,7 +128,7 @@ def test_what_is_refused_for_want_of_room_has_none(wide, points, golden, small, 
     tight = [r for r in wide.refused if "between probe and" in r.reason and r.request >= 0]
     assert len(tight) >= 2
     wanted = golden.requests(small, each=4)
-    clearance = ToolClearance(chain, small, wide.setup, WIDE, wide.options.table_radius)
+    clearance = ToolClearance(chain, small, wide.setup, WIDE, wide.options.workshop)
     probing = ProbeReach(chain, wide.setup, WIDE.shape, WIDE.length)
     for refusal in tight:
         one = wanted[np.array([refusal.request])]
@@ -170,41 +167,90 @@ def test_every_move_of_the_program_keeps_clear(wide, points, small, chain):
         here = there
 
 
+def other_head(program, change):
+    """Text of a program whose head states another probe or workshop, with the hash of that."""
+    blocks = [re.sub(r"^\d+ ", "", line) for line in program.text.split("\r\n")]
+    stated = [line[1:] for line in blocks if line.startswith(";")]
+    first = next(i for i, line in enumerate(stated) if line.startswith("STANDARD"))
+    heading, count = parse_heading(list(enumerate(stated[first:])), "A.H")
+    old, new = heading.lines, change(heading).lines
+    at = blocks.index(f";{old[0]}")
+    assert count == len(old)
+    blocks[at : at + count] = [f";{line}" for line in new]
+    return "\r\n".join(blocks)
+
+
 def test_a_program_for_a_slim_probe_is_refused_with_a_wide_one_in_its_head(programs, small, chain):
     """The same moves, another probe: the check reads it from the text."""
-    first = programs.programs[0]
-    text = re.sub(
-        r"(;STYLUS L)\S+ R\S+ BODY R\S+", r"\g<1>+25.000000 R+1.500000 BODY R+31.000000", first.text
-    )
-    assert text != first.text
+    wide = replace(WIDE, stack=((25.0, 1.5), (160.0, 31.0)))
+    text = other_head(programs.programs[0], lambda head: replace(head, probe=wide))
     read = interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+    assert read.heading.probe == wide
     with pytest.raises(BadFile, match="a gap of"):
         check_moves(read, small, chain)
 
 
+def test_a_clamp_in_the_head_is_kept_clear_of(programs, small, chain):
+    """A post that stands where the stylus of the third touch goes down."""
+    plain = interpret(
+        programs.programs[0].text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain
+    )
+    x, y, z = tip(chain, plain.touches[2].q[None], 160.0)[0]
+    post = Solid(
+        "POST", (6.0, 6.0), True, 0.0, round(z, 1) + 5.0, x=round(x, 1) + 8.4, y=round(y, 1)
+    )
+
+    def with_post(head):
+        return replace(head, workshop=replace(head.workshop, bodies=(post,)))
+
+    text = other_head(programs.programs[0], with_post)
+    read = interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+    with pytest.raises(BadFile, match=r"a gap of .* to POST"):
+        check_moves(read, small, chain)
+
+
+def test_a_body_that_somebody_changed_by_hand_is_refused(programs, chain):
+    text = programs.programs[0].text.replace("STACK TO+80.000000 R+2.0", "STACK TO+80.000000 R+1.0")
+    with pytest.raises(BadFile, match=r"a probe and bodies of hash .* as stated: emit"):
+        interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+
+
 def test_a_head_without_probe_and_table_is_refused(programs, chain):
-    first = programs.programs[0]
-    text = re.sub(r"(?m)^\d+ ", "", first.text)
-    text = re.sub(r"(?m)^;(STYLUS|NOSE).*\r\n", "", text)
+    text = re.sub(r"(?m)^\d+ ", "", programs.programs[0].text)
+    text = re.sub(r"(?m)^;(STACK|NOSE|BODY|AT) .*\r\n", "", text)
     with pytest.raises(BadFile, match="emit the program anew"):
         interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
 
 
-def test_a_heading_states_probe_and_table_and_reads_them_back():
-    heading = Heading("S", Setup("a"), WIDE, 175.0, "4711")
-    back = parse_heading(list(enumerate(heading.lines, start=3)), "A.H")
-    assert (back.probe, back.table_radius, back.serial) == (WIDE, 175.0, "4711")
-    older = [line for line in heading.lines if not line.startswith(("STYLUS", "NOSE"))]
-    earlier = parse_heading(list(enumerate(older, start=3)), "A.H")
-    assert (earlier.table_radius, earlier.serial) == (None, "4711")
-    broken = [*heading.lines[:4], "STYLUS L80", *heading.lines[5:]]
-    with pytest.raises(BadFile, match=r"line 7: .*STYLUS L"):
+def test_a_heading_states_probe_and_workshop_and_reads_them_back():
+    clamp = Solid("CLAMP", (20.0, 15.0), False, 0.0, 30.0, 100.0, -20.5, 30.0 * DEG, on="B")
+    room = Workshop(round_table(175.0, -2.0), (clamp,))
+    heading = Heading("S", Setup("a"), WIDE, room, "4711", "ABC")
+    back, count = parse_heading(list(enumerate(heading.lines, start=3)), "A.H")
+    assert count == len(heading.lines)
+    assert (back.probe, back.serial, back.calibration) == (WIDE, "4711", "ABC")
+    assert back.workshop_hash == heading.workshop_hash
+    found = back.workshop.bodies[0]
+    assert (found.name, found.half_size, found.on) == ("CLAMP", (20.0, 15.0), "B")
+    assert abs(found.turn - clamp.turn) < 1e-9
+    assert max(map(len, heading.lines)) < 64
+    logged, _ = parse_heading(list(enumerate(heading.log_lines, start=3)), "A.TXT")
+    assert (logged.workshop, logged.workshop_hash) == (None, heading.workshop_hash)
+    broken = [*heading.lines[:7], "STACK L80", *heading.lines[8:]]
+    with pytest.raises(BadFile, match=r"line 10: .*STACK TO"):
         parse_heading(list(enumerate(broken, start=3)), "A.H")
+
+
+def test_logs_of_earlier_programs_are_read():
+    older = Heading("S", Setup("a"), Probe(3.0, 160.0), None, "4711").lines
+    older[4:4] = ["STYLUS L+80.000000 R+2.000000 BODY R+25.000000", "NOSE R+45.0 TABLE R+160.0"]
+    back, count = parse_heading(list(enumerate(older, start=3)), "A.TXT")
+    assert (back.workshop, back.serial, count) == (None, "4711", 7)
 
 
 def test_a_swing_is_never_higher_than_stated(golden, small, chain):
     """Against 200 places of a turn of both axes, one after the other in either order."""
-    solid = solid_hull(small, golden.setup(), 160.0)
+    solid = solid_hull(small, golden.setup(), Workshop())
     rng = np.random.default_rng(5)
     low, high = np.array([[-170.0, 170.0], [-100.0, 25.0]]).T * DEG
     for _ in range(20):
@@ -220,7 +266,7 @@ def test_a_sideways_move_is_swept_with_the_whole_tool(read, small, chain):
     first = read[0]
     setup = first.heading.setup
     clearance = ToolClearance(
-        chain, small, setup, Probe(stylus_length=20.0, stylus_radius=2.0), 160.0
+        chain, small, setup, Probe(stack=((20.0, 2.0), (160.0, 25.0))), Workshop()
     )
     q = np.nan_to_num(first.touches[0].q)
     q[[chain.axis_index(a) for a in "BC"]] = 0.0
@@ -238,7 +284,7 @@ def test_a_sideways_move_is_swept_with_the_whole_tool(read, small, chain):
 
 def test_a_thin_probe_reaches_more_than_a_wide_one(golden, small, chain, wide):
     wanted = golden.requests(small, each=4)
-    slim = replace(WIDE, stylus_length=80.0, body_radius=20.0, nose_radius=40.0)
+    slim = Probe(stack=((80.0, 1.5), (160.0, 20.0)), nose_radius=40.0)
     options = PlanOptions(tolerated=len(wanted))
     plan = plan_touches(small, chain, slim, golden.setup(), wanted, options)
     assert len(plan.refused) < len(wide.refused)

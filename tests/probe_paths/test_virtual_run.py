@@ -8,6 +8,7 @@ from scipy.interpolate import BSpline
 from scipy.optimize import brentq, minimize
 
 from artefact.body.patch import Meeting
+from artefact.reach.workshop import Workshop, round_table
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.virtual_run import Outcome, run_program, run_programs
 from probe_paths.control.interpreter import interpret
@@ -168,9 +169,13 @@ def test_one_error_gives_the_deviation_worked_out_by_hand(
     of = golden.standard((sphere, other))
     rotary = np.array(b_c[::-1], dtype=float) * DEG
     wanted = requests_at(of, "SPH1", np.array([uv]), rotary)
-    slim = Probe(body_radius=5.0, nose_radius=6.0, stylus_length=100.0, stylus_radius=1.0)
+    slim = Probe(stack=((100.0, 1.0), (160.0, 5.0)), nose_radius=6.0)
     options = PlanOptions(
-        standoff=4.0, smallest_gap=0.1, table_radius=20.0, anchor="SPH2", tolerated=1
+        standoff=4.0,
+        smallest_gap=0.1,
+        workshop=Workshop(round_table(20.0)),
+        anchor="SPH2",
+        tolerated=1,
     )
     setup = Setup("a")
     plan = plan_touches(of, chain, slim, setup, wanted, options)

@@ -1,6 +1,7 @@
 """What holds for every effect of the library, whatever its physics."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from twin.library.ordinary import ordinary_model
 from twin.machine.contribution import Contribution
 from twin.model.effect import Effect, Tunable, contribution
 from twin.model.model import Model, columns
+from twin.record.instrument import Instrument
 from twin.thermal.drive_columns import first_order_lag
 from twin.thermal.thermal_field import field
 from twin.units import NM
@@ -24,7 +26,11 @@ RUNS = {label: made_up(label) for label in MACHINES}
 ALL = [
     (label, e)
     for label, touches in RUNS.items()
-    for e in (*proposals(touches), field(touches))  # a field is weighed against what is proposed
+    for e in (
+        *proposals(touches),
+        *proposals(replace(touches, instrument=Instrument.LASER), ["position-table"]),
+        field(touches),  # weighed against what is proposed
+    )
 ]
 # thirty of a kind on a machine are the same code: every one that differs in kind and in axis
 SOME = list(

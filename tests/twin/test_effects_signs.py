@@ -268,3 +268,34 @@ def test_form_of_one_patch() -> None:
     np.testing.assert_allclose(
         deviation("artefact-form(pad1)", theta, touches), [3.0, 3.0, 3.0, 0.0], atol=PER_HAND / UM
     )
+
+
+def test_a_position_table_is_a_curve_for_each_direction() -> None:
+    """X at 100 of -400 to 400, s = 5/8: E = 4 um w_1 cos(5 pi/8), and half of 2 um of reversal.
+
+    With l = 0.3 the first of 20 waves has the weight 1/(1 + (0.3 pi)^2) over the root of the sum of
+    all squares; the axis went too far, so a surface that looks along +X seems to stand lower.
+    """
+    share = [1.0 / (1.0 + (0.3 * np.pi * k) ** 2) for k in range(1, 21)]
+    curve = 4.0 * share[0] / np.sqrt(sum(w * w for w in share)) * np.cos(5.0 * np.pi / 8.0)
+    approach = np.zeros((3, len(HSM.axes)))
+    approach[:, HSM.axis_index("X")] = (1.0, -1.0, 0.0)
+    touches = touch(X, n=3, approach=approach)
+    theta = np.zeros(41)
+    theta[0], theta[20] = 4 * UM, 2 * UM
+    found = deviation("position-table(EXX,directions)", theta, touches, 0.3)
+    np.testing.assert_allclose(found, [-curve - 1.0, -curve + 1.0, -curve], atol=PER_HAND / UM)
+    found = deviation("position-table(EXX)", theta[:20], touches, 0.3)
+    np.testing.assert_allclose(found, -curve, atol=PER_HAND / UM)
+
+
+def test_a_position_table_of_a_whole_turn_closes_in_itself() -> None:
+    """C from -360 to 360 deg: the errors at both ends, and their slopes, are the same."""
+    theta = np.random.default_rng(1).normal(size=20) * URAD
+    near = 1e-4
+    found = [
+        deviation("position-table(ECC)", theta, touch(Y, C=c), 0.1)[0]
+        for c in (-360.0, -360.0 + near, 360.0, 360.0 - near)
+    ]
+    assert found[0] == pytest.approx(found[2], abs=1e-9)
+    assert found[1] - found[0] == pytest.approx(found[2] - found[3], rel=1e-3)

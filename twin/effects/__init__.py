@@ -4,6 +4,7 @@ A new effect is a new file here and one line in `twin.library.catalogue`; the ex
 the search and the reports know it from then on.
 """
 
+from twin.effects.change import Change
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
 from twin.effects.periodic import usual_distance
@@ -16,6 +17,7 @@ __all__ = [
     "SHIFT_SD",
     "TURN_SD",
     "Again",
+    "Change",
     "ComponentError",
     "HigherOrder",
     "LocationError",

@@ -153,7 +153,7 @@ class Drift:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Shifts of the standard."""
-        hours = touches.time / HOUR
+        hours = touches.since_start / HOUR
         return tuple(Term(i, Where("shift", 0, i), hours) for i in range(3))
 
 

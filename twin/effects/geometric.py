@@ -106,6 +106,7 @@ class HigherOrder:
     rotary: bool = False
 
     kind = "geometric"
+    is_curve = True
 
     @property
     def name(self) -> str:

@@ -24,6 +24,9 @@ ARM = 100.0
 """Distance (mm) from a rotary axis at which its angle is counted as a distance along the motion:
 any will do, since the angle is what was measured."""
 
+ENOUGH_CYCLES = 4
+"""Cycles from which one can be held out: of fewer it would be more than a quarter of the test."""
+
 _TARGET = re.compile(r"target|soll|nominal|command|position|\bp_?i\b", re.IGNORECASE)
 _ACTUAL = re.compile(r"actual|measured|ist\b|istwert", re.IGNORECASE)
 _DEVIATION = re.compile(r"dev|error|abweich|fehler|\bx_?ij\b", re.IGNORECASE)
@@ -217,7 +220,10 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
     speed = np.linalg.norm(motion, axis=1)  # 1 on a linear axis, the arm on a rotary one
     approach = np.zeros(q.shape)
     approach[:, i] = test.direction
+    # what repeats at the targets is what the test is for: held out are cycles, if it has some
+    cycles = np.unique(test.cycle, return_inverse=True)[1].reshape(-1)
     targets = np.unique(np.round(test.target, 9), return_inverse=True)[1].reshape(-1)
+    held_out = cycles if cycles.max(initial=0) + 1 >= ENOUGH_CYCLES else targets
     touches = Touches(
         chain=chain,
         q=q,
@@ -230,7 +236,7 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         time=np.zeros(n),
         approach=approach,
         feature=np.array([f"cycle{c}" for c in test.cycle]),
-        pose=targets.astype(np.int64),
+        pose=held_out.astype(np.int64),
         instrument=Instrument.LASER,
     )
     # one line of the file may hold many readings: the rows of the run are what messages name

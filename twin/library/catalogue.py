@@ -25,6 +25,7 @@ from twin.effects import (
     gravity,
     location,
     periodic,
+    position_table,
     probe,
     stiffness,
 )
@@ -302,6 +303,7 @@ for _kind in (
     coupling.KIND,
     backlash.KIND,
     periodic.KIND,
+    position_table.KIND,
     thermal_expansion.KIND,
     thermal_lag.KIND,
     follows.STATIC,

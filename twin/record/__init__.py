@@ -8,6 +8,7 @@ from twin.record.alignment import Moved, aligned
 from twin.record.copies import without_copies
 from twin.record.instrument import Instrument
 from twin.record.run import Run
+from twin.record.several_runs import joined
 from twin.record.touches import (
     IntArray,
     Labels,
@@ -29,6 +30,7 @@ __all__ = [
     "aligned",
     "at_poses",
     "computed_deviation",
+    "joined",
     "linear_approach",
     "without_copies",
 ]

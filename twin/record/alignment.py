@@ -16,7 +16,7 @@ import numpy as np
 from twin.frames import Array, apply, pose
 from twin.machine import tip
 from twin.record.run import Run
-from twin.record.touches import Setup, Touches, computed_deviation
+from twin.record.touches import Touches, computed_deviation
 
 SHIFT = 0.3
 """Displacement (mm) from which a set-up is moved: lever arms off by so much turn 50 µrad of a
@@ -78,7 +78,7 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
         shift = float(np.linalg.norm(change))
         turn = float(np.arccos(np.clip(0.5 * (np.trace(R) - 1.0), -1.0, 1.0)))
         if shift > SHIFT or turn > TURN:
-            setups[i] = Setup(setup.name, T)
+            setups[i] = replace(setup, T_table_artefact=T)
             moved.append(Moved(setup.name, shift, turn))
     if not moved:
         return run, ()

@@ -23,10 +23,14 @@ class Setup:
     Attributes:
         name: Label in the run file.
         T_table_artefact: Pose (4, 4), takes artefact coordinates to table coordinates.
+        run: Name of the run that it belongs to, where several were joined.
+        start: Time at which that run started, s.
     """
 
     name: str
     T_table_artefact: Array = field(default_factory=lambda: np.eye(4))
+    run: str = ""
+    start: float = 0.0
 
 
 class Signature:
@@ -60,7 +64,7 @@ class Touches:
         normal: Outward unit normal there, artefact frame, (N, 3).
         setups: The placements of the standard.
         setup: Index into `setups`, (N,).
-        time: s since the start of the run, (N,).
+        time: s since the start of the run, of joined runs of the first one, (N,).
         approach: Sign of the last motion of each axis, (N, A); 0 where unknown.
         temperature: degC by sensor name, each (N,).
         spindle_rpm: (N,), or None where it was not recorded.
@@ -95,7 +99,7 @@ class Touches:
             object.__setattr__(self, "feature", np.full(n, "", dtype="U1"))
         if len(self.pose) == 0 and n:
             object.__setattr__(self, "pose", np.zeros(n, dtype=np.int64))
-        for name in _PER_TOUCH:
+        for name in PER_TOUCH:
             value = getattr(self, name)
             if value is not None and len(value) != n:
                 raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as in q")
@@ -112,9 +116,7 @@ class Touches:
     def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Touches":
         """The touches of some rows, as a new record."""
         picked = {
-            name: getattr(self, name)[rows]
-            for name in _PER_TOUCH
-            if getattr(self, name) is not None
+            name: getattr(self, name)[rows] for name in PER_TOUCH if getattr(self, name) is not None
         }
         temperature = {sensor: value[rows] for sensor, value in self.temperature.items()}
         own = {name: value[rows] for name, value in self.value.items()}
@@ -127,6 +129,21 @@ class Touches:
     def last_move(self, axis: str) -> Array:
         """Sign of the last motion of one axis, (N,); raises UnknownAxis."""
         return self.approach[:, self.chain.axis_index(axis)]
+
+    @cached_property
+    def runs(self) -> tuple[str, ...]:
+        """Names of the runs that were joined, in their order; one name for a single run."""
+        return tuple(dict.fromkeys(s.run for s in self.setups))
+
+    @cached_property
+    def run(self) -> IntArray:
+        """Index into `runs`, (N,)."""
+        return np.array([self.runs.index(s.run) for s in self.setups], dtype=np.int64)[self.setup]
+
+    @cached_property
+    def since_start(self) -> Array:
+        """Time since the start of its own run at every touch, (N,), s."""
+        return np.asarray(self.time - np.array([s.start for s in self.setups])[self.setup])
 
     @cached_property
     def T_table_artefact(self) -> Array:
@@ -159,9 +176,9 @@ class Touches:
         return Signature(self.reach, self.normal_table)
 
 
-_MAPS = ("temperature", "value")
-_COMMON = ("chain", "setups", "instrument", *_MAPS)
-_PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
+MAPS = ("temperature", "value")
+_COMMON = ("chain", "setups", "instrument", *MAPS)
+PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
 
 
 def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:

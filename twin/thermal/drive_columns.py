@@ -85,7 +85,7 @@ def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 
         record = own_column(touches, drive.removeprefix(OWN)) / step
     else:
         record = sensor_record(touches, drive) - T_REF
-    return first_order_lag(touches.time, record, tau, is_speed(drive)) if tau > 0.0 else record
+    return lagged(touches, record, tau, is_speed(drive)) if tau > 0.0 else record
 
 
 def own_column(touches: Touches, name: str) -> Array:
@@ -123,6 +123,16 @@ def round_step(values: Array) -> float:
     """
     spread = float(np.std(values))
     return float(10.0 ** np.round(np.log10(spread))) if spread > 0.0 else 1.0
+
+
+def lagged(touches: Touches, drive: Array, tau: float, steps: bool = False) -> Array:
+    """`first_order_lag` of a drive (N,) that was recorded at the touches, in every run anew."""
+    out = np.empty_like(drive)
+    for i in range(len(touches.runs)):
+        own = touches.run == i
+        if own.any():
+            out[own] = first_order_lag(touches.since_start[own], drive[own], tau, steps)
+    return out
 
 
 def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) -> Array:

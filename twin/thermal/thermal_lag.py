@@ -83,14 +83,14 @@ class ThermalLag:
     def response(self, touches: Touches) -> Array:
         """What has followed of the drive at every touch, per unit of amplitude, (N,)."""
         if not self.drive:
-            return -np.expm1(-touches.time / self.tau)
+            return -np.expm1(-touches.since_start / self.tau)
         return driven(touches, self.drive, self.tau, self.name, self.step)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The time constant, evenly spaced in its logarithm, up to three times the run; the step
         of an own column.
         """  # noqa: D205
-        duration = float(np.ptp(touches.time)) if len(touches) else LONGEST
+        duration = float(np.ptp(touches.since_start)) if len(touches) else LONGEST
         high = float(np.clip(3.0 * duration, 4.0 * SHORTEST, LONGEST))
         tau = Inner("tau", "s", np.geomspace(SHORTEST, high, STEPS))
         return (tau, step_inner(touches, self.drive)) if is_own(self.drive) else (tau,)
@@ -122,7 +122,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> ThermalLag:
 
 def propose(touches: Touches) -> Iterable[ThermalLag]:
     """Every component of every axis that moved, with every drive that was recorded and varies."""
-    if np.ptp(touches.time) > 0.0:
+    if np.ptp(touches.since_start) > 0.0:
         for drive in ("", *drives(touches)):
             step = step_of(touches, drive)
             for symbol in moved_components(touches):

@@ -1,0 +1,182 @@
+"""Tables of a project file that say what is in the workshop: probe, table, clamps, control.
+
+Whatever the plan needs to know of the room and nothing that it could find out by itself. A body
+that contradicts itself, or a probe that cannot be, is refused before any work is done.
+"""
+
+import tomllib
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field
+
+from twin.errors import BadFile
+from twin.files import Pair, Table, Vector
+
+Cylinders = tuple[tuple[float, float], ...]
+"""(end, diameter) from the ball centre upwards, mm."""
+
+
+class ProbeTable(Table):
+    """`[probe]`: the ball, its distance from the gauge point, and what stands above it.
+
+    The stylus reaches from the ball centre to the body, the body to the gauge line, the nose of the
+    spindle above it; or a model of the library, or a stack of cylinders, says so.
+    """
+
+    model: str | None = None
+    radius_mm: float | None = Field(default=None, gt=0.0, le=25.0)
+    length_mm: float | None = Field(default=None, gt=0.0)
+    stack_mm: list[Pair] | None = None
+    stylus_length_mm: float | None = Field(default=None, gt=0.0)
+    stylus_diameter_mm: float | None = Field(default=None, gt=0.0)
+    body_diameter_mm: float = Field(default=50.0, gt=0.0)
+    nose_diameter_mm: float = Field(default=90.0, gt=0.0)
+
+
+class ModelTable(Table):
+    """A probe of the library."""
+
+    source: str
+    ball_diameter_mm: float = Field(gt=0.0)
+    stack_mm: list[Pair]
+    nose_diameter_mm: float = Field(gt=0.0)
+
+
+class TableTable(Table):
+    """`[workshop.table]`: its face, round or square."""
+
+    diameter_mm: float | None = Field(default=None, gt=0.0)
+    sides_mm: Pair | None = None
+    height_mm: float = 0.0
+    thickness_mm: float = Field(default=60.0, gt=0.0)
+
+
+class BodyTable(Table):
+    """`[[workshop.bodies]]`: clamp, fixture or cover, in the frame of the table's face."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9_.+-]{1,13}$")
+    at_mm: Vector = (0.0, 0.0, 0.0)
+    sides_mm: Pair | None = None
+    diameter_mm: float | None = Field(default=None, gt=0.0)
+    height_mm: float | None = Field(default=None, gt=0.0)
+    stl: str | None = None
+    turned_deg: float = 0.0
+    on: str = ""
+
+
+class WorkshopTable(Table):
+    """`[workshop]`: the room and the control that the programs are for."""
+
+    table: TableTable | None = None
+    bodies: list[BodyTable] = Field(default_factory=list)
+    tool: int = Field(default=30, ge=1, le=32767)
+    preset: int = Field(default=1, ge=0, le=999)
+    folder: str = Field(default="TNC:\\MATSTD", pattern=r"^[A-Z0-9_:\\.-]{1,40}$")
+    clearance_mm: float = Field(default=20.0, ge=1.0)
+    retract_mm: float = Field(default=1.0, ge=0.0, le=20.0)
+    probing_feed_mm_min: int = Field(default=250, ge=10, le=1000)
+    approach_feed_mm_min: int = Field(default=2000, ge=100, le=5000)
+    turning_feed_deg_min: int = Field(default=1000, ge=100, le=5000)
+    touches_per_file: int = Field(default=400, ge=10)
+    height_read: Literal["gauge", "tip"] = "gauge"
+
+
+@cache
+def probe_models() -> dict[str, ModelTable]:
+    """The library of common probes, by name."""
+    text = files("artefact.brief").joinpath("probes.toml").read_text(encoding="utf-8")
+    return {name: ModelTable.model_validate(keys) for name, keys in tomllib.loads(text).items()}
+
+
+def checked_probe(probe: ProbeTable, path: Path) -> ProbeTable:
+    """The probe with everything that its model or a rule says of it stated.
+
+    Raises:
+        BadFile: A model that nobody knows, no radius or length, a stack that does not go upwards or
+            beyond the gauge line, a stylus that is not thinner than the ball.
+    """
+    given = probe.model_fields_set
+    shaped = {"stack_mm", "stylus_length_mm", "stylus_diameter_mm", "body_diameter_mm"}
+    ways = [given & {"model"}, given & {"stack_mm"}, given & (shaped - {"stack_mm"})]
+    if sum(map(bool, ways)) > 1:
+        found = ", ".join(sorted(given & (shaped | {"model"})))
+        raise BadFile(path, "probe", found, "its shape by model, by stack_mm or by stylus and body")
+    stated = {"radius_mm": probe.radius_mm, "length_mm": probe.length_mm}
+    stack = probe.stack_mm
+    if probe.model is not None:
+        known = probe_models()
+        if probe.model not in known:
+            raise BadFile(path, "probe.model", repr(probe.model), "one of " + ", ".join(known))
+        model = known[probe.model]
+        stack = model.stack_mm
+        stated["radius_mm"] = probe.radius_mm or 0.5 * model.ball_diameter_mm
+        stated["length_mm"] = probe.length_mm or stack[-1][0]
+        if "nose_diameter_mm" not in given:
+            stated["nose_diameter_mm"] = model.nose_diameter_mm
+    radius, length = stated["radius_mm"], stated["length_mm"]
+    for key in ("radius_mm", "length_mm"):
+        if stated[key] is None:
+            raise BadFile(path, f"probe.{key}", "nothing", "a number, or a model of the library")
+    assert radius is not None
+    assert length is not None
+    stack = _plain(probe, radius, length, path) if stack is None else list(stack)
+    if stack[-1][0] < length:
+        stack.append((length, stack[-1][1]))
+    ends = [end for end, _ in stack]
+    if ends != sorted(set(ends)) or not radius < ends[0] or ends[-1] > length:
+        expected = f"ends that rise from radius_mm = {radius:g} to length_mm = {length:g} at most"
+        raise BadFile(path, "probe.stack_mm", ends, expected)
+    if not all(d > 0.0 for _, d in stack) or stack[0][1] >= 2.0 * radius:
+        key = "stylus_diameter_mm" if given & {"stylus_diameter_mm"} else "stack_mm"
+        worst = stack[0][1] if stack[0][1] >= 2.0 * radius else min(d for _, d in stack)
+        expected = f"less than the ball, {2.0 * radius:g}, for the stylus, and above zero for all"
+        raise BadFile(path, f"probe.{key}", f"{worst:g}", expected)
+    return probe.model_copy(update={**stated, "stack_mm": stack})
+
+
+def _plain(probe: ProbeTable, radius: float, length: float, path: Path) -> list[Pair]:
+    """Stylus and body; the stylus half the length and two thirds of the ball where not given."""
+    end = 0.5 * length if probe.stylus_length_mm is None else probe.stylus_length_mm
+    if not radius < end < length:
+        expected = f"between radius_mm = {radius:g} and length_mm = {length:g}"
+        raise BadFile(path, "probe.stylus_length_mm", f"{end:g}", expected)
+    diameter = probe.stylus_diameter_mm or 2.0 * (radius * 2.0 / 3.0)
+    return [(end, diameter), (length, probe.body_diameter_mm)]
+
+
+def check_workshop(workshop: WorkshopTable, path: Path) -> None:
+    """Refuse a table or a body that is not one shape.
+
+    Raises:
+        BadFile: The key and what was expected.
+    """
+    table = workshop.table
+    if table is not None and (table.diameter_mm is None) == (table.sides_mm is None):
+        raise BadFile(path, "workshop.table", "not one outline", "diameter_mm or sides_mm")
+    names = [body.name for body in workshop.bodies]
+    for i, body in enumerate(workshop.bodies):
+        where = f"workshop.bodies.{i}"
+        outlines = [body.sides_mm, body.diameter_mm, body.stl]
+        if sum(outline is not None for outline in outlines) != 1:
+            raise BadFile(path, where, "not one shape", "sides_mm, diameter_mm or stl")
+        if (body.stl is None) != (body.height_mm is not None):
+            expected = "a height with sides_mm or diameter_mm, and none with stl"
+            raise BadFile(path, f"{where}.height_mm", repr(body.height_mm), expected)
+        if body.sides_mm is not None and min(body.sides_mm) <= 0.0:
+            raise BadFile(path, f"{where}.sides_mm", list(body.sides_mm), "positive sides")
+        if body.name in names[:i] or body.name == "TABLE":
+            raise BadFile(path, f"{where}.name", repr(body.name), "a name of its own")
+
+
+def table_radius(workshop: WorkshopTable) -> float | None:
+    """Of the largest disc that a stated table holds, mm; None where none is stated."""
+    table = workshop.table
+    if table is None:
+        return None
+    if table.diameter_mm is not None:
+        return 0.5 * table.diameter_mm
+    assert table.sides_mm is not None
+    return 0.5 * min(table.sides_mm)

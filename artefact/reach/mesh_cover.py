@@ -1,0 +1,109 @@
+"""Clamps and fixtures drawn elsewhere: a mesh covered by boxes that a program can state."""
+
+from pathlib import Path
+
+import numpy as np
+
+from artefact.reach.workshop import Solid
+from twin.errors import BadFile
+from twin.frames import Array
+
+MOST_BOXES = 24
+"""Of one mesh: two lines of a program's head each."""
+
+_SMALLEST_CUT = 4.0  # mm: a box with no side longer is not cut any further
+_ENOUGH = 0.85  # of a box filled by its two halves: no cut would take much off it
+
+
+def covering_solids(
+    path: str | Path, name: str, T_face_mesh: Array, on: str = "", most: int = MOST_BOXES
+) -> list[Solid]:
+    """Upright boxes whose union holds the surface of a mesh: nothing gets into it but through them.
+
+    The box that promises most is cut in the middle of its longest side, and each half shrunk to
+    what it holds of the surface, until there are enough of them.
+
+    Args:
+        path: STL file, mm.
+        name: Of the body; its boxes are numbered.
+        T_face_mesh: Where the mesh stands in the frame of the table's face, turned about z alone.
+        on: Axis that carries it.
+        most: Boxes at most.
+
+    Raises:
+        BadFile: No mesh, or an empty one.
+    """
+    triangles = _triangles(Path(path))
+    boxes = [triangles]
+    done: list[Array] = []
+    while boxes and len(boxes) + len(done) < most:
+        boxes.sort(key=_volume)
+        whole = boxes.pop()
+        halves = _halves(whole)
+        if len(halves) < 2 or sum(map(_volume, halves)) > _ENOUGH * _volume(whole):
+            thirds = [part for half in halves for part in _halves(half)]
+            if len(thirds) < 2 or sum(map(_volume, thirds)) > _ENOUGH * _volume(whole):
+                done.append(whole)
+                continue
+        boxes += halves
+    turn = float(np.arctan2(T_face_mesh[1, 0], T_face_mesh[0, 0]))
+    return [
+        _box(part, f"{name}.{i}", T_face_mesh, turn, on)
+        for i, part in enumerate(sorted([*boxes, *done], key=_volume, reverse=True), start=1)
+    ]
+
+
+def _triangles(path: Path) -> Array:
+    """Corners of all triangles of a mesh file, (T, 3, 3), mm."""
+    import trimesh
+
+    try:
+        mesh = trimesh.load(path, force="mesh")
+        triangles = np.array(mesh.triangles, dtype=float).reshape(-1, 3, 3)
+    except OSError as error:
+        raise BadFile(path, "file", error.strerror or "nothing", "an STL file") from None
+    except Exception as error:  # trimesh raises whatever its parsers stumble over
+        raise BadFile(path, "file", f"no mesh ({error})", "an STL file") from None
+    if not len(triangles) or not np.all(np.isfinite(triangles)):
+        raise BadFile(path, "file", f"{len(triangles)} triangles", "an STL file with a body in it")
+    return triangles
+
+
+def _halves(triangles: Array) -> list[Array]:
+    """What is below and above the middle of the longest side, clipped; empty halves left out."""
+    low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
+    axis = int(np.argmax(high - low))
+    if high[axis] - low[axis] <= _SMALLEST_CUT:
+        return [triangles]
+    at = 0.5 * (low[axis] + high[axis])
+    return [half for s in (-1.0, 1.0) if len(half := _clipped(triangles, axis, at, s))]
+
+
+def _clipped(triangles: Array, axis: int, at: float, side: float) -> Array:
+    """Triangles on one side of a plane, those that it cuts clipped by it."""
+    from trimesh.intersections import slice_faces_plane
+
+    flat = triangles.reshape(-1, 3)
+    faces = np.arange(len(flat)).reshape(-1, 3)
+    normal, origin = np.zeros(3), np.zeros(3)
+    normal[axis], origin[axis] = side, at
+    vertices, left, _ = slice_faces_plane(flat, faces, normal, origin)
+    return np.asarray(vertices, dtype=np.float64)[left]
+
+
+def _volume(triangles: Array) -> float:
+    """Of the box round them, each side a tenth of a millimetre at least, mm^3."""
+    sides = triangles.max(axis=(0, 1)) - triangles.min(axis=(0, 1))
+    return float(np.prod(np.maximum(sides, 0.1)))
+
+
+def _box(triangles: Array, name: str, T_face_mesh: Array, turn: float, on: str) -> Solid:
+    """The box round them, where it stands; rounded outwards to what a program states."""
+    low, high = triangles.min(axis=(0, 1)) - 1e-3, triangles.max(axis=(0, 1)) + 1e-3
+    middle = T_face_mesh[:3, :3] @ (0.5 * (low + high)) + T_face_mesh[:3, 3]
+    half = 0.5 * (high - low) + 1e-3
+    x, y, z = (float(v) for v in middle)
+    return Solid(
+        name, (float(half[0]), float(half[1])), False, z - float(half[2]), z + float(half[2]),
+        x, y, turn, on,
+    )  # fmt: skip

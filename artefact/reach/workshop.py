@@ -1,0 +1,197 @@
+"""What stands on the table and around it beside the standard: table, clamps, fixtures, covers.
+
+Every body is an upright prism over a rectangle or a disc, which a program can state in two lines.
+Anything else is covered by such bodies (`artefact.reach.mesh_cover`).
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from artefact.body import Plate, Standard
+from artefact.reach.face_of_table import table_face
+from artefact.reach.probe_clearance import Clearance, ProbeShape, clearance
+from twin.errors import DesignError
+from twin.frames import Array, apply, inverse, pose, rotation, turn
+from twin.machine import Chain, table_to_tool
+
+TABLE = "the table"
+
+TABLE_RADIUS = 160.0
+"""Of the rotary table's face where nobody says otherwise, mm."""
+
+TABLE_THICKNESS = 60.0
+"""How much of the table below its face is kept clear, mm."""
+
+
+@dataclass(frozen=True)
+class Solid:
+    """One body, in the frame of the table's face: at the table's origin, z out of the face.
+
+    Attributes:
+        name: Of the body.
+        half_size: Half sides of its outline, mm; of a disc its radius, twice.
+        is_disc: Whether the outline is a circle.
+        low: Height of its lower face, mm.
+        high: Height of its upper face, mm.
+        x: Of its middle, mm.
+        y: Of its middle, mm.
+        turn: About its own upright axis, rad.
+        on: Axis whose body carries it; empty for the table. It stands where it does while every
+            axis between it and the table reads zero.
+    """
+
+    name: str
+    half_size: tuple[float, float]
+    is_disc: bool = False
+    low: float = 0.0
+    high: float = 0.0
+    x: float = 0.0
+    y: float = 0.0
+    turn: float = 0.0
+    on: str = ""
+
+    def __post_init__(self) -> None:
+        if not (min(self.half_size) > 0.0 and self.low < self.high):
+            raise DesignError(
+                f"{self.name}: sides of {2.0 * self.half_size[0]:g} and "
+                f"{2.0 * self.half_size[1]:g} mm from {self.low:g} to {self.high:g} mm: "
+                "expected positive sides and the lower face first"
+            )
+
+    @property
+    def T_face_solid(self) -> Array:
+        """Where its own frame stands, (4, 4)."""
+        return pose(rotation(np.array([0.0, 0.0, self.turn])), np.array([self.x, self.y, 0.0]))
+
+    @property
+    def plate(self) -> Plate:
+        """Its shape in its own frame."""
+        corner = self.half_size[0] if self.is_disc else 0.0
+        return Plate(self.half_size, corner, self.low, self.high)
+
+    def corners(self, sides: int = 64) -> Array:
+        """Points whose hull is the body, or holds it where it is round, face's frame, (V, 3)."""
+        a, b = self.half_size
+        if self.is_disc:
+            angle = np.arange(sides) * (2.0 * np.pi / sides)
+            # the polygon touches the circle from outside
+            outline = a / np.cos(np.pi / sides) * np.column_stack([np.cos(angle), np.sin(angle)])
+        else:
+            outline = np.array([[-a, -b], [a, -b], [a, b], [-a, b]])
+        points = [
+            np.column_stack([outline, np.full(len(outline), z)]) for z in (self.low, self.high)
+        ]
+        return apply(self.T_face_solid, np.concatenate(points))
+
+
+def round_table(radius: float = TABLE_RADIUS, height: float = 0.0) -> Solid:
+    """A table's face as a disc, with what is kept clear below it."""
+    return Solid(TABLE, (radius, radius), True, height - TABLE_THICKNESS, height)
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """Everything solid that is not the standard.
+
+    Attributes:
+        table: Its face carries the standard.
+        bodies: Clamps, fixtures, covers.
+    """
+
+    table: Solid = field(default_factory=round_table)
+    bodies: tuple[Solid, ...] = ()
+
+    @property
+    def on(self) -> tuple[str, ...]:
+        """Axes that carry its bodies, each once."""
+        return tuple(dict.fromkeys(solid.on for solid in self.solids))
+
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        """The table, then the others."""
+        return (self.table, *self.bodies)
+
+    @property
+    def table_radius(self) -> float:
+        """Of the largest disc that the table's face holds, mm."""
+        return min(self.table.half_size)
+
+
+def still_frames(on: Iterable[str], chain: Chain, q: Array) -> dict[str, Array]:
+    """Poses T_still_table (N, 4, 4) of the table seen from bodies that other axes carry.
+
+    Their frame is that of the table with every axis between them and it at zero.
+
+    Args:
+        on: Names of the axes; empty for the table itself.
+        q: Readings, shape (N, A), mm and rad.
+
+    Raises:
+        DesignError: An axis that does not carry the workpiece.
+    """
+    inner = [k.name for k in chain.links if k.carries_workpiece and k.kind != "fixed"]
+    out = {}
+    for name in dict.fromkeys(on):
+        if not name or name == next(iter(inner), ""):
+            out[name] = np.broadcast_to(np.eye(4), (len(q), 4, 4))
+            continue
+        if name not in inner:
+            available = ", ".join(inner) or "none"
+            raise DesignError(
+                f"a body on axis {name}: expected one that carries the workpiece: {available}"
+            )
+        still = q.copy()
+        still[:, [chain.axis_index(a) for a in inner[: inner.index(name)]]] = 0.0
+        out[name] = table_to_tool(chain, still) @ inverse(table_to_tool(chain, q))
+    return out
+
+
+def clearance_in_workshop(
+    standard: Standard,
+    T_table_artefact: Array,
+    T_table_tool: Array,
+    centre: Array,
+    probe: ProbeShape,
+    workshop: Workshop,
+    T_still_table: Mapping[str, Array],
+    enough: float = 2.0,
+) -> Clearance:
+    """How near the probe comes to the standard and to everything round it; from below.
+
+    The ball itself is looked at against all but the standard, which it is meant to touch.
+
+    Args:
+        standard: In the artefact frame.
+        T_table_artefact: Where it stands.
+        T_table_tool: Of which the rotation tells the tool axis, shape (N, 4, 4).
+        centre: Ball centres, table frame, shape (N, 3), mm.
+        probe: Stylus, stem and body.
+        workshop: Table and other bodies.
+        T_still_table: Their frames, as `still_frames` gives them.
+        enough: Room beyond which the exact figure does not matter, mm.
+
+    Returns:
+        Room and the nearest body.
+    """
+    T_artefact_table = inverse(T_table_artefact)
+    axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
+    near = clearance(standard, apply(T_artefact_table, centre), axis, probe, enough)
+    room, body = near.distance, near.body.astype("U32")
+    covers = (probe.rough_cover(), probe.fine_cover())
+    T_table_face = table_face(T_table_artefact)
+    for solid in workshop.solids:
+        T = inverse(T_table_face @ solid.T_face_solid) @ T_still_table[solid.on]
+        gap = np.full(len(centre), -np.inf)
+        for places, radii in covers:
+            tight = np.flatnonzero(gap < enough)
+            balls = centre[tight, None] + turn(T_table_tool[tight, None], places)
+            balls = apply(T[tight, None], balls).reshape(-1, 3)
+            each = solid.plate.distance(balls).reshape(len(tight), len(radii)) - radii
+            gap[tight] = np.maximum(gap[tight], each.min(axis=1, initial=np.inf))
+        ball = solid.plate.distance(apply(T, centre)) - probe.ball_radius
+        gap = np.minimum(gap, ball)
+        nearer = gap < room
+        room, body = np.where(nearer, gap, room), np.where(nearer, solid.name, body)
+    return Clearance(room, body)

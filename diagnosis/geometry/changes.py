@@ -1,0 +1,84 @@
+"""A machine whose geometry may change between runs: the model, and its state in every run.
+
+Every component and location error stands in the model once, as of the first run, and once for every
+change: between two runs anything of the geometry may become anything. The state of a run is then a
+linear function of all parameters, ``theta_r = L_r theta``, so that values, changes and their
+uncertainties come from one covariance, whatever the runs have in common. Effects that are no
+geometry are common to all runs.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.fit import Prior
+from diagnosis.geometry.functionals import is_geometry
+from twin.effects import Change
+from twin.frames import Array
+from twin.model import Effect, Model
+from twin.record import Touches
+
+
+def changing(model: Model, touches: Touches, since: Sequence[int]) -> Model:
+    """The model with a geometry that may be another from some runs on.
+
+    Args:
+        model: As of the runs before; changes that it already has are kept out.
+        touches: Of all runs.
+        since: Runs from which on it may differ, as in `Touches.run`.
+    """
+    own = standing(model)
+    changes = [Change(e, i, touches.runs[i]) for i in since for e in own if is_geometry(e)]
+    return Model(model.chain, (*own, *changes))
+
+
+def standing(model: Model) -> tuple[Effect, ...]:
+    """The effects of a model that are no changes."""
+    return tuple(e for e in model.effects if not isinstance(e, Change))
+
+
+def changed_since(model: Model) -> tuple[int, ...]:
+    """Runs from which on the geometry of a model may differ."""
+    return tuple(sorted({e.index for e in model.effects if isinstance(e, Change)}))
+
+
+def since_first_run(model: Model) -> Model:
+    """The model without changes since an earlier model: what its runs alone can tell."""
+    kept = [e for e in model.effects if not (isinstance(e, Change) and e.index == 0)]
+    return Model(model.chain, tuple(kept))
+
+
+def with_changes(prior: Prior, model: Model) -> Prior:
+    """What is believed of a changing model, from what is believed of its standing effects."""
+    changes = [e for e in model.effects if isinstance(e, Change)]
+    return prior.joined(Prior.of_effects(changes))
+
+
+def of_first(prior: Prior, model: Model) -> Prior:
+    """Of what is believed of a model, the effects before its first change."""
+    first = next((i for i, (e, _) in enumerate(model.parameters) if isinstance(e, Change)), None)
+    return prior if first is None else Prior(prior.mean[:first], prior.root[:first, :first])
+
+
+def state(model: Model, run: int) -> Array:
+    """``L_r``: parameters in a run from all parameters of a model, (P, P).
+
+    Rows of effects have their changes up to that run added; rows of changes are those of the
+    changes themselves.
+    """
+    places, at = {}, 0
+    for effect in model.effects:
+        places[effect.name] = at
+        at += len(effect.parameters)
+    out = np.eye(at)
+    for effect in model.effects:
+        if isinstance(effect, Change) and effect.index <= run:
+            k = np.arange(len(effect.parameters))
+            out[places[effect.effect.name] + k, places[effect.name] + k] = 1.0
+    return out
+
+
+def state_of_standing(model: Model, run: int) -> Array:
+    """The rows of `state` of the effects that are no changes, (P0, P)."""
+    keep = [not isinstance(e, Change) for e, _ in model.parameters]
+    return state(model, run)[np.array(keep, dtype=bool)]

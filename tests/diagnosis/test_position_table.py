@@ -1,0 +1,109 @@
+"""Positioning tests as laser makers write them, diagnosed: a table where no law does, else the law.
+
+The axes are made up here by their own formulas; what is held out is a cycle that nobody fitted.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.evidence.effect_signatures import ScaledEffect
+from diagnosis.fit.prior import Prior
+from diagnosis.search.search_loop import DiagnosisTask
+from twin.foreign.positioning import PositioningTest, one_axis_machine, positioning_run
+from twin.library.catalogue import parse_effect
+from twin.library.ordinary import ordinary_model
+from twin.record.run import Run
+from twin.units import UM
+
+L = 500.0
+NOISE = 0.3 * UM
+TARGETS = 21
+
+
+def bump(x):
+    return 6.0 * np.exp(-(((x - 180.0) / 40.0) ** 2))
+
+
+def pitch(x):
+    return 2.0 * np.sin(2.0 * np.pi * x / 9.7)
+
+
+def quartic(x):
+    u = 2.0 * x / L - 1.0
+    return 5.0 * (8.0 * u**4 - 8.0 * u**2 + 1.0)
+
+
+def uneven_reversal(x):
+    return 2.0 + 4.0 * np.exp(-(((x - 300.0) / 60.0) ** 2))
+
+
+def errors_of_plates(x):
+    """A scale glued from pieces: every 50 mm another slope."""
+    knots = np.arange(0.0, L + 1.0, 50.0)
+    return np.interp(x, knots, np.cumsum(np.random.default_rng(99).normal(0.0, 1.5, len(knots))))
+
+
+AXES = {
+    "nothing": (lambda x: 0.0 * x, lambda x: 0.0 * x, []),
+    "too long": (lambda x: 0.02 * x, lambda x: 0.0 * x, []),
+    "reversal": (lambda x: 0.01 * x, lambda x: 4.0 + 0.0 * x, ["backlash(X)"]),
+    "pitch": (pitch, lambda x: 0.0 * x, ["periodic(EXX)"]),
+    "quartic": (quartic, lambda x: 0.0 * x, ["geometric(EXX,4)"]),
+    "worn place": (bump, lambda x: 0.0 * x, ["position-table(EXX)"]),
+    "glued scale": (errors_of_plates, lambda x: 2.0, ["backlash(X)", "position-table(EXX)"]),
+    "uneven reversal": (lambda x: 0.0 * x, uneven_reversal, ["position-table(EXX,directions)"]),
+    "worn place and pitch": (
+        lambda x: bump(x) + pitch(x),
+        lambda x: 2.0,
+        ["backlash(X)", "periodic(EXX)", "position-table(EXX)"],
+    ),
+}
+
+
+def positioning(name: str, cycles: int = 6, seed: int = 1) -> Run:
+    """A test of one axis, up and down, as the importer makes a run of it."""
+    curve, reversal, _ = AXES[name]
+    rng = np.random.default_rng(seed)
+    count = 2 * TARGETS if "pitch" in name else TARGETS
+    at = np.linspace(0.0, L, count)
+    at[1:-1] += rng.uniform(-0.2, 0.2, count - 2) * L / count  # targets off the pitch, ISO 230-2
+    target = np.tile(np.concatenate([at, at[::-1]]), cycles)
+    sign = np.tile(np.repeat([1, -1], count), cycles)
+    found = curve(target) + 0.5 * sign * reversal(target) + rng.normal(0.0, 0.3, len(target))
+    cycle = np.repeat(np.arange(1, cycles + 1), 2 * count)
+    table = PositioningTest("X", target, found * UM, cycle, sign, np.arange(len(target)))
+    return positioning_run(table, one_axis_machine("X", target), NOISE)
+
+
+@pytest.mark.parametrize("name", AXES)
+def test_a_table_is_named_where_no_law_does_the_same(name) -> None:
+    """With a law, and then with fewer numbers, the law has the name; and either predicts."""
+    run = positioning(name)
+    held = run.repeat == 6
+    run = replace(run, split=np.where(held, "test", "train").astype("U5"))
+    result = diagnose(run)
+    assert sorted(e.name for e in result.found) == AXES[name][2]
+    assert result.fit.test_rms < 1.2 * NOISE
+    sizes = [r for s in result.steps[1:] for r in s.reported if r.name == "amplitude_um"]
+    assert all(r.u < 0.1 * r.value for r in sizes)
+
+
+@pytest.mark.parametrize("name", ["pitch", "reversal", "quartic"])
+def test_a_named_effect_predicts_at_least_as_well_as_the_table(name) -> None:
+    """What a law says needs fewer numbers: on a held-out cycle it is no worse."""
+    run = positioning(name, cycles=3)
+    run = replace(run, split=np.where(run.repeat == 3, "test", "train").astype("U5"))
+    named = diagnose(run).fit
+    table = "position-table(EXX,directions)" if name == "reversal" else "position-table(EXX)"
+    start = ordinary_model(run.touches.chain)
+    task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
+    effect = parse_effect(table, run.touches.chain)
+    assert named.test_rms <= 1.01 * task.fit((ScaledEffect(effect),)).test_rms
+
+
+def test_a_test_of_three_cycles_is_held_out_by_targets() -> None:
+    assert len(np.unique(positioning("nothing", cycles=3).touches.pose)) == TARGETS
+    assert len(np.unique(positioning("nothing", cycles=4).touches.pose)) == 4

@@ -1,0 +1,150 @@
+"""What stands in the workshop: its keys reach placement, plan and programs, or are refused."""
+
+import numpy as np
+import pytest
+import trimesh
+from formats import write_examples
+
+from artefact.body.datum import DatumSphere
+from artefact.body.standard import STEEL, Base, Standard
+from artefact.brief.project_file import read_project
+from artefact.brief.workshop_tables import probe_models
+from artefact.reach.mesh_cover import MOST_BOXES, covering_solids
+from artefact.reach.touchable import ProbeReach, Requests
+from artefact.reach.workshop import Solid, Workshop, still_frames
+from matstd.from_project import dialect, feeds, plan_options, probe, probe_reach, workshop
+from twin.errors import BadFile, DesignError
+from twin.frames import apply, inverse, pose, rotation
+from twin.machine.kinematics import table_to_tool
+from twin.record.touches import Setup
+from twin.units import DEG
+
+
+def project(folder, old="", new=""):
+    """The example of the page on formats, with one place changed."""
+    write_examples(folder)
+    path = folder / "project.toml"
+    text = path.read_text(encoding="utf-8")
+    assert text.count(old) == 1 or not old
+    path.write_text(text.replace(old, new) if old else text, encoding="utf-8")
+    return read_project(path)
+
+
+def test_the_example_of_the_page_reaches_planner_programs_and_placement(tmp_path):
+    made = project(tmp_path)
+    tool, room = probe(made), workshop(made)
+    assert tool.stack == ((32.0, 2.0), (50.0, 4.0), (100.0, 20.0), (160.0, 20.0))
+    assert (tool.radius, tool.length, tool.nose_radius) == (3.0, 160.0, 45.0)
+    assert room.table_radius == 180.0
+    assert [(b.name, b.on, b.low, b.high) for b in room.bodies] == [
+        ("CLAMP1", "", 0.0, 35.0), ("POST", "B", -20.0, 40.0)
+    ]  # fmt: skip
+    assert plan_options(made).workshop == probe_reach(made).workshop == room
+    assert (dialect(made).tool, dialect(made).preset) == (12, 3)
+    assert dialect(made).on_control("A.H") == "TNC:\\STANDARD\\A.H"
+    assert feeds(made).probing == 250.0
+
+
+def test_every_model_of_the_library_is_a_probe(tmp_path):
+    for name, model in probe_models().items():
+        made = probe(project(tmp_path, '"om-40x50"', f'"{name}"'))
+        assert made.stack[0] == (model.stack_mm[0][0], 0.5 * model.stack_mm[0][1])
+        assert len(model.source) > 20
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ('"om-40x50"', '"om-40"', "probe.model: found 'om-40', expected one of plain, wide"),
+        ('model = "om-40x50"', "", "probe.radius_mm: found nothing"),
+        ("length_mm = 160.0", "length_mm = 90.0", "probe.stack_mm: found .* to length_mm = 90"),
+        ("length_mm = 160.0", "body_diameter_mm = 50.0", "by model, by stack_mm or by stylus"),
+        ("tool = 12", "tool = 0", "workshop.tool"),
+        ("tool = 12", "probing_feed_mm_min = 5000", "workshop.probing_feed_mm_min"),
+        ("diameter_mm = 360.0", "height_mm = 1.0", "workshop.table: .* diameter_mm or sides_mm"),
+        ("[workshop.table]", "[limits]\ntable_radius_mm = 160.0\n[workshop.table]",
+         "limits.table_radius_mm: .* no such key beside"),
+        ('name = "POST"', 'name = "CLAMP1"', "workshop.bodies.1.name: .* a name of its own"),
+        ("sides_mm = [40.0, 25.0]", "", "workshop.bodies.0: .* sides_mm, diameter_mm or stl"),
+        ("height_mm = 35.0", "", "workshop.bodies.0.height_mm"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused(tmp_path, old, new, reason):
+    with pytest.raises(BadFile, match=reason):
+        project(tmp_path, old, new)
+
+
+def test_a_body_on_an_axis_of_the_tool_is_refused(tmp_path):
+    made = project(tmp_path, 'on = "B"', 'on = "Z"')
+    with pytest.raises(DesignError, match="axis Z: expected one that carries the workpiece: C, B"):
+        workshop(made)
+
+
+def test_a_mesh_that_is_none_is_refused(tmp_path):
+    stl = 'stl = "clamp.stl"'
+    made = project(tmp_path, "sides_mm = [40.0, 25.0]\nheight_mm = 35.0", stl)
+    with pytest.raises(BadFile, match=r"clamp\.stl: file: "):
+        workshop(made)
+    (tmp_path / "clamp.stl").write_text("solid nothing\nendsolid nothing\n")
+    with pytest.raises(BadFile, match=r"clamp\.stl: file: "):
+        workshop(made)
+
+
+def test_a_body_of_the_cradle_stands_still_while_the_table_turns(tmp_path):
+    """Where a point of the cradle is, by the pose of the tool that has not moved."""
+    chain = project(tmp_path).chain
+    q = np.zeros((2, len(chain.axes)))
+    q[:, chain.axis_index("B")] = -40.0 * DEG
+    q[1, chain.axis_index("C")] = 75.0 * DEG
+    frames = still_frames(("", "B", "X"), chain, q)
+    np.testing.assert_allclose(frames[""], np.tile(np.eye(4), (2, 1, 1)))
+    point = np.array([30.0, 40.0, -10.0])
+    # seen from the tool, which does not move, the point of the cradle is in one place
+    seen = apply(inverse(table_to_tool(chain, q)) @ inverse(frames["B"]), point)
+    np.testing.assert_allclose(seen[0], seen[1], atol=1e-9)
+    # with X, C and B all still it is the foundation that the body stands on
+    q[1] = 0.0
+    q[1, chain.axis_index("B")] = 20.0 * DEG
+    frames = still_frames(("X",), chain, q)
+    seen = apply(inverse(table_to_tool(chain, q)) @ inverse(frames["X"]), point)
+    np.testing.assert_allclose(seen[0], seen[1], atol=1e-9)
+
+
+def test_what_a_clamp_is_in_the_way_of_is_not_chosen(tmp_path):
+    """A touch straight down on a ball with a wall 4 mm beside the stylus, and without."""
+    made = project(tmp_path)
+    ball = DatumSphere("SPH1", np.array([0.0, 0.0, 100.0]), 12.5, 6.0, 9.0, 30.0)
+    standard = Standard("bare", "", STEEL, Base(), None, (), (ball,), (), 160.0)
+    touch = Requests(
+        np.array(["SPH1"]), np.array([[0.0, 0.0, 112.5]]), np.array([[0.0, 0.0, 1.0]]),
+        np.zeros((1, 2)),
+    )  # fmt: skip
+    for at, is_free in ((4.0, False), (60.0, True)):
+        wall = Solid("WALL", (2.0, 20.0), False, 0.0, 140.0, x=at + 2.0)
+        reach = ProbeReach(
+            made.chain, Setup("a"), probe(made).shape, 160.0, workshop=Workshop(bodies=(wall,))
+        )
+        (reason,) = reach.reasons(standard, touch)
+        assert (reason == "") is is_free
+        assert is_free or "WALL" in reason
+
+
+def test_boxes_cover_a_mesh_and_not_much_else(tmp_path):
+    """An L of two bars, turned: 20 000 points of its surface are in the boxes, its notch is not."""
+    bars = [
+        trimesh.creation.box((80.0, 20.0, 15.0), pose(t=np.array([40.0, 10.0, 7.5]))),
+        trimesh.creation.box((20.0, 60.0, 15.0), pose(t=np.array([10.0, 30.0, 7.5]))),
+        trimesh.creation.cylinder(8.0, 40.0, transform=pose(t=np.array([10.0, 10.0, 30.0]))),
+    ]
+    mesh = trimesh.util.concatenate(bars)
+    mesh.export(tmp_path / "clamp.stl")
+    place = pose(rotation(np.array([0.0, 0.0, 0.6])), np.array([100.0, -50.0, 2.0]))
+    solids = covering_solids(tmp_path / "clamp.stl", "CLAMP", place, "B")
+    assert 3 <= len(solids) <= MOST_BOXES
+    assert {solid.on for solid in solids} == {"B"}
+    points = apply(place, mesh.sample(20_000, seed=1))
+    inside = [s.plate.distance(apply(inverse(s.T_face_solid), points)) for s in solids]
+    assert np.min(inside, axis=0).max() <= 1e-9
+    notch = apply(place, np.array([[60.0, 50.0, 7.5], [30.0, 30.0, 10.0], [50.0, 10.0, 30.0]]))
+    outside = [s.plate.distance(apply(inverse(s.T_face_solid), notch)) for s in solids]
+    assert np.min(outside, axis=0).min() > 4.0

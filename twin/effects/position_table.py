@@ -1,0 +1,187 @@
+"""Position table of an axis: a smooth curve over its readings, or one for each direction.
+
+What a table of a positioning test shows, and what a control's table of compensation holds. It says
+where an axis is wrong and not why: a pitch, a polynomial or one reversal alike everywhere does the
+same with fewer numbers and then has the better name.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.frames import Array
+from twin.machine import Chain, Family, Symbol
+from twin.model import (
+    Inner,
+    Kind,
+    Parameter,
+    Term,
+    Title,
+    check_count,
+    component_symbol,
+    moving_axes,
+    refusal,
+)
+from twin.record import Touches
+from twin.units import UM, URAD
+
+ORDER = 20
+"""Half waves over the travel: as fine as 20 targets show; what repeats faster is `periodic`."""
+
+LENGTHS = (0.04, 0.1, 0.3)
+"""Correlation lengths that are tried, as shares of the travel: 0.04 is the distance of 25 targets,
+and what is smoother than 0.3 is a polynomial of low degree."""
+
+EACH = "directions"
+"""What stands behind the component error where each direction has its own curve."""
+
+FEWEST_TARGETS = 5
+"""Of a positioning test of one metre (ISO 230-2)."""
+
+REVISITED = 0.5
+"""Share of the rows at readings that were approached before from which they are targets."""
+
+WHOLE_TURN = 2.0 * np.pi - 0.02
+"""Travel of a rotary axis, rad, from which its curve closes in itself: a degree less is no gap."""
+
+
+@dataclass(frozen=True)
+class PositionTable:
+    """A component error as a smooth curve over the reading, or one for each direction.
+
+    ``E = sum_k a_k c_k(q)``, and with a curve for each direction besides ``sgn(last motion)/2
+    (b_0 + sum_k b_k c_k(q))``; ``c_k = w_k cos(k pi s)`` with s the reading as a share of the
+    travel, k to `ORDER`; sines and cosines of whole turns where a rotary axis turns all round. The
+    finer a wave the less is expected of it: ``w_k ~ 1/(1 + (k pi l)^2)``, ``sum w_k^2 = 1``, l the
+    correlation length. A constant belongs to the location of the axis.
+
+    Attributes:
+        by_direction: Whether each direction has its own curve; a reversal that is alike everywhere
+            is `backlash`.
+        is_round: Whether the travel of a rotary axis closes in itself.
+        length: l, as a share of the travel.
+
+    Reference:
+        ISO 230-2 (mean deviation at every target for either direction, reversal at a target).
+    """
+
+    symbol: Symbol
+    by_direction: bool = False
+    is_round: bool = False
+    length: float = LENGTHS[1]
+
+    kind = "position-table"
+    is_curve = True
+
+    @property
+    def name(self) -> str:
+        """`position-table(EXX)`, `position-table(EXX,directions)`."""
+        return f"position-table({self.symbol.name}{f',{EACH}' if self.by_direction else ''})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        by = "position and direction" if self.by_direction else "position"
+        return Title(f"{self.symbol.title} by {by}", self.symbol.link)
+
+    @property
+    def _waves(self) -> tuple[tuple[str, int], ...]:
+        """Function and number of half waves over the travel of every c_k."""
+        if self.is_round:
+            return tuple((f, 2 * k) for k in range(1, ORDER // 2 + 1) for f in ("sin", "cos"))
+        return tuple(("cos", k) for k in range(1, ORDER + 1))
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """The a_k of the mean curve; of two curves then the b_k of the reversal, b_0 first."""
+        size, unit = (20 * URAD if self.symbol.is_angular else 5 * UM), self.symbol.unit
+        mean = [Parameter(f"{f}{k}", unit, size) for f, k in self._waves]
+        if not self.by_direction:
+            return mean
+        turned = [Parameter(f"reversal {p.name}", unit, 0.5 * p.sd) for p in mean]
+        return (*mean, Parameter("reversal", unit, size), *turned)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Twists of the axis."""
+        where = touches.chain.twist_of(self.symbol)
+        low, high = touches.chain.link(self.symbol.link).range
+        share = (touches.reading(self.symbol.link) - low) / (high - low)
+        of = {"sin": np.sin, "cos": np.cos}
+        k = np.array([k for _, k in self._waves])
+        w = 1.0 / (1.0 + (np.pi * k * self.length) ** 2)
+        w /= np.linalg.norm(w)
+        waves = zip(w, self._waves, strict=True)
+        mean = [float(wk) * of[f](k * np.pi * share) for wk, (f, k) in waves]
+        half = 0.5 * touches.last_move(self.symbol.link)
+        turned: list[Array] = [half, *(half * c for c in mean)] if self.by_direction else []
+        return tuple(Term(i, where, amount) for i, amount in enumerate([*mean, *turned]))
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """The correlation length."""
+        return (Inner("length", "1", np.array(LENGTHS), continuous=False),)
+
+    def tuned(self, *values: float) -> "PositionTable":
+        """With this correlation length."""
+        return replace(self, length=float(values[0]))
+
+    @property
+    def tuning(self) -> Mapping[str, float]:
+        """The correlation length."""
+        return {"length": self.length}
+
+
+def position_table(chain: Chain, symbol: Symbol, by_direction: bool = False) -> PositionTable:
+    """The position table of a component error."""
+    link = chain.link(symbol.link)
+    travel = link.range[1] - link.range[0]
+    return PositionTable(symbol, by_direction, link.kind == "rotary" and travel > WHOLE_TURN)
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> PositionTable:
+    """From the component error, and `directions` for a curve of each direction."""
+    check_count(KIND.usage, arguments, 1, 2)
+    if arguments[1:] not in ([], [EACH]):
+        raise refusal(KIND.usage, arguments, f"nothing or '{EACH}' after the comma")
+    return position_table(chain, component_symbol(chain, arguments[0]), len(arguments) == 2)
+
+
+def propose(touches: Touches) -> Iterable[PositionTable]:
+    """Positioning of an axis that moved alone, or that an instrument beside the machine saw at the
+    same targets again and again.
+
+    Where a ball touches in many poses no axis stands often enough at one reading.
+    """  # noqa: D205
+    axes = moving_axes(touches)
+    beside = not touches.instrument.is_ball_on_standard
+    for axis in axes:
+        if len(axes) == 1 or (beside and _has_targets(touches.reading(axis))):
+            own = touches.chain.link(axis).own_component
+            symbol = Symbol(own, axis, Family.COMPONENT)
+            yield position_table(touches.chain, symbol)
+            if len(np.unique(touches.last_move(axis))) > 1:
+                yield position_table(touches.chain, symbol, by_direction=True)
+
+
+def _has_targets(q: Array) -> bool:
+    """Whether readings are targets that were approached several times."""
+    _, counts = np.unique(np.round(q, 4), return_counts=True)
+    again = counts[counts > 1]
+    return len(again) >= FEWEST_TARGETS and again.sum() >= REVISITED * len(q)
+
+
+KIND = Kind(
+    word="position-table",
+    arguments="symbol[,directions]",
+    title="position table of an axis",
+    synonyms="positioning error, error table, compensation table, lead error compensation, "
+    "ISO 230-2, mean deviation, reversal along the travel, screw error",
+    formula="E = sum a_k c_k + sgn(last motion)/2 (b_0 + sum b_k c_k), c_k = w_k cos(k pi s), "
+    "s = (q - q_min)/travel, k to 20",
+    units="a_k, b_k: µm or µrad; length: share of the travel",
+    typical="5 to 30 µm over a metre with an encoder on the motor, 1 to 5 µm with a scale",
+    source="ISO 230-2 (mean unidirectional positioning deviations, reversal errors)",
+    make=make,
+    propose=propose,
+    classes=(PositionTable,),
+)
