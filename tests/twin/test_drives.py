@@ -209,7 +209,7 @@ def test_rows_that_differ_in_a_temperature_are_no_copies(touches) -> None:
 
 
 def test_cycles_read_in_steps_are_no_copies_though_no_time_was_recorded(touches) -> None:
-    """Five cycles over 22 targets with a noise of 0.5 µm, read in 0.1 µm: chance alone repeats some."""
+    """Five cycles over 22 targets, noise 0.5 µm, read in 0.1 µm: chance alone repeats some."""
     rng = np.random.default_rng(5)
     t = replace(touches, q=np.linspace(0.0, 350.0, N)[:, None], time=np.zeros(N), temperature={})
     cycles = replace(t, value={}, spindle_rpm=None)[np.tile(np.arange(22), 5)]
