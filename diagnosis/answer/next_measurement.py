@@ -89,7 +89,7 @@ def _with_linear(touches: Touches, target: Array, q: Array) -> Array:
     """Readings whose linear axes bring the ball to its target; as they are on other machines."""
     if len(touches.chain.linear_axes) != 3:
         return q
-    return inverse_linear(touches.chain, target, q, touches.length)
+    return inverse_linear(touches.chain, target, q, touches.target)
 
 
 def _within(touches: Touches) -> BoolArray:

@@ -107,9 +107,12 @@ def contribution_of(chain: Chain, n: int, name: str, size: float) -> Contributio
 
 
 @CASES
-def test_columns_of_every_parameter_against_central_differences(chain):
+@pytest.mark.parametrize("where", ["on the tool axis", "beside it"])
+def test_columns_of_every_parameter_against_central_differences(chain, where):
     q = random_readings(chain, 20)
     length = np.linspace(90.0, 210.0, 20)
+    if where == "beside it":
+        length = np.column_stack([length - 150.0, 20.0 - 0.3 * length, -length])
     reached = reach(chain, q, length)
     for symbol in chain.symbols:
         h = STEP[symbol.is_angular]

@@ -8,8 +8,9 @@ import pytest
 from twin.errors import BadFile
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
+from twin.machine.contribution import Where
 from twin.record.touches import computed_deviation
-from twin.units import NM, UM
+from twin.units import NM, UM, URAD
 
 MACHINE = """format = "machine/1"
 name = "test"
@@ -61,6 +62,38 @@ def test_deviation_by_hand(tmp_path: Path) -> None:
     # the probe comes down: Z ran towards minus, X and Y stood
     assert [run.touches.last_move(a)[0] for a in "XYZ"] == [0.0, 0.0, -1.0]
     assert run.remarks == ("T_s_degC is constant at 20.5 degC: it cannot explain anything",)
+
+
+def test_a_reflector_beside_the_tool_axis_by_hand(tmp_path: Path) -> None:
+    """30 mm out in x and -12 in y of the tool frame, which a spindle at zero leaves as they are.
+
+    In the artefact frame, turned by 90 deg, (20 + 30, 0 - 12, 40) is (-12, -40, 40).
+    """
+    head = HEAD.replace("160.0 }", "160.0, offset_mm = [30.0, -12.0] }")
+    row = ROW.replace(",0.0,-10.0,36.998,", ",-12.0,-40.0,36.998,")
+    run = read_run(write(tmp_path, [row], head=head))
+    assert run.touches.ball_artefact[0] == pytest.approx([-12.0, -40.0, 40.0], abs=NM)
+    assert run.deviation == pytest.approx([2.0 * UM], abs=0.001 * NM)
+    write_run(tmp_path / "again.csv", run, "machine.toml")
+    assert "offset_mm = [30.0, -12.0]" in (tmp_path / "again.csv").read_text()
+    np.testing.assert_array_equal(read_run(tmp_path / "again.csv").touches.offset, [[30.0, -12.0]])
+    # a longer arm turns more: 100 urad of roll of Z move 30 mm out by 3 um in y
+    roll = Where("twist", run.touches.chain.link_index("Z"), 5)
+    moved = run.touches.reach.of(roll)[0] * 100 * URAD
+    np.testing.assert_allclose(moved / UM, [1.2, 3.0, 0.0], atol=1e-6)
+
+
+def test_several_reflectors_on_one_tool(tmp_path: Path) -> None:
+    """Every row says its own; an empty cell means that of the head."""
+    columns = COLUMNS + ",tx_mm,ty_mm,tz_mm,dev_um"
+    rows = [ROW + ",30.0,-12.0,-170.0,5.0", later(ROW, 9.0) + ",,,,7.0"]
+    head = HEAD.replace("# [setup.a]", '# instrument = "tracker"\n# [setup.a]')
+    run = read_run(write(tmp_path, rows, head=head, columns=columns))
+    expected = [[30.0, -12.0, -170.0], [0.0, 0.0, -160.0]]
+    np.testing.assert_array_equal(run.touches.target, expected)
+    write_run(tmp_path / "again.csv", run, "machine.toml")
+    np.testing.assert_array_equal(read_run(tmp_path / "again.csv").touches.target, expected)
+    np.testing.assert_array_equal(run.touches[[1]].target, expected[1:])
 
 
 def test_a_stated_deviation_goes_before_the_readings(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Columns of a run file as arrays in base units: what can be mended is mended and told."""
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ OWN = re.compile(r"V_(\w+_\w+)\Z")
 """A column of the user's own: name and unit."""
 POINT = ("px_mm", "py_mm", "pz_mm")
 NORMAL = ("nx", "ny", "nz")
+TARGET = ("tx_mm", "ty_mm", "tz_mm")
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
 
 COLDEST, HOTTEST = -60.0, 200.0
@@ -45,6 +47,20 @@ ROUNDED = 1e-5
 def points(table: CsvTable) -> Array:
     """Contact points, (N, 3), mm."""
     return np.stack([table.numbers(c, largest=FARTHEST) for c in POINT], axis=-1)
+
+
+def targets(table: CsvTable, common: Sequence[float]) -> Array:
+    """Ball centre or reflector of every row in the tool frame, (N, 3), mm: its own or that of all.
+
+    Args:
+        table: The table.
+        common: Place in the head of the file, which a column or cell that is not there means.
+    """
+    cells = [
+        table.numbers(c, empty=v, largest=FARTHEST) if c in table else np.full(len(table), v)
+        for c, v in zip(TARGET, common, strict=True)
+    ]
+    return np.stack(cells, axis=-1) + 0.0  # no negative zeros
 
 
 def normals(table: CsvTable, remarks: list[str]) -> Array:

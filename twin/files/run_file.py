@@ -8,7 +8,7 @@ from pydantic import Field
 
 from twin.errors import BadFile
 from twin.files import run_columns as columns
-from twin.files.machine_file import Vector, read_machine
+from twin.files.machine_file import Coordinate, Vector, read_machine
 from twin.files.pose_file import FARTHEST, reading_columns, readings
 from twin.files.run_checks import checked_run, states_readings
 from twin.files.table import CsvTable
@@ -37,14 +37,18 @@ _OPTIONAL = (
     "spindle_rpm",
     "split",
     "dev_um",
+    *columns.TARGET,
 )
 
 
 class ProbeTable(Table):
-    """`probe`: radius of the ball and length from the gauge point to its centre, mm."""
+    """`probe`: radius of the ball, length from the gauge point to its centre, and how far it stands
+    beside the tool axis, mm.
+    """  # noqa: D205
 
     radius_mm: float = Field(ge=0.0, le=FARTHEST)
     length_mm: float = Field(ge=0.0, le=FARTHEST)
+    offset_mm: tuple[Coordinate, Coordinate] = Field(default=(0.0, 0.0), strict=False)
 
 
 class SetupTable(Table):
@@ -154,10 +158,13 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
     q = readings(table, chain)
     setups, setup = _setups(table, head)
     time = columns.times(table)
+    probe = head.probe
+    target = columns.targets(table, (*probe.offset_mm, -probe.length_mm))
     touches = Touches(
         chain=chain,
         q=q,
-        length=np.full(n, head.probe.length_mm),
+        length=-target[:, 2],
+        offset=target[:, :2],
         radius=np.full(n, head.probe.radius_mm),
         instrument=head.instrument,
         point=columns.points(table),

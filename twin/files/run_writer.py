@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.files.pose_file import reading_columns
-from twin.files.run_columns import FORCE, NORMAL, POINT
+from twin.files.run_columns import FORCE, NORMAL, POINT, TARGET
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
 from twin.record import Instrument, Run, linear_approach
@@ -31,9 +31,10 @@ def run_text(run: Run, machine: str) -> str:
     out = io.StringIO()
     out.write('# format = "run/1"\n')
     out.write(f'# machine = "{machine}"\n')
-    out.write(
-        f"# probe = {{ radius_mm = {float(t.radius[0])!r}, length_mm = {float(t.length[0])!r} }}\n"
-    )
+    probe = f"radius_mm = {float(t.radius[0])!r}, length_mm = {float(t.length[0])!r}"
+    if t.offset[0].any() and not _has_targets(run):
+        probe += f", offset_mm = [{', '.join(repr(float(v)) for v in t.offset[0])}]"
+    out.write(f"# probe = {{ {probe} }}\n")
     if t.instrument is not Instrument.TOUCH_PROBE:
         out.write(f'# instrument = "{t.instrument.value}"\n')
     if common_u:
@@ -49,6 +50,11 @@ def run_text(run: Run, machine: str) -> str:
     writer.writerow(columns)
     writer.writerows(zip(*columns.values(), strict=True))
     return out.getvalue()
+
+
+def _has_targets(run: Run) -> bool:
+    """Whether targets are several, so that every row states its own."""
+    return bool(np.any(run.touches.target != run.touches.target[0]))
 
 
 def _cells(values: Array, digits: int) -> list[str]:
@@ -91,6 +97,8 @@ def _optional_columns(run: Run, common_u: bool) -> dict[str, list[str]]:
     """Cells of the columns that not every run has."""
     t = run.touches
     columns: dict[str, list[str]] = {}
+    if _has_targets(run):
+        columns |= {name: _cells(t.target[:, i], 6) for i, name in enumerate(TARGET)}
     if t.spindle_rpm is not None:
         columns["spindle_rpm"] = [f"{v:g}" for v in t.spindle_rpm]
     if t.force is not None:

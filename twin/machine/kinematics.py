@@ -120,9 +120,18 @@ def table_to_tool(chain: Chain, q: Array) -> Array:
 
 
 def tip_in_tool(length: Array | float, n: int) -> Array:
-    """Tool point, or ball centre of a probe, at (0, 0, -L) of the tool frame, shape (N, 3), mm."""
+    """Tool point, or ball centre of a probe, in the tool frame, shape (N, 3), mm.
+
+    Args:
+        length: L of a point on the tool axis at (0, 0, -L), scalar or (N,); or the point itself,
+            (N, 3), for a target beside the axis.
+        n: Number of poses.
+    """
+    length = np.asarray(length, dtype=float)
+    if length.ndim == 2:
+        return length
     tip = np.zeros((n, 3))
-    tip[:, 2] = -np.asarray(length, dtype=float)
+    tip[:, 2] = -length
     return tip
 
 
@@ -131,7 +140,7 @@ def tip(chain: Chain, q: Array, length: Array | float) -> Array:
 
     Args:
         q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
+        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
 
     Returns:
         Shape (N, 3), mm.
@@ -186,7 +195,7 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
 
     Args:
         q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
+        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
 
     Returns:
         `Reach`, table frame, mm/mm and mm/rad.
@@ -260,7 +269,7 @@ def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contr
 
     Args:
         q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
+        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
         contribution: What all effects add at these readings.
 
     Returns:
@@ -298,7 +307,7 @@ def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float)
         chain: The machine; exactly three linear axes.
         target: Wanted tip (ball centre), table frame, shape (N, 3), mm.
         q: Readings whose rotary columns are kept, shape (N, A); linear columns are ignored.
-        length: Tool length, scalar or (N,), mm.
+        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
 
     Returns:
         Readings, shape (N, A). Travels are not checked here.

@@ -82,8 +82,8 @@ class Model:
     def tip_deviation(self, touches: Touches, theta: Array) -> Array:
         """Exact deviation of the tip in the table frame, actual minus nominal, (N, 3), mm."""
         added = self.contribution(touches, theta)
-        actual = exact_tip(self.chain, touches.q, touches.length, added)
-        return actual - tip(self.chain, touches.q, touches.length)
+        actual = exact_tip(self.chain, touches.q, touches.target, added)
+        return actual - tip(self.chain, touches.q, touches.target)
 
     def relative_deviation(self, touches: Touches, theta: Array) -> Array:
         """Exact displacement of the ball centre relative to the standard, artefact frame, (N, 3).
@@ -92,7 +92,7 @@ class Model:
         put it, mm.
         """
         added = self.contribution(touches, theta)
-        actual = exact_tip(self.chain, touches.q, touches.length, added) - added.shift
+        actual = exact_tip(self.chain, touches.q, touches.target, added) - added.shift
         return apply(inverse(touches.T_table_artefact), actual) - touches.ball_artefact
 
     def deviation(self, touches: Touches, theta: Array) -> Array:

@@ -61,7 +61,7 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     """
     t = run.touches
     centre = t.point + t.radius[:, None] * t.normal
-    reached = tip(t.chain, t.q, t.length)
+    reached = tip(t.chain, t.q, t.target)
     setups, moved = list(t.setups), []
     for i, setup in enumerate(t.setups):
         rows = t.setup == i

@@ -59,6 +59,8 @@ class Touches:
     Attributes:
         q: Axis readings at the trigger, (N, A), mm and rad.
         length: Probe length to the ball centre, (N,), mm.
+        offset: Of the ball centre, or of a reflector, from the tool axis, x and y of the tool
+            frame, (N, 2), mm; on the axis where nothing is given.
         radius: Of the ball, (N,), mm.
         point: Calibrated contact point, artefact frame, (N, 3), mm.
         normal: Outward unit normal there, artefact frame, (N, 3).
@@ -92,11 +94,14 @@ class Touches:
     pose: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     instrument: Instrument = Instrument.TOUCH_PROBE
     value: Mapping[str, Array] = field(default_factory=dict)
+    offset: Array = field(default_factory=lambda: np.zeros((0, 2)))
 
     def __post_init__(self) -> None:
         n = len(checked_readings(self.chain, self.q))
         if len(self.feature) == 0 and n:
             object.__setattr__(self, "feature", np.full(n, "", dtype="U1"))
+        if len(self.offset) == 0 and n:
+            object.__setattr__(self, "offset", np.zeros((n, 2)))
         if len(self.pose) == 0 and n:
             object.__setattr__(self, "pose", np.zeros(n, dtype=np.int64))
         for name in PER_TOUCH:
@@ -145,6 +150,11 @@ class Touches:
         """Time since the start of its own run at every touch, (N,), s."""
         return np.asarray(self.time - np.array([s.start for s in self.setups])[self.setup])
 
+    @property
+    def target(self) -> Array:
+        """Ball centre, or reflector, in the tool frame, (N, 3), mm."""
+        return np.column_stack([self.offset, -self.length])
+
     @cached_property
     def T_table_artefact(self) -> Array:
         """Pose of the standard at every touch, (N, 4, 4)."""
@@ -163,12 +173,12 @@ class Touches:
     @cached_property
     def ball_artefact(self) -> Array:
         """Nominal ball centre in the artefact frame, (N, 3), mm."""
-        return apply(inverse(self.T_table_artefact), tip(self.chain, self.q, self.length))
+        return apply(inverse(self.T_table_artefact), tip(self.chain, self.q, self.target))
 
     @cached_property
     def reach(self) -> Reach:
         """First-order deviations of the ball centre per unit of every error."""
-        return reach(self.chain, self.q, self.length)
+        return reach(self.chain, self.q, self.target)
 
     @cached_property
     def signature(self) -> Signature:
