@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.inner import Tangent, tangents
 from diagnosis.fit.prior import Prior
+from diagnosis.fit.suited_prior import narrowed
 from diagnosis.regression import (
     BoolArray,
     GrossErrors,
@@ -251,7 +252,8 @@ def fit_run(
     prior; the second weights with what was found, and more follow while the gross errors change.
 
     Args:
-        prior: Of the model's parameters; None for what its effects state.
+        prior: Of the model's parameters; None for what its effects state, less where the run says
+            that the machine is better (`prior_for`).
         free_inner: Linear parameters of the model, at which tangents of its inner parameters are
             added to the fit; None leaves the inner parameters where they are.
         gross: Gross errors found before, to keep; None looks for them, as if noise were white.
@@ -266,7 +268,7 @@ def fit_run(
             f"{int(train.sum())} touches, expected at least {MIN_TOUCHES}: fewer cannot even place "
             "the standard; add touches"
         )
-    machine = prior or Prior.of_effects(model.effects)
+    machine = prior_for(run, model, gross, memory) if prior is None else prior
     setups = setup_errors(run.touches)
     moved = () if free_inner is None else tuple(tangents(model, run.touches, free_inner))
     A = columns((*model.effects, *setups, *moved), run.touches) / run.u[:, None]
@@ -279,7 +281,8 @@ def fit_run(
     free = Prior.of_effects((*setups, *moved))
     factor, widened, weight = 1.0, 1.0, row_weight(memory)
     for remaining in reversed(range(PASSES)):
-        belief = Prior(machine.mean, machine.root * _widening(model, widened)).joined(free)
+        root = machine.root * _widening(model, widened)
+        belief = Prior(machine.mean, root, machine.narrowed).joined(free)
         whole = factor * weight
         X, rest = A @ belief.root / whole, (y - A @ belief.mean) / whole
         solution, found = _solved(X, rest, train, gross)
@@ -287,7 +290,9 @@ def fit_run(
         better = noise_factor(chi2, solution.dof)
         if abs(better / factor - 1.0) < SETTLED or not remaining:
             break
-        factor, widened = better, max(widened, _widened(solution, len(machine)) * widened)
+        factor = better
+        if machine.narrowed is None:  # else the run chose its size already
+            widened = max(widened, _widened(solution, len(machine)) * widened)
     used = train & ~found.rows
     noise = noise_of(run, solution, (rest - X @ solution.phi) * whole, used, factor)
     return Fit(
@@ -305,6 +310,20 @@ def fit_run(
         widened=widened,
         memory=memory,
     )
+
+
+def prior_for(
+    run: Run, model: Model, gross: GrossErrors | None = None, memory: Memory | None = None
+) -> Prior:
+    """What the effects of a model state, less where a run says that its machine is better.
+
+    Arguments and errors as of `fit_run`.
+    """
+    stated = Prior.of_effects(model.effects)
+    fit = fit_run(run, model, stated, gross=gross, memory=memory)
+    if fit.widened > 1.0 or not len(stated):
+        return stated
+    return narrowed(stated, model.effects, fit.X[fit.used], fit.y[fit.used])
 
 
 def row_weight(memory: Memory | None) -> float:

@@ -1,0 +1,70 @@
+"""The prior that suits a machine: its errors curve as much as expected, or clearly less.
+
+What is expected of a class of machines is wide, since it must hold for the worst of them. On a good
+machine, probed at few places, curves of which the run says little would then be free to follow the
+noise, and the model would predict worse than none. So the run may say that this machine is better
+than its class: parabolas and waves get the one factor of a few under which the run is most likely,
+
+    log p(y) = -1/2 log det(I + X^T X) - (N + nu)/2 log(|y|^2 - y^T X (I + X^T X)^-1 X^T y + nu),
+
+with whitened columns X in units of the prior and nu observations for the noise that is stated. The
+class keeps its word unless the run clearly says otherwise. Lines (squareness, scale, slopes) keep
+it always: hardly any run leaves them open, and what is reported shall not be drawn to zero.
+
+Reference:
+    MacKay, Neural Computation 4 (1992) 415 (the evidence for a scale of the prior).
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from diagnosis.fit.prior import Prior
+from diagnosis.regression import PRIOR_DOF
+from twin.effects import ComponentError
+from twin.frames import Array
+from twin.model import Effect
+
+FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
+"""On what is expected of curves: from the class down to a machine of a laboratory."""
+
+CLEARLY = 3.0
+"""Log evidence that a smaller factor must gain, 20 : 1."""
+
+
+def narrowed(prior: Prior, effects: Sequence[Effect], X: Array, y: Array) -> Prior:
+    """The prior with the factor under which a run is most likely.
+
+    Args:
+        prior: Of the parameters of the effects: what the class of the machine says.
+        effects: Of the model.
+        X: Columns of the effects, then of the set-ups, in units of the prior and of the noise, rows
+            in use, (M, P).
+        y: Deviations in units of the noise, (M,).
+    """
+    curved = np.repeat([_is_curve(e) for e in effects], [len(e.parameters) for e in effects])
+    G, g, square = X.T @ X, X.T @ y, float(y @ y)
+    each = np.ones((len(FACTORS), len(G)))
+    each[:, : len(curved)] = np.where(curved, np.array(FACTORS)[:, None], 1.0)
+    evidence = [_evidence(G, g, square, len(y), factor) for factor in each]
+    best = int(np.argmax(evidence))
+    if evidence[best] < evidence[0] + CLEARLY:
+        return prior
+    factor = each[best, : len(prior)]
+    return Prior(prior.mean, factor[:, None] * prior.root, factor)
+
+
+def _is_curve(effect: Effect) -> bool:
+    """Whether an effect of the ordinary model bends over its axis."""
+    return isinstance(effect, ComponentError) and effect.shape in ("parabolic", "sinusoidal")
+
+
+def _evidence(G: Array, g: Array, square: float, count: int, factor: Array) -> float:
+    """Log evidence up to a constant; G, g: normal equations in units of the prior times factor."""
+    M = factor[:, None] * G * factor
+    M[np.diag_indices_from(M)] += 1.0
+    low = cho_factor(M, lower=True)
+    along = factor * g
+    left = max(square - float(along @ cho_solve(low, along)), 0.0) + PRIOR_DOF
+    return float(-np.log(np.diag(low[0])).sum() - 0.5 * (count + PRIOR_DOF) * np.log(left))
