@@ -23,6 +23,7 @@ def main() -> None:
     run("design_machines")
     run("jacobians")
     run("fuzz_readers")
+    run("stop_latency", "--only", "sensitivity,volumetric,diagnose,compare")
     run("montecarlo")
     run("placement_certificate")
     run("standard_against_rivals")

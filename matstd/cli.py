@@ -33,15 +33,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser(arguments)
     args = parser.parse_args(arguments)
-    from matstd.stop import STOPPED, clean_stop, stopped_words
     from twin.errors import DesignError
 
     try:
-        with clean_stop(args.command):
-            _check_output(args)
-            code = int(args.run(args) or 0)
-            sys.stdout.flush()  # a disk that is full says so here, not when Python ends
-            return code
+        _check_output(args)
+        code = int(args.run(args) or 0)
+        sys.stdout.flush()  # a disk that is full says so here, not when Python ends
+        return code
     except DesignError as error:
         print(f"matstd {args.command}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
@@ -54,9 +52,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"matstd {args.command}: cannot write its words ({error.strerror})", file=sys.stderr)
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_BAD_INPUT
-    except KeyboardInterrupt:
-        print(stopped_words(args.command), file=sys.stderr)
-        return STOPPED
     except (Exception, SystemExit) as error:
         theirs = _users_fault(error)
         if theirs is None:

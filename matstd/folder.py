@@ -9,10 +9,7 @@ from pathlib import Path
 
 from matstd.lock import is_abandoned, locked
 from twin.errors import DesignError
-from twin.files import NOT_WRITABLE
-
-WORKING: set[Path] = set()
-"""Folders in which this process works; whoever ends it without further ado removes them."""
+from twin.files import NOT_WRITABLE, UNFINISHED
 
 
 @contextmanager
@@ -43,7 +40,7 @@ def results_folder(
         raise DesignError(f"{out}: already exists; choose another folder or give --force")
     _remove_abandoned(out)
     place = out.parent / f".{out.name}-{secrets.token_hex(4)}"
-    WORKING.add(place)
+    UNFINISHED.add(place)
     try:  # from before the folder is made: an interrupt can come at any moment
         work = place / "results"
         work.mkdir(parents=True)
@@ -56,7 +53,7 @@ def results_folder(
         raise DesignError(f"{out}: cannot be written ({error.strerror or error})") from error
     finally:
         shutil.rmtree(place, ignore_errors=True)
-        WORKING.discard(place)
+        UNFINISHED.discard(place)
 
 
 def _move(work: Path, out: Path, ours: Sequence[str]) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TextIO
 
 from matstd.stop import raise_if_asked
+from twin.compute import Progress, blocks
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -18,15 +19,15 @@ if TYPE_CHECKING:
 PERIOD = 10.0
 """Seconds between two lines where nobody watches a terminal."""
 
-Show = Callable[[str, int, int], None]
-"""Told the stage, what is done of it and how much there is."""
+BLOCK = 20_000
+"""Rows of a table that are computed at once: a second or two, some hundred MB."""
 
 
 @dataclass(slots=True)
 class _State:
     """What the command is doing."""
 
-    stage: str = "begin"
+    stage: str = "reading"
     done: int = 0
     total: int = 0
     since: float = 0.0
@@ -51,7 +52,7 @@ def clock(seconds: float) -> str:
 
 
 @contextmanager
-def stages() -> Iterator[Show]:
+def stages() -> Iterator[Progress]:
     """A function (stage, done, total) that shows how far the work is and how long it still takes.
 
     In a terminal every stage is a bar; elsewhere a line says every ten seconds what is being done,
@@ -64,16 +65,24 @@ def stages() -> Iterator[Show]:
         yield show
 
 
+def table_blocks(stage: str, rows: int, show: Progress) -> Iterator[slice]:
+    """The rows of a table, some at a time; what is done of a longer one is shown."""
+    for block in blocks(rows, BLOCK):
+        if block.start:
+            show(stage, block.start, rows)
+        yield block
+
+
 @contextmanager
-def _bars(watched: Console) -> Iterator[Show]:
+def _bars(watched: Console) -> Iterator[Progress]:
     from rich.progress import (
         BarColumn,
-        Progress,
         TaskID,
         TextColumn,
         TimeElapsedColumn,
         TimeRemainingColumn,
     )
+    from rich.progress import Progress as Bars
 
     columns = (
         TextColumn("{task.description}"),
@@ -82,7 +91,7 @@ def _bars(watched: Console) -> Iterator[Show]:
         TimeRemainingColumn(),
         TextColumn("left"),
     )
-    with Progress(*columns, console=watched) as bars:
+    with Bars(*columns, console=watched) as bars:
         known: dict[str, TaskID] = {}
 
         def finish(but: str | None = None) -> None:
@@ -102,7 +111,7 @@ def _bars(watched: Console) -> Iterator[Show]:
 
 
 @contextmanager
-def _lines(out: TextIO, period: float) -> Iterator[Show]:
+def _lines(out: TextIO, period: float) -> Iterator[Progress]:
     """Lines such as `[ 70 s] placement: 50 %, about 60 s left`."""
     begun = time.monotonic()
     state, over = _State(since=begun), threading.Event()

@@ -9,9 +9,12 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import NoReturn
 
 STOPPED = 130
 """Exit code of a command that was asked to stop."""
+
+_LAST_WORDS = threading.Lock()
 
 PATIENCE = 0.4
 """Seconds that the command has to come to an end by itself: with what follows, less than one."""
@@ -34,16 +37,14 @@ def raise_if_asked() -> None:
 
 
 @contextmanager
-def clean_stop(command: str) -> Iterator[None]:
+def clean_stop() -> Iterator[None]:
     """Whoever is asked to end, by Ctrl-C or by the system (SIGTERM), tidies up and says so.
 
     An interrupt can fall into a place that swallows or renames it (a destructor, the import of a
     module); it is remembered, so that the next stage of the work, or whatever fails first, ends it.
     It can also come while a library computes and Python waits for it, or while a pool waits for its
-    workers. Then the process is ended from another thread.
-
-    Args:
-        command: Whose word is said if the process has to be ended so.
+    workers. Then the process is ended from another thread. Who asks twice does not disturb the
+    tidying.
 
     Raises:
         KeyboardInterrupt: However the interrupt came out of the block.
@@ -53,15 +54,16 @@ def clean_stop(command: str) -> Iterator[None]:
         return
 
     def stop(number: int, frame: FrameType | None) -> None:
-        _Asked.to_stop = True
-        raise KeyboardInterrupt
+        if not _Asked.to_stop:
+            _Asked.to_stop = True
+            raise KeyboardInterrupt
 
     _Asked.to_stop = False
     before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        with _watched(command):
+        with _watched():
             yield
-    except Exception as error:
+    except BaseException as error:  # some libraries end an import with one that is no Exception
         if not _Asked.to_stop:
             raise
         raise KeyboardInterrupt from error
@@ -72,7 +74,7 @@ def clean_stop(command: str) -> Iterator[None]:
 
 
 @contextmanager
-def _watched(command: str) -> Iterator[None]:
+def _watched() -> Iterator[None]:
     """A thread that hears of a signal at once; Python itself does so between two of its steps."""
     ours, theirs = socket.socketpair()
     theirs.setblocking(False)
@@ -81,7 +83,7 @@ def _watched(command: str) -> Iterator[None]:
     def watch() -> None:
         heard = ours.recv(1)
         if heard in {bytes([signal.SIGINT]), bytes([signal.SIGTERM])} and not over.wait(PATIENCE):
-            _leave(command)
+            leave()
 
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
@@ -96,16 +98,20 @@ def _watched(command: str) -> Iterator[None]:
         ours.close()
 
 
-def _leave(command: str) -> None:
-    """Remove what is half done and end, whatever the other threads do."""
-    from matstd.folder import WORKING
+def leave() -> NoReturn:
+    """Remove what is half done, say so and end, whatever the other threads do.
 
-    for folder in tuple(WORKING):
-        shutil.rmtree(folder, ignore_errors=True)
-    print(stopped_words(command), file=sys.stderr, flush=True)
+    Python would first take down everything it holds, which takes longer than all the rest.
+    """
+    _LAST_WORDS.acquire()  # never given back: of two threads that leave, one speaks
+    files = sys.modules.get("twin.files")  # an import could wait for the one that was interrupted
+    for begun in tuple(getattr(files, "UNFINISHED", ())):
+        if begun.is_dir():
+            shutil.rmtree(begun, ignore_errors=True)
+        else:
+            begun.unlink(missing_ok=True)
+    command = next((f" {word}" for word in sys.argv[1:] if not word.startswith("-")), "")
+    cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # bars of progress hide it
+    text = f"{cursor}matstd{command}: stopped, and nothing half-written is left"
+    print(text, file=sys.stderr, flush=True)
     os._exit(STOPPED)
-
-
-def stopped_words(command: str) -> str:
-    """What is said of a command that was asked to stop."""
-    return f"matstd {command}: stopped, and nothing half-written is left"

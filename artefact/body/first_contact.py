@@ -13,6 +13,7 @@ from twin.frames import Array, apply, turn
 from twin.units import NM
 
 _EDGE_PITCH = 0.5  # mm, of the samples of a trimmed edge
+_PIECE = 16  # samples of an edge that are looked at as one
 _BLOCK = 2_000_000  # numbers held at once while edges are searched
 
 
@@ -90,8 +91,9 @@ def contact(
     p = rows(start).astype(np.float64)
     d = np.array(unit(rows(direction, len(p))))
     race = _Race(len(p))
+    latest = np.broadcast_to(np.asarray(travel, dtype=np.float64), len(p))
     for patch in standard.patches:
-        _meet_patch(race, standard, patch, p, d, radius)
+        _meet_patch(race, standard, patch, p, d, radius, latest)
     for sphere in standard.spheres:
         _meet_sphere(race, standard, sphere, p, d, radius)
     _meet_base(race, standard, p, d, radius)
@@ -128,27 +130,36 @@ def _result(standard: Standard, race: _Race, travel: float | Array) -> Contact:
 
 
 def _meet_patch(
-    race: _Race, standard: Standard, patch: FreeformPatch, start: Array, d: Array, radius: float
+    race: _Race,
+    standard: Standard,
+    patch: FreeformPatch,
+    start: Array,
+    d: Array,
+    radius: float,
+    latest: Array,
 ) -> None:
-    """A patch with its edges, the four walls of its column and their corners."""
+    """A patch with its edges, the four walls of its column and their corners, up to some travel."""
     column = standard.columns[patch.name]
-    reach = float(np.linalg.norm([*patch.half_size, 0.5 * (column.top + patch.depth)]))
-    middle = apply(patch.T_artefact_patch, np.array([0.0, 0.0, 0.5 * (column.top - patch.depth)]))
-    near = np.flatnonzero(np.isfinite(sphere_entry(middle, start, d, reach + radius)))
+    middle, reach = column.hull
+    earliest = sphere_entry(middle, start, d, reach + radius)
+    near = np.flatnonzero(np.isfinite(earliest) & (earliest <= latest))
     if not len(near):
         return
     p, d = start[near], d[near]
     hit = patch.contact(p, d, radius)
     face = patch.contains(hit.uv)
     race.offer(hit.travel[face], patch.name, Meeting.SURFACE, near[face], hit.uv[face])
-    expected = patch.contact_start(p, d, radius).travel
-    lost = np.isnan(hit.travel) & np.isfinite(expected) & _aims_at_face(patch, p, d, expected)
-    race.offer(_edge_entry(patch, p, d, radius), patch.name, Meeting.EDGE, near)
+    edge = _edge_entry(patch, p, d, radius, np.minimum(latest[near], race.travel[near]))
+    race.offer(edge, patch.name, Meeting.EDGE, near)
     local_p, local_d = apply(patch.T_patch_artefact, p), turn(patch.T_patch_artefact, d)
     race.offer(_wall_entry(patch, local_p, local_d, radius), patch.name, Meeting.SIDE, near)
     race.offer(_corner_entry(patch, local_p, local_d, radius), patch.name, Meeting.SIDE, near)
     inside = column.distance(p) < 0.0
     race.offer(np.zeros(inside.sum()) - 1.0, patch.name, Meeting.INSIDE, near[inside])
+    open_ = np.flatnonzero(np.isnan(hit.travel))
+    p, d, near = p[open_], d[open_], near[open_]
+    expected = patch.contact_start(p, d, radius).travel
+    lost = np.isfinite(expected) & _aims_at_face(patch, p, d, expected)
     race.offer(expected[lost], patch.name, Meeting.UNRESOLVED, near[lost])
 
 
@@ -160,11 +171,12 @@ def _aims_at_face(patch: FreeformPatch, p: Array, d: Array, travel: Array) -> Ma
     return over
 
 
-def _edge_entry(patch: FreeformPatch, p: Array, d: Array, radius: float) -> Array:
-    """Travel to the trimmed edge, (N,), mm; inf where it is missed.
+def _edge_entry(patch: FreeformPatch, p: Array, d: Array, radius: float, latest: Array) -> Array:
+    """Travel to the trimmed edge, (N,), mm; inf where it is missed, or met after the latest travel.
 
     The travel to the samples of each edge is refined by the vertex of the parabola through the
-    earliest three and evaluated there, on the edge itself.
+    earliest three and evaluated there, on the edge itself. Balls that meet none of a few larger
+    ones round the samples in time are not looked at closely.
     """
     best = np.full(len(p), np.inf)
     for fixed in (0, 1):
@@ -175,7 +187,8 @@ def _edge_entry(patch: FreeformPatch, p: Array, d: Array, radius: float) -> Arra
             uv = np.empty((len(s), 2))
             uv[:, fixed], uv[:, free] = side, s
             points = patch.point(uv)
-            for some in np.array_split(np.arange(len(p)), len(p) * len(s) * 3 // _BLOCK + 1):
+            near = _near_in_time(points, p, d, radius, latest)
+            for some in np.array_split(near, len(near) * len(s) * 3 // _BLOCK + 1):
                 samples = sphere_entry(points, p[some, None], d[some, None], radius)
                 first, vertex = _parabola_vertex(samples, s)
                 refined = np.empty((len(some), 2))
@@ -183,6 +196,17 @@ def _edge_entry(patch: FreeformPatch, p: Array, d: Array, radius: float) -> Arra
                 at_vertex = sphere_entry(patch.point(refined), p[some], d[some], radius)
                 best[some] = np.minimum(best[some], np.minimum(first, at_vertex))
     return best
+
+
+def _near_in_time(points: Array, p: Array, d: Array, radius: float, latest: Array) -> np.ndarray:
+    """Balls that come near a row of points (K, 3), at most one pitch apart, before some travel."""
+    near = np.zeros(len(p), dtype=bool)
+    for piece in np.array_split(points, len(points) // _PIECE + 1):
+        middle = 0.5 * (piece[0] + piece[-1])
+        reach = np.linalg.norm(piece - middle, axis=1).max() + 2.0 * _EDGE_PITCH
+        entry = sphere_entry(middle, p, d, float(reach) + radius)
+        near |= np.isfinite(entry) & (entry <= latest)
+    return np.flatnonzero(near)
 
 
 def _parabola_vertex(samples: Array, s: Array) -> tuple[Array, Array]:

@@ -17,6 +17,10 @@ _SLIVER = 1e-9  # mm: distance at which a ball counts as touching
 class Body(Protocol):
     """Something solid in the artefact frame."""
 
+    @property
+    def hull(self) -> tuple[Array, float]:
+        """Centre (3,) and radius of a ball that holds the body, mm."""
+
     def distance(self, points: Array) -> Array:
         """Distance of points (N, 3) from the body, (N,), mm, negative inside; never too large."""
 
@@ -36,6 +40,12 @@ class Plate:
     corner_radius: float
     low: float
     high: float
+
+    @property
+    def hull(self) -> tuple[Array, float]:
+        """Centre and radius of the ball through the corners of the box round it."""
+        middle = np.array([0.0, 0.0, 0.5 * (self.low + self.high)])
+        return middle, float(np.linalg.norm([*self.half_size, 0.5 * (self.high - self.low)]))
 
     def distance(self, points: Array) -> Array:
         """Exact signed distance, (N,), mm."""
@@ -63,6 +73,13 @@ class Cone:
     high: float
     low_radius: float
     high_radius: float
+
+    @property
+    def hull(self) -> tuple[Array, float]:
+        """Centre half way up, and the way from there to the farther rim."""
+        middle = np.array([self.x, self.y, 0.5 * (self.low + self.high)])
+        widest = max(self.low_radius, self.high_radius)
+        return middle, float(np.hypot(0.5 * (self.high - self.low), widest))
 
     def distance(self, points: Array) -> Array:
         """Exact signed distance, (N,), mm, in the half plane of radius and height."""
@@ -92,6 +109,11 @@ class Ball:
     centre: Array
     radius: float
 
+    @property
+    def hull(self) -> tuple[Array, float]:
+        """The ball itself."""
+        return self.centre, self.radius
+
     def distance(self, points: Array) -> Array:
         """Exact signed distance, (N,), mm."""
         distance: Array = np.linalg.norm(points - self.centre, axis=1) - self.radius
@@ -114,6 +136,13 @@ class Column:
     patch: FreeformPatch
     top: float
     steepest: float
+
+    @property
+    def hull(self) -> tuple[Array, float]:
+        """Centre and radius of the ball through the corners of the box round it."""
+        low, high = -self.patch.depth, self.top
+        middle = apply(self.patch.T_artefact_patch, np.array([0.0, 0.0, 0.5 * (low + high)]))
+        return middle, float(np.linalg.norm([*self.patch.half_size, 0.5 * (high - low)]))
 
     def distance(self, points: Array) -> Array:
         """Signed distance from below, (N,), mm; its sign is exact."""

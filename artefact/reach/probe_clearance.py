@@ -12,6 +12,7 @@ _GROWTH = 1.15  # ratio of neighbouring stations along the tool axis
 _THIN = 4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped
 _COARSE = 0.3  # radius of the wrapping balls, in radii of the cylinder
 _BLOCK = 200_000  # balls looked at together
+_PIECES = 6  # short cylinders in which the balls of a probe are gathered
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,21 +160,48 @@ def clearance(
 def _room(
     standard: Standard, centre: Array, axis: Array, places: Array, radii: Array
 ) -> tuple[Array, np.ndarray]:
-    """Smallest distance of the covering balls from the standard (N,), and the body it is to."""
+    """Smallest distance of the covering balls from the standard (N,), and the body it is to.
+
+    The body whose middle is nearest is looked at first, and after it only those that can be nearer
+    by the balls that hold them: two or three, where a standard has twenty.
+    """
     room = np.full(len(centre), np.inf)
     nearest = np.zeros(len(centre), dtype=int)
-    names = np.array(list(standard.bodies))
+    bodies = list(standard.bodies.values())
+    middles, hulls = (np.array(one) for one in zip(*(body.hull for body in bodies), strict=True))
     across = _across(axis)
     for some in np.array_split(np.arange(len(centre)), len(centre) * len(places) // _BLOCK + 1):
         points = centre[some, None] + places @ across[some]  # (n, K, 3)
-        flat, shape = points.reshape(-1, 3), points.shape[:2]
-        each = [
-            (body.distance(flat).reshape(shape) - radii).min(axis=1)
-            for body in standard.bodies.values()
-        ]
-        nearest[some] = np.argmin(each, axis=0)
-        room[some] = np.min(each, axis=0)
-    return room, names[nearest]
+        to_middle = _to_points(middles, centre[some], axis[some], places, radii)
+        first, least = np.argmin(to_middle, axis=1), to_middle - hulls
+        best, which = np.full(len(some), np.inf), np.zeros(len(some), dtype=int)
+        for is_first in (True, False):
+            for b, body in enumerate(bodies):
+                near = np.flatnonzero(((first == b) == is_first) & (least[:, b] < best))
+                apart = body.distance(points[near].reshape(-1, 3)).reshape(-1, len(radii))
+                gap = (apart - radii).min(axis=1)
+                closer = gap < best[near]
+                best[near[closer]], which[near[closer]] = gap[closer], b
+        room[some], nearest[some] = best, which
+    return room, np.array(list(standard.bodies))[nearest]
+
+
+def _to_points(middles: Array, centre: Array, axis: Array, places: Array, radii: Array) -> Array:
+    """Distance of the probe at each touch from B points (B, 3), (N, B), mm; from below.
+
+    The covering balls are gathered in a few short cylinders with round ends, which hold them.
+    """
+    v = middles - centre[:, None]  # (N, B, 3)
+    along = np.einsum("nbi,ni->nb", v, axis)
+    beside = np.sqrt(np.maximum(np.einsum("nbi,nbi->nb", v, v) - along**2, 0.0))
+    out = np.full(along.shape, np.inf)
+    reach = np.hypot(places[:, 0], places[:, 1]) + radii
+    for piece in np.array_split(np.argsort(places[:, 2], kind="stable"), _PIECES):
+        if len(piece):
+            low, high = places[piece[0], 2], places[piece[-1], 2]
+            beyond = np.maximum(np.maximum(low - along, along - high), 0.0)
+            out = np.minimum(out, np.hypot(beside, beyond) - reach[piece].max())
+    return out
 
 
 def _across(axis: Array) -> Array:

@@ -109,7 +109,7 @@ def reported(
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
     out = list(_inner(fit, effect, wider, settled or {}))
-    if getattr(effect, "is_shrunk", False) or getattr(effect, "is_curve", False):
+    if getattr(effect, "is_shrunk", False) or getattr(effect, "is_told_whole", False):
         out.append(explained_rms(fit, effect, theta, covariance))
     elif len(theta) > 1:
         out.append(size(effect, theta, covariance, _is_seen(fit, place)))
@@ -134,13 +134,15 @@ def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> 
 
     Of parameters that share what they know neither one nor their length means anything. Of a curve
     it is what only the curve explains: its lowest terms are straight lines and parabolas, which
-    stand in the model under other names.
+    stand in the model under other names; likewise of the sag of an arm.
     """
     C = columns([effect], fit.run.touches)[fit.used]
-    if getattr(effect, "is_curve", False):
+    if getattr(effect, "is_told_whole", False):
         others = [e for e in fit.effects if e.name != effect.name]
         unit = fit.u[fit.used][:, None]
-        Q = orth(columns(others, fit.run.touches)[fit.used] / unit, rcond=ALIKE)
+        beside = columns(others, fit.run.touches)[fit.used] / unit
+        beside /= np.maximum(np.linalg.norm(beside, axis=0), 1e-300)
+        Q = orth(beside, rcond=ALIKE)
         C = C - unit * (Q @ (Q.T @ (C / unit)))
     explained = C @ theta
     rms = float(np.sqrt(np.mean(explained**2)))

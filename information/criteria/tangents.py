@@ -104,12 +104,11 @@ class Trace:
 
     def after_flow(self, W: Array, inverse: Array, reach: Array, inner: Array) -> Array:
         """Change of ``w M^-1 K M^-1 w``."""
-        along = W @ reach
-        other = W @ (inverse @ (self.K @ reach))
-        kappa = inner @ (reach.T @ self.K @ reach) @ inner
-        out = -2.0 * np.einsum("ni,ij,nj->n", other, inner, along)
-        out += np.einsum("ni,ij,nj->n", along, kappa, along)
-        return np.asarray(out, dtype=np.float64)
+        Kr = self.K @ reach
+        along, other = W @ reach, W @ (inverse @ Kr)
+        kappa = inner @ (reach.T @ Kr) @ inner
+        turned = along @ kappa - 2.0 * other @ inner
+        return np.asarray(np.einsum("ni,ni->n", turned, along), dtype=np.float64)
 
 
 @dataclass(frozen=True)

@@ -163,8 +163,7 @@ class _Board:
         self.order = np.argsort(self.cell, kind="stable")
         self.first = np.searchsorted(self.cell[self.order], np.arange(int(self.cell.max()) + 1))
         member = self.order[self.first]
-        self.kinds = [q.kind[member] for q in quotas]  # of every cell
-        self.same = [k[:, None] == k[None, :] for k in self.kinds]
+        self.kinds = np.array([q.kind[member] for q in quotas])  # (Q, cells)
 
     def best(self, gain: Array, x: Array) -> tuple[int, int, float]:
         """The pair of rows between which a flow helps most, to and from, and its room."""
@@ -175,21 +174,26 @@ class _Board:
             return i, j, np.inf
         high = np.maximum.reduceat(up[self.order], self.first)
         low = np.minimum.reduceat(down[self.order], self.first)
-        allowed = np.full((len(high), len(high)), np.inf)
-        for quota, kinds, same in zip(self.quotas, self.kinds, self.same, strict=True):
+        rooms, spares = np.empty(self.kinds.shape), np.empty(self.kinds.shape)
+        for i, (quota, kinds) in enumerate(zip(self.quotas, self.kinds, strict=True)):
             count = np.bincount(quota.kind, weights=x, minlength=len(quota.most))
-            least = np.zeros(len(count)) if quota.least is None else quota.least
-            room, spare = (quota.most - count)[kinds], (count - least)[kinds]
-            limit = np.minimum(room[:, None], spare[None, :])
-            allowed = np.minimum(allowed, np.where(same, np.inf, limit))
-        with np.errstate(invalid="ignore"):
-            worth = np.where(allowed > 1e-9, high[:, None] - low[None, :], -np.inf)
-        worth = np.where(np.isnan(worth), -np.inf, worth)
-        a, b = np.unravel_index(int(np.argmax(worth)), worth.shape)
-        rows = [np.flatnonzero(self.cell == k) for k in (a, b)]
+            least = 0.0 if quota.least is None else quota.least
+            rooms[i], spares[i] = (quota.most - count)[kinds], (count - least)[kinds]
+        lowest, best = low.min(), (0, 0, -np.inf, np.inf)
+        # a cell that cannot better the best pair even with the least useful row ends the search
+        for a in np.argsort(-high, kind="stable"):
+            if not high[a] - lowest > best[2]:
+                break
+            limit = np.minimum(rooms[:, a, None], spares)
+            allowed = np.where(self.kinds == self.kinds[:, a, None], np.inf, limit).min(axis=0)
+            free = np.where(allowed > 1e-9, low, np.inf)
+            b = int(np.argmin(free))
+            if high[a] - free[b] > best[2]:
+                best = (int(a), b, high[a] - free[b], allowed[b])
+        rows = [np.flatnonzero(self.cell == k) for k in best[:2]]
         i = int(rows[0][np.argmax(up[rows[0]])])
         j = int(rows[1][np.argmin(down[rows[1]])])
-        return i, j, float(allowed[a, b])
+        return i, j, float(best[3])
 
 
 def _exchanged(

@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
@@ -16,6 +17,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("project", metavar="PROJECT.toml", help="what to design, for which machine")
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
+    parser.add_argument(
+        "--control",
+        metavar="NAME|FILE.toml",
+        help="for which programs are written, instead of the project's (docs/controls.md)",
+    )
     add_scheduler(parser)
     add_pdf(parser)
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
@@ -26,10 +32,15 @@ def run(args: argparse.Namespace) -> int:
     from artefact.brief import read_project
     from matstd.console import say
     from matstd.folder import results_folder
+    from matstd.from_project import dialect
     from matstd.workers import connected
     from report.words import design_lines, proof_line
 
     project, printed_by = read_project(args.project), asked_printer(args)
+    if args.control:  # a file is seen from where the user stands, not from the project
+        own = str(Path(args.control).resolve())
+        project = replace(project, control=own if own.endswith(".toml") else args.control)
+    dialect(project)  # a control that nobody knows is refused before any work
     with (
         results_folder(args.output, args.force, REPORT_FILES, [REFUSED]) as folder,
         _pictured(folder, args.output),

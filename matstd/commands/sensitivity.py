@@ -53,17 +53,21 @@ def run(args: argparse.Namespace) -> int:
 
 def _table(args: argparse.Namespace) -> int:
     """One column a parameter: µm/µm, or µm/µrad for an angular one."""
+    from matstd.progress import stages, table_blocks
     from sensitivity.first_order import sensitivity
     from twin.files import read_machine, read_poses, refuse_to_overwrite, write_whole
     from twin.units import UM, URAD
 
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.source)
-    q, length = read_poses(args.poses, chain)
     unit = [URAD / UM if symbol.is_angular else 1.0 for symbol in chain.symbols]
     lines = [",".join(symbol.name for symbol in chain.symbols)]
-    lines += [",".join(f"{v:.9g}" for v in row) for row in sensitivity(chain, q, length) * unit]
-    write_whole(args.output, "\n".join(lines) + "\n")
+    with stages() as show:
+        q, length = read_poses(args.poses, chain)
+        for part in table_blocks("poses", len(q), show):
+            rows = sensitivity(chain, q[part], length[part]) * unit
+            lines += [",".join(f"{v:.9g}" for v in row) for row in rows]
+        write_whole(args.output, "\n".join(lines) + "\n")
     print(f"{args.output}: {len(q)} poses, {len(chain.symbols)} parameters")
     return 0
 

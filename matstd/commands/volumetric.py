@@ -16,6 +16,7 @@ def run(args: argparse.Namespace) -> int:
     """Write dx_um, dy_um, dz_um in the table frame, actual minus nominal."""
     import numpy as np
 
+    from matstd.progress import stages, table_blocks
     from twin.files import read_errors, read_machine, read_poses, refuse_to_overwrite, write_whole
     from twin.model import Model
     from twin.record import at_poses
@@ -24,13 +25,19 @@ def run(args: argparse.Namespace) -> int:
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.machine)
     errors = read_errors(args.errors, chain)
-    q, length = read_poses(args.poses, chain)
     model = Model(chain, tuple(effect for effect, _ in errors))
     theta = np.concatenate([amplitude for _, amplitude in errors] or [np.zeros(0)])
-    deviation = model.tip_deviation(at_poses(chain, q, length), theta) / UM
-    lines = ["dx_um,dy_um,dz_um"]
-    lines += [",".join(f"{v:.9f}" for v in row) for row in deviation]
-    write_whole(args.output, "\n".join(lines) + "\n")
+    with stages() as show:
+        q, length = read_poses(args.poses, chain)
+        deviation = np.concatenate(
+            [
+                model.tip_deviation(at_poses(chain, q[part], length[part]), theta) / UM
+                for part in table_blocks("poses", len(q), show)
+            ]
+        )
+        lines = ["dx_um,dy_um,dz_um"]
+        lines += [",".join(f"{v:.9f}" for v in row) for row in deviation]
+        write_whole(args.output, "\n".join(lines) + "\n")
     size = np.linalg.norm(deviation, axis=1)
     print(f"{args.output}: {len(q)} poses, mean {size.mean():.3f} µm, worst {size.max():.3f} µm")
     return 0

@@ -14,6 +14,7 @@ from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.virtual_run import VirtualRun, run_programs
 from probe_paths.control import read_log, read_program
 from probe_paths.plan import Probe
+from twin.compute import Progress, silent
 from twin.record import Run
 
 SMALLEST_U = 1e-5
@@ -45,24 +46,28 @@ def simulate(
     machine: VirtualMachine,
     rng: np.random.Generator,
     probe: Probe | None = None,
+    progress: Progress = silent,
 ) -> Campaign:
     """Run program files on the twin and evaluate the logs that they leave.
 
     Args:
-        programs: `.H` files with their masks beside them, in the order in which they are run.
+        programs: Files, masks of `.H` files beside them, in the order in which they are run.
         standard: The true one, which is also the calibrated one.
         machine: As it really is; the evaluation knows only its nominal chain.
         rng: For the noise of the trigger.
         probe: In the spindle; None takes the one that each program states.
+        progress: Told what is going on.
 
     Raises:
         BadFile: A program that the control, or a cautious operator, would not run.
         NotReachable: A touch without contact; the program stopped there.
         DesignError: A program made for another standard.
     """
-    texts = [read_program(path, machine.chain, probe) for path in programs]
-    for text in texts:
+    texts = [read_program(path, machine.chain, probe, machine.dialect) for path in programs]
+    for done, text in enumerate(texts):
+        progress("moves of the programs", done, len(texts))
         check_moves(text, standard, machine.chain)
+    progress("touches on the twin", 0, 1)
     runs = run_programs(texts, standard, machine, rng)
     runs[-1].check_done()
     parts = [

@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from matstd.folder import results_folder
 from matstd.stop import clean_stop
 import numpy as np
-with clean_stop("design"):
+with clean_stop():
     with results_folder(sys.argv[1]) as work:
         (work / "half.txt").write_text("half")
         matrix = np.random.default_rng(0).random((2500, 2500))

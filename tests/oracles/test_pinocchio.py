@@ -9,10 +9,13 @@ joint, every displaced line a free-flyer before the axis and its inverse behind 
 import numpy as np
 import pinocchio as pin
 import pytest
+from made_up import ARM, arm_poses
 
+from twin.effects.joint_sag import joint_sag
 from twin.machine.chain import Axis, Chain, Link, make_chain
 from twin.machine.contribution import Contribution
 from twin.machine.kinematics import exact_table_to_tool, reach, table_to_tool
+from twin.model.effect import contribution
 from twin.units import DEG, NM
 
 LENGTH = 160.0
@@ -181,3 +184,40 @@ def test_columns_of_component_errors(chain):
         theirs = arm.columns(arm.configuration(q, nothing, row))
         for i, link in enumerate(chain.links):
             np.testing.assert_allclose(ours[row, i], theirs[i], rtol=0, atol=NM, err_msg=link.name)
+
+
+def test_weights_turn_the_joints_of_an_arm_as_gravity_does():
+    """Generalised gravity of an arm with masses at its joints and flange is what holds it up.
+
+    A joint gives way by the compliance times the negative of that, about its own line: the twist
+    has the component of the line's direction along the letter.
+    """
+    touches = arm_poses()
+    model, masses = pin.Model(), {}
+    before, parent = np.zeros(3), 0
+    rng = np.random.default_rng(2)
+    for name in ARM.axes:
+        link = ARM.link(name)
+        place = pin.SE3(np.eye(3), link.point - before)
+        joint = pin.JointModelRevoluteUnaligned(link.direction)
+        parent = model.addJoint(parent, joint, place, name)
+        before = link.point
+        # joints that stand on one another share their mass
+        masses[name] = 0.0 if name == "A1" else float(rng.uniform(5.0, 40.0))
+        at_own_point = pin.Inertia(masses[name], np.zeros(3), np.zeros((3, 3)))
+        model.appendBodyToJoint(parent, at_own_point, pin.SE3.Identity())
+    masses["flange"] = 12.0
+    payload = pin.Inertia(masses["flange"], np.zeros(3), np.zeros((3, 3)))
+    model.appendBodyToJoint(parent, payload, pin.SE3(np.eye(3), -before))
+    model.gravity.linear = np.array([0.0, 0.0, -1.0])  # weights in N, levers in mm
+    data = model.createData()
+    holding = np.array([pin.computeGeneralizedGravity(model, data, q) for q in touches.q])
+    scale = np.abs(holding).max()
+    for i, name in enumerate(ARM.axes):
+        if np.abs(holding[:, i]).max() < 1e-9 * scale:
+            continue  # an upright line carries no torque
+        effect = joint_sag(ARM, name)
+        theta = np.array([masses[p] for p in effect.places])
+        twist = contribution([(effect, theta)], touches).twist[:, ARM.link_index(name), 3:]
+        expected = -holding[:, i, None] * ARM.link(name).direction
+        np.testing.assert_allclose(twist, expected, atol=1e-9 * scale)

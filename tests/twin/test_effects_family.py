@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_up import MACHINES, made_up
+from made_up import MACHINES, arm_poses, made_up
 
 from twin.library.catalogue import parse_effect, proposals
 from twin.library.ordinary import ordinary_model
@@ -22,16 +22,18 @@ SECOND_ORDER = 60 * NM
 RELATIVE_ROUNDING = 1e-9
 
 
-RUNS = {label: made_up(label) for label in MACHINES}
+RUNS = {label: made_up(label) for label in MACHINES} | {"arm": arm_poses()}
 ALL = [
     (label, e)
     for label, touches in RUNS.items()
+    if label in MACHINES
     for e in (
         *proposals(touches),
         *proposals(replace(touches, instrument=Instrument.LASER), ["position-table"]),
         field(touches),  # weighed against what is proposed
     )
 ]
+ALL += [("arm", e) for e in proposals(RUNS["arm"], ["joint-sag"])]
 # thirty of a kind on a machine are the same code: every one that differs in kind and in axis
 SOME = list(
     {

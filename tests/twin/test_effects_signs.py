@@ -8,6 +8,8 @@ outward normal n reads dev = -n . (motion of the tip) + n . (shift of the standa
 import numpy as np
 import pytest
 
+from twin.effects.joint_sag import KIND as JOINT_SAG
+from twin.errors import UnknownEffect
 from twin.library.catalogue import parse_effect
 from twin.machine.chain import Axis, make_chain
 from twin.model.effect import Tunable
@@ -299,3 +301,45 @@ def test_a_position_table_of_a_whole_turn_closes_in_itself() -> None:
     ]
     assert found[0] == pytest.approx(found[2], abs=1e-9)
     assert found[1] - found[0] == pytest.approx(found[2] - found[3], rel=1e-3)
+
+
+def test_an_arm_that_is_stretched_out_sags() -> None:
+    """Two joints about +Y at x = -500 and -200, the flange at 0; all upright lines of weight.
+
+    At rest the shoulder has the levers 300 (elbow) and 500 mm (flange): with 1 and 0.5 urad/mm it
+    turns by 300 + 250 urad, the arm dips, and the flange at 500 mm goes down by 0.275 mm. With the
+    shoulder at -90 deg (the arm straight up, +Y turns +X to -Z) nothing has a lever.
+    """
+    arm = make_chain(
+        "planar arm",
+        "[w f B B1 t]",
+        {
+            "B": Axis((-np.pi, np.pi), (-500.0, 0.0, 0.0)),
+            "B1": Axis((-np.pi, np.pi), (-200.0, 0.0, 0.0)),
+        },
+    )
+    effect = parse_effect("joint-sag(B)", arm)
+    assert effect.places == ("B1", "flange")
+    touches = Touches(
+        chain=arm,
+        q=np.array([[0.0, 0.0], [-0.5 * np.pi, 0.0], [-0.5 * np.pi, 0.5 * np.pi]]),
+        length=np.zeros(3),
+        radius=np.zeros(3),
+        point=np.zeros((3, 3)),
+        normal=np.tile(Z, (3, 1)),
+        setups=(Setup("a"),),
+        setup=np.zeros(3, dtype=np.int64),
+        time=np.zeros(3),
+        approach=np.zeros((3, 2)),
+    )
+    found = columns([effect], touches) @ [1e-6, 0.5e-6] / UM
+    # bent at the elbow the forearm of 200 mm lies level: 0.5 urad/mm * 200 mm, on a lever of 200 mm
+    np.testing.assert_allclose(found, [275.0, 0.0, 20.0], atol=1e-6)
+    elbow = columns([parse_effect("joint-sag(B1)", arm)], touches) @ [1e-6] / UM
+    np.testing.assert_allclose(elbow, [40.0, 0.0, 40.0], atol=1e-6)
+
+
+def test_machines_that_are_no_arm_have_no_joints_that_sag() -> None:
+    assert not list(JOINT_SAG.propose(touch(Z)))
+    with pytest.raises(UnknownEffect, match="carries the tool: none on this machine"):
+        parse_effect("joint-sag(B)", HSM)

@@ -72,7 +72,7 @@ class PositionTable:
     length: float = LENGTHS[1]
 
     kind = "position-table"
-    is_curve = True
+    is_told_whole = True
 
     @property
     def name(self) -> str:

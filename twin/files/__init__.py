@@ -13,6 +13,7 @@ from twin.files.sensor_file import SensorRecord, read_sensors
 from twin.files.toml import Table, check_format, checked, parse_toml, read_text
 from twin.files.whole import (
     NOT_WRITABLE,
+    UNFINISHED,
     refuse_own_input,
     refuse_to_overwrite,
     write_whole,
@@ -21,6 +22,7 @@ from twin.files.whole import (
 
 __all__ = [
     "NOT_WRITABLE",
+    "UNFINISHED",
     "MachineTables",
     "Pair",
     "SensorRecord",

@@ -23,6 +23,9 @@ NOT_WRITABLE = (
 )
 """What a user can put right when a file cannot be written: a full disk, no right to write."""
 
+UNFINISHED: set[Path] = set()
+"""Files and folders that this process has begun; whoever ends it at once removes them."""
+
 
 @contextmanager
 def written_whole(path: str | Path) -> Iterator[Path]:
@@ -50,6 +53,7 @@ def written_whole(path: str | Path) -> Iterator[Path]:
     os.umask(umask)
     os.chmod(name, 0o666 & ~umask)
     part = Path(name)
+    UNFINISHED.add(part)
     try:
         yield part
         part.replace(path)
@@ -59,6 +63,7 @@ def written_whole(path: str | Path) -> Iterator[Path]:
         raise _not_written(path, error) from error
     finally:
         part.unlink(missing_ok=True)
+        UNFINISHED.discard(part)
 
 
 def _not_written(path: Path, error: OSError) -> DesignError:

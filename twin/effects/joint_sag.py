@@ -1,0 +1,166 @@
+"""Sag of the joints of a serial arm under the weight of the links that follow.
+
+The gears of a joint give way in proportion to the torque of gravity on it. It is known from
+the geometry of the chain but for the weights: a weight anywhere on the line between two joints
+pulls at every joint before them as its shares at both ends do, so weights at the points of the
+joints that follow, and at the flange, stand for all links that reach from joint to joint.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from twin.frames import Array, apply, turn
+from twin.machine import Chain, Link, table_to_tool
+from twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
+from twin.record import Touches
+from twin.units import URAD
+
+JOINTS = 4
+"""Rotary joints between the foundation and the tool from which a machine is a serial arm."""
+
+SAME = 1e-6
+"""Points closer than this (mm) with every axis at zero are one."""
+
+FLANGE = "flange"
+"""Name of the gauge point among the places of weights."""
+
+DOWN = np.array([0.0, 0.0, -1.0])
+"""Direction of weights in the machine frame, whose Z stands upright (ISO 841)."""
+
+
+@dataclass(frozen=True)
+class JointSag:
+    """Rotation of a joint that gives way under the weights behind it.
+
+    ``E = sum_k c W_k d . ((p_k - p) x down)`` about the joint's line through p along d, for weights
+    W_k at points p_k; c is the compliance of the joint. One parameter, c W_k, for every point: a
+    positive one, rad a millimetre of lever, turns the arm down.
+
+    Attributes:
+        joint: Name of the rotary axis.
+        places: Names of the joints at whose points weights are taken to be, and `flange` for the
+            gauge point, where a payload hangs.
+
+    Reference:
+        Static torque of gravity of an open chain; joint compliance is what remains of a calibrated
+        arm: Judd and Knasinski, IEEE Trans. Robotics and Automation 6 (1990) 20.
+    """
+
+    joint: str
+    places: tuple[str, ...]
+
+    kind = "joint-sag"
+    is_told_whole = True
+
+    @property
+    def name(self) -> str:
+        """`joint-sag(B)`."""
+        return f"joint-sag({self.joint})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"sag of joint {self.joint} under the weight of the arm", self.joint)
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Rotation per lever arm of every weight."""
+        # 200 N at 1 m on a joint of 200 N m/mrad: 1 mrad over 1000 mm
+        return tuple(Parameter(f"weight at {p}", "rad/mm", URAD) for p in self.places)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Twists about the joint's line, whatever its direction."""
+        chain = touches.chain
+        link = chain.link(self.joint)
+        carrier = _body_before(touches, link)
+        point, line = apply(carrier, link.point), turn(carrier, link.direction)
+        out = []
+        for k, place in enumerate(self.places):
+            after = chain.links[-1] if place == FLANGE else chain.link(place)
+            lever = apply(_body_before(touches, after), after.point) - point
+            torque = np.einsum("ni,ni->n", line, np.cross(lever, DOWN))
+            out += [
+                Term(k, Where("twist", chain.link_index(self.joint), 3 + c), torque * float(d))
+                for c, d in enumerate(link.direction)
+                if d
+            ]
+        return tuple(out)
+
+
+def _body_before(touches: Touches, link: Link) -> Array:
+    """Pose of the body that a link of the tool side sits on, in the machine frame, (N, 4, 4)."""
+    chain = touches.chain
+    before = [ln for ln in chain.links[: chain.link_index(link.name)] if not ln.carries_workpiece]
+    part = replace(
+        chain, links=(chain.links[0], *before, chain.links[-1]), table_origin=np.zeros(3)
+    )
+    return table_to_tool(part, touches.q[:, [chain.axis_index(ln.name) for ln in before]])
+
+
+def arm_joints(chain: Chain) -> list[str]:
+    """Rotary axes between the foundation and the tool, from the foundation outwards."""
+    return [
+        ln.name
+        for ln in chain.links
+        if ln.kind == "rotary" and ln.programmed and not ln.carries_workpiece
+    ]
+
+
+def joint_sag(chain: Chain, joint: str) -> JointSag:
+    """Sag of a joint under weights at the points that follow, each place once.
+
+    The point of the next joint has no lever if it lies on this joint's line; two at one place are
+    one.
+    """
+    joints = arm_joints(chain)
+    own = chain.link(joint)
+    ends = [*(chain.link(j) for j in joints[joints.index(joint) :]), chain.links[-1]]
+    places = []
+    for before, after in pairwise(ends):
+        lever = after.point - before.point
+        lever = np.cross(own.direction, lever) if before is own else lever
+        if np.linalg.norm(lever) > SAME:
+            places.append(FLANGE if after.kind == "fixed" else after.name)
+    return JointSag(joint, tuple(places))
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> JointSag:
+    """From the joint."""
+    check_count(KIND.usage, arguments, 1, 1)
+    joints = arm_joints(chain)
+    if arguments[0] not in joints:
+        known = ", ".join(joints) or "none on this machine"
+        raise refusal(KIND.usage, arguments, f"a rotary axis that carries the tool: {known}")
+    found = joint_sag(chain, arguments[0])
+    if not found.places:
+        raise refusal(KIND.usage, arguments, "a joint behind which the arm has a length")
+    return found
+
+
+def propose(touches: Touches) -> Iterable[JointSag]:
+    """Every joint of a serial arm."""
+    joints = arm_joints(touches.chain)
+    if len(joints) >= JOINTS:
+        for joint in joints:
+            found = joint_sag(touches.chain, joint)
+            if found.places:
+                yield found
+
+
+KIND = Kind(
+    word="joint-sag",
+    arguments="axis",
+    title="sag of the joints of a serial arm",
+    synonyms="joint compliance, gear compliance, joint stiffness, link weight, payload, robot, "
+    "gravity torque, elastic deflection of an arm",
+    formula="E = sum c W_k d.((p_k - p) x down), p_k the points of the joints that follow",
+    units="c W_k: µrad/mm",
+    typical="0.1 to 2 µrad/mm: 0.1 to 2 mrad of a shoulder with the arm stretched out",
+    source="static torque of gravity of an open chain over the stiffness of a joint",
+    make=make,
+    propose=propose,
+    classes=(JointSag,),
+)
