@@ -43,6 +43,7 @@ def holes(seed: int, size: float = 1.0) -> Run:
         setup=np.zeros(n, dtype=np.int64),
         time=np.zeros(n),
         approach=np.zeros((n, 2)),
+        pose=np.repeat(np.arange(len(x)), 2),
     )
     deviation = -(error * normal).sum(axis=1) + rng.normal(0.0, NOISE, n)
     return Run(touches=touches, deviation=deviation, u=np.full(n, NOISE))
@@ -66,7 +67,7 @@ def test_a_good_machine_is_told_as_well_as_by_least_squares_of_what_is_there(see
     model = ordinary_model(run.touches.chain)
     fit = fit_run(run, model)
     wide = fit_run(run, model, Prior.of_effects(model.effects))
-    assert fit.prior.factor[: len(model.parameters)].max() < 1.0
+    assert fit.prior.factor[: len(model.parameters)].min() < 0.1
     assert fit.test_rms < wide.test_rms
     rows = {r.symbol: r for r in geometry_rows(fit)}
     x, y = run.touches.point[:, 0], run.touches.point[:, 1]
@@ -92,7 +93,8 @@ def test_lines_keep_what_is_expected_of_them_and_so_does_a_machine_of_its_class(
         [getattr(e, "shape", "") in ("parabolic", "sinusoidal") for e in model.effects]
     )
     assert (factor[~bends] == 1.0).all()
-    # X is bowed by 120 µm, as an ordinary machine may be
+    # X is bowed by 120 µm, as an ordinary machine may be: one curve of many, so not quite the class
     x = run.touches.point[:, 0]
     bow = 120.0 * UM * ((x - 250.0) / 250.0) ** 2 * run.touches.normal[:, 1]
-    assert fit_run(replace(run, deviation=run.deviation - bow), model).prior.narrowed is None
+    bowed = fit_run(replace(run, deviation=run.deviation - bow), model)
+    assert bowed.prior.factor.min() > factor.min()
