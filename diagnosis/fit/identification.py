@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.inner import Tangent, tangents
 from diagnosis.fit.prior import Prior
-from diagnosis.fit.suited_prior import narrowed
+from diagnosis.fit.suited_prior import narrowed, widened_by, widening
 from diagnosis.regression import (
     BoolArray,
     GrossErrors,
@@ -30,10 +30,6 @@ from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Effect, Model, Parameter, columns
 from twin.record import Run
-
-PRIOR_EXCEEDED = 2.0
-"""Mean squared parameter over its prior variance from which the machine is called worse than its
-stated distributions, and the prior is widened."""
 
 PASSES = 5
 SETTLED = 0.005
@@ -326,7 +322,7 @@ def fit_run(
     if beside is not None:
         factor, widened = beside.noise.factor, beside.widened
     for remaining in reversed(range(PASSES if beside is None else 1)):
-        root = machine.root * _widening(model, widened)
+        root = machine.root * widening(model.effects, widened)
         belief = Prior(machine.mean, root, machine.narrowed).joined(free)
         whole = factor * weight
         X, rest = A @ belief.root / whole, (y - A @ belief.mean) / whole
@@ -337,7 +333,7 @@ def fit_run(
             break
         factor = better
         if machine.narrowed is None:  # else the run chose its size already
-            widened = max(widened, _widened(solution, len(machine)) * widened)
+            widened = max(widened, widened_by(solution, len(machine)) * widened)
     used = train & ~found.rows
     noise = noise_of(run, solution, (rest - X @ solution.phi) * whole, used, factor)
     return Fit(
@@ -399,17 +395,3 @@ def _solved(
         return find_gross(X, y, train)
     used = train & ~gross.rows
     return solve(X[used], y[used]), gross
-
-
-def _widening(model: Model, factor: float) -> Array:
-    """Factor on the prior of every parameter, (P, 1): none where its size was chosen already."""
-    shrunk = [getattr(e, "is_shrunk", False) for e in model.effects]
-    each = np.repeat(shrunk, [len(e.parameters) for e in model.effects])
-    return np.where(each, 1.0, factor)[:, None]
-
-
-def _widened(solution: Solution, machine: int) -> float:
-    """How much wider the prior of the machine must be for its own parameters to be likely."""
-    decided = 1.0 - (solution.root[:machine] ** 2).sum(axis=1)
-    ratio = float(solution.phi[:machine] @ solution.phi[:machine]) / max(float(decided.sum()), 1.0)
-    return float(np.sqrt(ratio)) if ratio > PRIOR_EXCEEDED else 1.0

@@ -23,7 +23,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from diagnosis.fit.prior import Prior
-from diagnosis.regression import PRIOR_DOF
+from diagnosis.regression import PRIOR_DOF, Solution
 from twin.effects import ComponentError
 from twin.frames import Array
 from twin.machine import LETTERS
@@ -31,6 +31,10 @@ from twin.model import Effect
 
 FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
 """On what is expected: from the class down to a machine of a laboratory."""
+
+PRIOR_EXCEEDED = 2.0
+"""Mean squared parameter over its prior variance from which the machine is called worse than its
+stated distributions, and the prior is widened."""
 
 CLEARLY = 3.0
 """Log evidence that a smaller factor must gain, 20 : 1."""
@@ -79,3 +83,17 @@ def _evidence(G: Array, g: Array, square: float, count: int, factor: Array) -> f
     along = factor * g
     left = max(square - float(along @ cho_solve(low, along)), 0.0) + PRIOR_DOF
     return float(-np.log(np.diag(low[0])).sum() - 0.5 * (count + PRIOR_DOF) * np.log(left))
+
+
+def widening(effects: Sequence[Effect], factor: float) -> Array:
+    """Factor on the prior of every parameter, (P, 1): none where its size was chosen already."""
+    shrunk = [getattr(e, "is_shrunk", False) for e in effects]
+    each = np.repeat(shrunk, [len(e.parameters) for e in effects])
+    return np.where(each, 1.0, factor)[:, None]
+
+
+def widened_by(solution: Solution, machine: int) -> float:
+    """How much wider the prior of the machine must be for its own parameters to be likely."""
+    decided = 1.0 - (solution.root[:machine] ** 2).sum(axis=1)
+    ratio = float(solution.phi[:machine] @ solution.phi[:machine]) / max(float(decided.sum()), 1.0)
+    return float(np.sqrt(ratio)) if ratio > PRIOR_EXCEEDED else 1.0
