@@ -24,12 +24,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from artefact.brief import read_project
-    from matstd.console import say
+    from matstd.console import say, say_assumed
     from matstd.folder import results_folder
     from matstd.workers import connected
     from report.words import design_lines, proof_line
 
     project, printed_by = read_project(args.project), asked_printer(args)
+    say_assumed(project.chain)
     with (
         results_folder(args.output, args.force, REPORT_FILES, [REFUSED]) as folder,
         _pictured(folder, args.output),

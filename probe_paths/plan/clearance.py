@@ -118,15 +118,18 @@ def swing_height(chain: Chain, path: Array, solid: SolidHull, probe: Probe) -> A
     Returns:
         Of each of the W - 1 moves, mm.
     """
-    arms = _arms(chain, solid, probe)
-    highest = np.empty(len(path) - 1)
-    for i, (start, end) in enumerate(pairwise(path)):
-        turn_by = end - start
-        shares = [np.linspace(0.0, 1.0, _SWING if angle else 1) for angle in turn_by]
-        between = start + np.array(list(product(*shares))) * turn_by
-        rise = float(np.sum(arms * (turn_by / (_SWING - 1)) ** 2)) / 8.0
-        highest[i] = top_height(chain, between, solid, probe).max(initial=-np.inf) + rise
-    return highest
+    turn_by = np.diff(path, axis=0)
+    rise = ((turn_by / (_SWING - 1)) ** 2 @ _arms(chain, solid, probe)) / 8.0
+    shares = np.linspace(0.0, 1.0, _SWING)
+    # a return rises as high as the way there; an axis that stands still needs one sample
+    ends = np.sort(np.stack([path[:-1], path[1:]]), axis=0).transpose(1, 0, 2)
+    ways, way = np.unique(ends.reshape(len(ends), -1), axis=0, return_inverse=True)
+    highest = np.empty(len(ways))
+    for i, (low, high) in enumerate(ways.reshape(len(ways), 2, -1)):
+        samples = [a + shares * (b - a) if b > a else [a] for a, b in zip(low, high, strict=True)]
+        between = np.array(list(product(*samples)))
+        highest[i] = top_height(chain, between, solid, probe).max(initial=-np.inf)
+    return highest[way.ravel()] + rise
 
 
 def _arms(chain: Chain, solid: SolidHull, probe: Probe) -> Array:

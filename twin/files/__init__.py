@@ -7,6 +7,7 @@ stood there and what was expected. Writers write whole files or none.
 from twin.files.error_file import errors_toml, read_errors
 from twin.files.machine_file import MachineTables, Pair, Vector, read_machine
 from twin.files.pose_file import read_poses, reading_columns
+from twin.files.run_columns import assumed_point
 from twin.files.run_file import SetupTable, read_run
 from twin.files.run_writer import write_run
 from twin.files.sensor_file import SensorRecord, read_sensors
@@ -29,6 +30,7 @@ __all__ = [
     "SetupTable",
     "Table",
     "Vector",
+    "assumed_point",
     "check_format",
     "checked",
     "errors_toml",
