@@ -28,7 +28,5 @@ def say(text: str, style: str | None = None) -> None:
 
 def say_assumed(chain: "Chain") -> None:
     """What the machine file leaves open, and what is taken instead."""
-    from twin.files import assumed_point
-
-    for axis in chain.assumed_points:
-        say(f"- {assumed_point(axis)}")
+    for remark in chain.remarks:
+        say(f"- {remark}")

@@ -1,5 +1,7 @@
 """What a project asks for, in the terms of placement and planning."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from artefact.body import Base, Limits, Material
@@ -9,8 +11,9 @@ from artefact.place import PlacementOptions
 from artefact.reach import ProbeReach, Solid, Workshop, covering_solids, round_table, still_frames
 from artefact.worth import Calibration, CriterionOptions, TouchOptions
 from probe_paths.emit import Feeds
-from probe_paths.language import Dialect
+from probe_paths.language import Dialect, read_dialect
 from probe_paths.plan import PlanOptions, Probe
+from twin.errors import BadFile
 from twin.frames import pose, rotation
 from twin.units import DEG, KG_M3, UM, URAD
 
@@ -82,14 +85,18 @@ def _solids(project: Project, body: BodyTable) -> list[Solid]:
 
 
 def dialect(project: Project) -> Dialect:
-    """Words and numbers of the control."""
+    """Words of the control for which programs are written, and numbers of this workshop.
+
+    Raises:
+        BadFile: A folder for a control that takes none.
+    """
     stated = project.workshop
-    return Dialect(
-        folder=stated.folder,
-        tool=stated.tool,
-        preset=stated.preset,
-        result_height=stated.height_read,
-    )
+    words = read_dialect(project.control, project.path.parent)
+    if "folder" in stated.model_fields_set and not words.folder:
+        raise BadFile(project.path, "workshop.folder", stated.folder, "nothing for this control")
+    keys = {"folder": "folder", "tool": "tool", "preset": "preset", "height_read": "result_height"}
+    given = {keys[k]: getattr(stated, k) for k in keys if k in stated.model_fields_set}
+    return replace(words, **given)
 
 
 def feeds(project: Project) -> Feeds:

@@ -4,6 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from diagnosis.choice import offered
 from diagnosis.faults import faults_of_refused
 from diagnosis.files import SavedModel, check_machine, read_model
@@ -22,34 +24,34 @@ from twin.library import (
     users_files,
 )
 from twin.model import Effect
-from twin.record import Run
+from twin.record import Run, joined
 
 
 def read_inputs(
-    run_file: str, model_file: str | None, effect_files: Iterable[str], same: str
+    run_files: Sequence[str],
+    model_file: str | None,
+    effect_files: Iterable[str],
+    same: str,
+    held_out: Sequence[str] = (),
 ) -> tuple[Run, SavedModel | None]:
-    """A run and the model it is held against.
+    """A run, or several joined, and the model that it is held against.
 
     Args:
-        run_file: Measurements.
+        run_files: Measurements of one machine.
         model_file: Of an earlier diagnosis; None for none.
         effect_files: Python files with effects of the user's own.
         same: What follows where the model was learnt from this very run, for the remark.
+        held_out: Those of the files, or their names, of which nothing is to be learnt.
 
     Raises:
-        BadFile: Either file, or a model of another machine.
+        BadFile: Any of the files, or a model of another machine.
+        DesignError: Runs that cannot be diagnosed together, or nothing left to learn from.
         NotEnoughData: Too few touches to place the standard.
     """
     load_installed_effects()
     for path in effect_files:
         load_user_effects(Path(path))
-    run = _read(run_file)
-    if len(run) < MIN_TOUCHES:
-        raise NotEnoughData(
-            f"{run_file}: {len(run)} touch{'es' if len(run) > 1 else ''}, expected at least "
-            f"{MIN_TOUCHES}: fewer cannot even place the standard; add touches"
-            + "".join(f"; {remark}" for remark in run.remarks)
-        )
+    run = _joined(run_files, held_out)
     own = users_files()
     for kind in (k for k in kinds() if k.word in own):
         try_kind(kind, run.touches, own[kind.word])
@@ -61,6 +63,43 @@ def read_inputs(
         remark = f"{model_file} was learnt from this very run, {same}"
         run = replace(run, remarks=(*run.remarks, remark))
     return run, saved
+
+
+def _joined(run_files: Sequence[str], held_out: Sequence[str]) -> Run:
+    """All runs as one, by the names of their files; those held out are marked so."""
+    names = _names(run_files)
+    for name in held_out:
+        if name not in run_files and name not in names:
+            raise DesignError(f"--hold-out {name}: expected one of {', '.join(names)}")
+    runs = {}
+    for name, path in zip(names, run_files, strict=True):
+        run = _read(path)
+        if len(run) < MIN_TOUCHES:
+            raise NotEnoughData(
+                f"{path}: {len(run)} touch{'es' if len(run) > 1 else ''}, expected at least "
+                f"{MIN_TOUCHES}: fewer cannot even place the standard; add touches"
+                + "".join(f"; {remark}" for remark in run.remarks)
+            )
+        is_held_out = name in held_out or path in held_out
+        runs[name] = replace(run, split=np.full(len(run), "test")) if is_held_out else run
+    if all((run.split == "test").all() for run in runs.values()):
+        raise DesignError(
+            f"--hold-out {' '.join(held_out)}: no run is left, expected at least one to learn from"
+        )
+    return joined(runs)
+
+
+def _names(run_files: Sequence[str]) -> list[str]:
+    """Names of files without their endings; with their folders where those alone tell them apart.
+
+    Raises:
+        DesignError: A file that is given twice.
+    """
+    for path in run_files:
+        if list(run_files).count(path) > 1:
+            raise DesignError(f"{path}: given twice, expected every run once")
+    names = [Path(path).stem for path in run_files]
+    return names if len(set(names)) == len(names) else list(run_files)
 
 
 def with_pitches(run: Run, stated: Iterable[str]) -> Run:
@@ -99,8 +138,8 @@ def _read(run_file: str) -> Run:
 
 
 def is_learnt_from(saved: SavedModel, run: Run) -> bool:
-    """Whether the estimates of a model rest upon this very run."""
-    return run.fingerprint in saved.source.learnt_from
+    """Whether the estimates of a model rest upon this very run, or upon one of several."""
+    return not set(run.fingerprints).isdisjoint(saved.source.learnt_from)
 
 
 def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> list[Effect]:

@@ -156,11 +156,14 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
     )
     solid = solid_hull(least, wanted.setup, wanted.workshop)
     tool = probe(project).at_length(wanted.length)
-    path = np.tile(home_readings(chain), (2 * len(poses) + 1, 1))
-    path[1::2] = poses
+    retract = chain.link("Z").range[1] - options.retract
+    to_rise = top_height(chain, poses, solid, tool) + options.clearance
+    turns = np.flatnonzero(to_rise <= retract)  # the way to the others is of no use
+    path = np.tile(home_readings(chain), (2 * len(turns) + 1, 1))
+    path[1::2] = poses[turns]
     turning = swing_height(chain, path, solid, tool)[::2] + 0.5 * options.clearance
-    standing = top_height(chain, poses, solid, tool) + options.clearance
-    return np.maximum(turning, standing), chain.link("Z").range[1] - options.retract
+    to_rise[turns] = np.maximum(to_rise[turns], turning)
+    return to_rise, retract
 
 
 def _fits(project: Project, wish: Wish) -> bool:

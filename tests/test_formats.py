@@ -27,6 +27,7 @@ from twin.files.sensor_file import read_sensors
 from twin.files.toml import Table
 from twin.foreign.mapping_file import MappingTable
 from twin.machine.ranges import DEFAULT_RANGES
+from twin.record.several_runs import joined
 from twin.units import UM, URAD
 
 ROOT = Path(__file__).parents[1]
@@ -195,6 +196,7 @@ RESULTS = {
         "diagnosis/files/diagnosis_file.py",
         "diagnosis/files/geometry_table.py",
         "diagnosis/files/fault_table.py",
+        "diagnosis/files/trend_table.py",
     ],
     "comparison.json": [
         "diagnosis/files/diagnosis_file.py",
@@ -249,3 +251,8 @@ def test_a_diagnosis_has_described_keys_alone(warm_up):
 
     result = diagnose(warm_up, rng=np.random.default_rng(0))
     assert undescribed(diagnosis_table(result), "diagnosis.json") == []
+    half = warm_up.touches.pose % 2 == 0
+    runs = joined({"one": warm_up[half], "other": warm_up[~half]})
+    table = diagnosis_table(diagnose(runs, candidates=[]))
+    assert table["trend"]["quantities"]
+    assert undescribed(table, "diagnosis.json") == []

@@ -71,6 +71,7 @@ class ProjectTable(Table):
     format: str
     machine: str
     seed: int = Field(ge=0)
+    control: str = "itnc530"
     probe: ProbeTable
     workshop: WorkshopTable = WorkshopTable()
     workspace: dict[str, object] = Field(default_factory=dict)
@@ -92,6 +93,7 @@ class Project:
         path: The project file.
         machine_path: The machine file.
         seed: Of all random numbers.
+        control: For which programs are written: a name, or a dialect file of the user's own.
         probe_radius: mm.
         probe_length: Gauge point to ball centre, mm.
         probe: The same, and what stands above the ball, as `stack_mm`.
@@ -117,6 +119,7 @@ class Project:
     machine_path: Path
     chain: Chain
     seed: int
+    control: str
     probe_radius: float
     probe_length: float
     probe: ProbeTable
@@ -182,6 +185,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         machine_path=machine_path,
         chain=chain,
         seed=table.seed,
+        control=table.control,
         probe_radius=probe.radius_mm,
         probe_length=probe.length_mm,
         probe=probe,

@@ -11,6 +11,7 @@ from diagnosis.answer.detectable import Detectable
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
 from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.answer.trend import RunErrors, Trend
 from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
@@ -23,7 +24,9 @@ __all__ = [
     "GroupResidual",
     "Plan",
     "Proof",
+    "RunErrors",
     "Step",
+    "Trend",
     "Verdict",
     "compare",
     "diagnose",

@@ -5,15 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.answer.verdict import Step
-from diagnosis.evidence import ResidualSpace, ScaledEffect
+from diagnosis.evidence import SAME, ResidualSpace, ScaledEffect
 from diagnosis.fit import Reported, Role
 from diagnosis.remarks import NotSignificant
 from twin.errors import DesignError
 from twin.frames import Array
-
-SAME = 1e-4
-"""Share of the square of a signature that others must leave of it: with less its size is a hundred
-times as uncertain as it would be without them, and says nothing."""
 
 SIGNIFICANT = 2.0
 """Standard uncertainties from which a size is significant (GUM, k = 2)."""

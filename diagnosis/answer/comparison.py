@@ -191,7 +191,7 @@ def compare(
         fit = fit_run(run, model)
         u = run.u
     else:
-        fit = predicted_by(run, model, estimates)
+        fit = _predicted(run, model, estimates)
         u = np.sqrt(run.u**2 + _prediction_variance(fit, estimates))
     nothing = EffectSet(ResidualSpace.of(fit), np.zeros((int(fit.used.sum()) + len(fit.prior), 0)))
     found = tuple(find_structure(nothing, progress))
@@ -208,7 +208,7 @@ def compare(
     )
 
 
-def predicted_by(run: Run, model: Model, estimates: Prior) -> Fit:
+def _predicted(run: Run, model: Model, estimates: Prior) -> Fit:
     """Set-ups fitted to a run, the machine as estimated before.
 
     No touch is called a gross error unless it is one beside the uncertainty of the prediction.

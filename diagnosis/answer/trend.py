@@ -4,19 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.answer.comparison import predicted_by
-from diagnosis.fit import Fit, Prior, fit_run
-from diagnosis.geometry import (
-    GeometryRow,
-    changed_since,
-    changing,
-    standing,
-    state_of_standing,
-)
-from diagnosis.regression import BoolArray
+from diagnosis.fit import Fit, fit_run
+from diagnosis.geometry import GeometryRow, changed_since, changing
 from twin.frames import Array
-from twin.model import Model
-from twin.record import Run
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,18 +15,24 @@ class RunErrors:
 
     Attributes:
         name: Of the run.
-        touches: Rows that were fitted.
-        rms: Root mean square residual of those rows.
-        test_rms: Plain error of its poses, each predicted by all others.
+        touches: Its rows, gross errors left out.
+        rms: Root mean square residual of those that were fitted; None if the run was held out.
+        test_rms: Plain error of its poses, each predicted by all others; None likewise.
         left_out: Plain error of the whole run, its set-ups fitted, the machine predicted by the
-            other runs: as in the run before, of the first run as in the one after.
+            other runs: as in the run before, of the first run as in the one after. None where no
+            other run was fitted.
     """
 
     name: str
     touches: int
-    rms: float
-    test_rms: float
-    left_out: float
+    rms: float | None
+    test_rms: float | None
+    left_out: float | None
+
+    @property
+    def is_held_out(self) -> bool:
+        """Whether the diagnosis was made without it."""
+        return self.rms is None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,57 +41,56 @@ class Trend:
 
     Attributes:
         runs: In their order.
-        changed: Whether the geometry changed from the run before, for every run but the first.
+        changed: Runs, by number, whose geometry differs from that of the run before; 0 stands for
+            the first beside the model that the diagnosis began with.
         rows: The geometry with its course, every run by itself.
+        settled: The same with runs between which nothing changed as one: what did change is known
+            better by it.
     """
 
     runs: tuple[RunErrors, ...]
-    changed: tuple[bool, ...]
+    changed: tuple[int, ...]
     rows: tuple[GeometryRow, ...]
+    settled: tuple[GeometryRow, ...]
+
+    def known_best(self, run: int) -> tuple[GeometryRow, ...]:
+        """The rows, in the same order, by which what changed into a run is known best."""
+        return self.settled if run in self.changed else self.rows
 
 
 def run_errors(fit: Fit) -> tuple[RunErrors, ...]:
     """Figures of every run of a fit."""
-    out = []
     run_of = fit.run.touches.run
+    held_out, out = fit.held_out_errors, []
     for i, name in enumerate(fit.run.touches.runs):
         rows, own = fit.used & (run_of == i), run_of[fit.used] == i
+        is_fitted = bool(rows.any())
+        counted = rows if is_fitted else fit.test_rows & (run_of == i)
+        others = _without(fit, i) if is_fitted else fit
         out.append(
             RunErrors(
                 name=name,
-                touches=int(rows.sum()),
-                rms=_rms(fit.residual[rows]),
-                test_rms=_rms(fit.held_out_errors[own]),
-                left_out=_left_out(fit, rows, i),
+                touches=int(counted.sum()),
+                rms=_rms(fit.residual[rows]) if is_fitted else None,
+                test_rms=_rms(held_out[own]) if is_fitted else None,
+                left_out=None if others is None else _rms(others.residual[counted]),
             )
         )
     return tuple(out)
 
 
-def _left_out(fit: Fit, rows: BoolArray, run: int) -> float:
-    """Error of a run that the fit has not seen."""
-    since = [i for i in changed_since(fit.model) if i != max(run, 1)]
-    others = np.where(rows | ~fit.used, "test", "")
-    model = changing(fit.model, fit.run.touches, since)
-    learnt = fit_run(replace(fit.run, split=others), model, gross=fit.gross, memory=fit.memory)
-    return predicted(learnt, fit.run[rows], run)
-
-
-def predicted(fit: Fit, run: Run, index: int) -> float:
-    """Plain error of a run that a fit has not seen: its set-ups fitted, the machine predicted.
-
-    Args:
-        fit: To other runs.
-        run: The measurements.
-        index: Run of the fit in whose state the machine is taken, or the number of the run itself.
-    """
-    count = len(fit.model.parameters)
-    L = state_of_standing(fit.model, index)
-    machine = Model(fit.model.chain, standing(fit.model))
-    spread = L @ fit.spread[:count]
-    estimates = Prior.of_estimates(L @ fit.theta[:count], spread @ spread.T)
-    return predicted_by(run, machine, estimates).rms
+def _without(fit: Fit, run: int) -> Fit | None:
+    """The fit to the other runs alone; None where there is no other."""
+    touches = fit.run.touches
+    others = [i for i in np.unique(touches.run[fit.used]) if i != run]
+    if not others:
+        return None
+    # what changed since a run that nobody has seen is nobody's guess
+    since = [i for i in changed_since(fit.model) if i in others[1:]]
+    split = np.where(fit.used & (touches.run != run), "", "test")
+    model = changing(fit.model, touches, since)
+    return fit_run(replace(fit.run, split=split), model, gross=fit.gross, memory=fit.memory)
 
 
 def _rms(errors: Array) -> float:
-    return float(np.sqrt(np.mean(errors**2))) if len(errors) else float("nan")
+    return float(np.sqrt(np.mean(errors**2)))

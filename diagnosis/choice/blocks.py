@@ -17,9 +17,10 @@ LENGTHS = 3.0
 def blocks(fit: Fit, memory: Memory | None) -> tuple[IntArray, ...]:
     """Rows of a run that are left out together.
 
-    Poses of a set-up, or whatever the run calls a pose (a cycle, a day), several together where
-    there are many; stretches of time where they are fewer than `MIN_POSES` or shorter than the
-    residual remembers.
+    Runs, where there are enough of them: the next one is what shall be predicted. Else poses of a
+    set-up, or whatever the run calls a pose (a cycle, a day), several together where there are
+    many; stretches of time where they are fewer than `MIN_POSES` or shorter than the residual
+    remembers.
 
     Args:
         fit: Any fit of the run.
@@ -28,7 +29,8 @@ def blocks(fit: Fit, memory: Memory | None) -> tuple[IntArray, ...]:
     t = fit.run.touches
     rows = np.flatnonzero(fit.used)
     order = np.argsort(t.time[rows], kind="stable")
-    key = np.column_stack([t.setup, t.pose])[rows]
+    by_run = len(np.unique(t.run[rows])) >= MIN_POSES
+    key = (t.run[:, None] if by_run else np.column_stack([t.setup, t.pose]))[rows]
     label = np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
     count = int(label.max()) + 1
     middle = [float(np.median(t.time[rows][label == k])) for k in range(count)]

@@ -12,7 +12,6 @@ from itertools import combinations
 import numpy as np
 
 from diagnosis.evidence import (
-    SCALES,
     EffectSet,
     ResidualSpace,
     ScaledEffect,
@@ -31,6 +30,10 @@ from twin.thermal import ThermalLag, drives, follower, is_speed
 
 ALIKE = 0.999
 """Correlation from which two component errors act alike at the touches of a run."""
+
+USUAL = 16.0
+"""Factor on the usual size of every effect of a body: two that share what they explain, one fast
+and one slow, are each larger than the sum."""
 
 ROUNDS = 3
 """Turns in which the time constants of all bodies are refined beside one another."""
@@ -66,7 +69,7 @@ def bodies(
     for symbol in carriers(touches):
         base = EffectSet(complement, projected(complement, chosen))
         effects = _best(base, _family(symbol, touches))
-        chosen += [ScaledEffect(e, SCALES[-1]) for e in effects]
+        chosen += [ScaledEffect(e, USUAL) for e in effects]
     return tuple(refined_set(complement, chosen, ROUNDS)) if chosen else ()
 
 
@@ -104,7 +107,7 @@ def _family(symbol: Symbol, touches: Touches) -> _Family:
 def _best(base: EffectSet, family: _Family) -> list[Effect]:
     """Effects of the body with most evidence; none where none pays for its freedom."""
     complement = base.complement
-    C = complement.project(complement.columns(family.effects)) * SCALES[-1]
+    C = complement.project(complement.columns(family.effects)) * USUAL
     E = base.whiten(C)
     S, g = C.T @ C - E.T @ E, C.T @ complement.residual - E.T @ base.along
     best, top = np.zeros(0, dtype=np.int64), base.evidence + WORTH

@@ -19,7 +19,7 @@ from diagnosis.evidence.effect_signatures import (
     whole_grids,
 )
 from diagnosis.evidence.evidence import (
-    SCALES,
+    SAME,
     EffectSet,
     Scores,
     addition,
@@ -32,7 +32,7 @@ from diagnosis.evidence.evidence import (
 from diagnosis.evidence.periods import period_of, scanned_grids, strongest
 
 __all__ = [
-    "SCALES",
+    "SAME",
     "EffectSet",
     "Grid",
     "Progress",

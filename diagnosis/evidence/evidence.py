@@ -15,8 +15,15 @@ VISIBLE = 0.25
 """Squared signature per unit of prior, over the noise, below which a direction of an effect's
 parameters could not be seen even at its expected size; it is not counted as a degree of freedom."""
 
-SCALES = (1.0, 4.0, 16.0)
-"""How many times larger than usual an effect may be; the likeliest factor is taken."""
+SCALES = (1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0)
+"""How many times larger than usual an effect may be; the likeliest factor is taken.
+
+Sizes count in units of the noise that the starting model leaves, which an effect of thirty times
+the true noise inflates as much: beside the true noise it must still be free."""
+
+SAME = 1e-4
+"""Share of the square of a signature that model and other effects must leave of it: with less, its
+size is a hundred times as uncertain as it would be without them, and says nothing."""
 
 SMALLEST = 1e-300
 """Probabilities are not told smaller than this."""
@@ -184,7 +191,8 @@ class Scores:
     Attributes:
         free_drop: Fall of the squared residual over visible directions, prior aside, (V,).
         freedom: Number of those directions, (V,).
-        evidence: Log evidence of the set with the variant, (V,).
+        evidence: Log evidence of the set with the variant, (V,); none where `SAME` share or less
+            of its signature is its own.
         scale: Factor on its usual size that gives most evidence, (V,).
         p: Probability of such a fall by chance, one variant, no correction, (V,).
     """
@@ -239,6 +247,10 @@ def _scores(effects: EffectSet, pool: Signatures, E: Array, g: Array, share: flo
         evidence[which], scale[which] = _scaled_evidence(effects, values, along)
         # beside what is in the set already: a large effect must not hide all smaller ones
         seen = values * effects.dof > VISIBLE * effects.objective
+        whole = share * (pool.size[cols] ** 2).sum(axis=1)
+        is_same = values.sum(axis=1) < SAME * whole
+        seen[is_same] = False
+        evidence[which[is_same]] = -np.inf
         free[which] = np.where(seen, along / np.where(seen, values, 1.0), 0.0).sum(axis=1)
         freedom[which] = seen.sum(axis=1)
     rest = np.maximum(effects.objective - free, 1e-9)

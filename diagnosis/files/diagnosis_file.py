@@ -12,6 +12,7 @@ from diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResidual, P
 from diagnosis.choice import Choice
 from diagnosis.files.fault_table import fault_table
 from diagnosis.files.geometry_table import geometry_table
+from diagnosis.files.trend_table import trend_table
 from diagnosis.fit import Fit, file_unit
 from diagnosis.residual import Condition, Region, Side
 from twin.files import reading_columns, write_whole
@@ -30,6 +31,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         remarks: Its remarks as sentences.
     """
     choice = {} if result.choice is None else {"choice": choice_table(result.choice)}
+    trend = {} if result.trend is None else {"trend": trend_table(result.trend)}
     return {
         "format": FORMAT,
         "touches": len(result.run),
@@ -54,6 +56,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         "description_faults": fault_table(result.faults),
         "remarks": list(remarks),
         **choice,
+        **trend,
     }
 
 

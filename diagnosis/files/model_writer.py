@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys
 from diagnosis.fit import Fit, Learnt, Reported, inner_unit
+from diagnosis.geometry import standing, state_of_standing
 from diagnosis.regression import Memory
 from twin.files import write_whole
 from twin.frames import Array
@@ -26,6 +27,8 @@ def write_model(
     told: Mapping[str, Sequence[Reported]] | None = None,
 ) -> None:
     """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
+
+    Of several runs the machine is written as it is in the last one.
 
     Args:
         fit: What was learnt.
@@ -50,10 +53,11 @@ def model_text(
     import tomli_w
 
     learnt = Learnt.of(fit)
-    theta = learnt.estimates.mean
+    L = state_of_standing(fit.model, len(fit.run.touches.runs) - 1)
+    theta = L @ learnt.estimates.mean
     factors: list[float] = []
     entries = []
-    for effect in fit.model.effects:
+    for effect in standing(fit.model):
         keys = parameter_keys(effect)
         start = len(factors)
         entry: dict[str, Any] = {"name": effect.name}
@@ -68,14 +72,16 @@ def model_text(
         factors += [factor for _, factor in keys]
         entries.append(entry)
     scale = np.array(factors)
-    shown = learnt.covariance / np.outer(scale, scale)
+    shown = L @ learnt.covariance @ L.T / np.outer(scale, scale)
     tables = {
         "machine": _machine(fit.model.chain),
         "source": _source(fit, run_name, before, made_with, held_out),
         "effect": entries,
     }
     # top-level keys stand before tables in TOML, so the covariance goes before what it is about
-    head = f'format = "{FORMAT}"\n' + _triangle(shown) + _root(learnt.from_inner / scale[:, None])
+    head = (
+        f'format = "{FORMAT}"\n' + _triangle(shown) + _root(L @ learnt.from_inner / scale[:, None])
+    )
     return head + tomli_w.dumps(tables)
 
 
@@ -90,7 +96,7 @@ def _source(
         "noise_um": float(np.median(fit.u)) / UM,
         "gross_errors": [int(line) for line in fit.run.line[fit.gross.rows]],
         "revision": before.source.revision + 1 if before else 1,
-        "learnt_from": [*earlier, fit.run.fingerprint],
+        "learnt_from": [*earlier, *fit.run.fingerprints],
         "made_with": made_with,
         "held_out_um": float(fit.test_rms if held_out is None else held_out) / UM,
         "held_out_gross_errors": [int(line) for line in fit.run.line[fit.gross_test_rows]],

@@ -24,7 +24,7 @@ from diagnosis.regression import (
     whitener,
 )
 from twin.display import Shown
-from twin.effects import setup_errors
+from twin.effects import SetupError, setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Effect, Model, Parameter, columns
@@ -76,7 +76,7 @@ class Fit(Shown):
 
     run: Run
     model: Model
-    setups: tuple[Effect, ...]
+    setups: tuple[SetupError, ...]
     tangents: tuple[Tangent, ...]
     prior: Prior
     X: Array
@@ -125,11 +125,26 @@ class Fit(Shown):
 
     @cached_property
     def residual(self) -> Array:
-        """Measured minus predicted, all rows, (N,), mm."""
+        """Measured minus predicted, all rows, (N,), mm.
+
+        In a set-up of which no touch was used nobody knows where the standard stands: its rows are
+        freed of that, so that they tell how well the machine is predicted.
+        """
         z = (self.y - self.X @ self.solution.phi) * self.weight
         if self.whitener is not None:
             z[self.used] = self.whitener.coloured(z[self.used])
+        for rows, part in self.unseen_setups:
+            S = self.X[rows, part]
+            z[rows] -= S @ np.linalg.lstsq(S, z[rows], rcond=None)[0]
         return z * self.u
+
+    @cached_property
+    def unseen_setups(self) -> tuple[tuple[NDArray[np.int64], slice], ...]:
+        """Rows and parameters of every set-up of which no touch was used."""
+        setup = self.run.touches.setup
+        numbers = {s.name: i for i, s in enumerate(self.run.touches.setups)}
+        rows = [(np.flatnonzero(setup == numbers[s.setup]), s.name) for s in self.setups]
+        return tuple((r, self.of_effect(name)) for r, name in rows if not self.used[r].any())
 
     @property
     def weight(self) -> float:
@@ -192,11 +207,33 @@ class Fit(Shown):
     def test_rms(self) -> float:
         """Plain root mean square error of held-out touches, mm: what a user meets on new ones.
 
-        Held out are the rows that the file marks `test`, else one pose after the other.
+        Where the file marks rows `test` that is their error. Else the poses left out one after the
+        other say how much larger than the noise the errors are that their uncertainties do not
+        account for, and the uncertainties of the whole fit what comes on top at these touches in
+        another run, where a standard is placed anew: ``s^2 mean u_i^2 (1 + l_i - p_i)`` with s the
+        weighted error of left-out poses, l_i the variance of the machine's prediction that no
+        set-up takes up and p_i the share of a touch that its set-up takes. A pose far from all
+        others, once left out, is extrapolated to, and a plain mean would tell of little else.
         """
         if self.test_rows.any():
             return float(np.sqrt(np.mean(self.residual[self.test_rows] ** 2)))
-        return float(np.sqrt(np.mean(self.held_out_errors**2)))
+        u, machine = self.u[self.used], ~self._is_setup
+        X = self.X[self.used]
+        if self.whitener is not None:
+            X = np.stack([self.whitener.coloured(column) for column in X.T], axis=1)
+        placed = solve(X[:, ~machine], np.zeros(len(X))).Q
+        spread = X[:, machine] @ self.solution.root[machine]
+        spread -= placed @ (placed.T @ spread)
+        variance = 1.0 - (placed**2).sum(axis=1) + self.weight**2 * (spread**2).sum(axis=1)
+        return self.weight * self.held_out.rms * float(np.sqrt(np.mean(u**2 * variance)))
+
+    @cached_property
+    def _is_setup(self) -> BoolArray:
+        """Which parameters place the standard, (P,)."""
+        first = len(self.model.parameters)
+        count = sum(len(e.parameters) for e in self.setups)
+        place = np.arange(len(self.prior))
+        return (place >= first) & (place < first + count)
 
     @cached_property
     def held_out_errors(self) -> Array:
@@ -221,7 +258,10 @@ class Fit(Shown):
         the rows that the file marks `test`, each by itself, else one pose after the other.
         """
         if self.test_rows.any():
-            spread = (self.solution.spread(self.X[self.test_rows]) ** 2).sum(axis=1)
+            X = self.X.copy()
+            for rows, part in self.unseen_setups:
+                X[rows, part] = 0.0
+            spread = (self.solution.spread(X[self.test_rows]) ** 2).sum(axis=1)
             error = self.residual[self.test_rows] / np.sqrt(1.0 + spread)
             return float(np.sqrt(np.mean(error**2)))
         return self.weight * self.held_out.rms * float(np.sqrt(np.mean(self.u[self.used] ** 2)))
@@ -244,6 +284,7 @@ def fit_run(
     free_inner: Array | None = None,
     gross: GrossErrors | None = None,
     memory: Memory | None = None,
+    beside: Fit | None = None,
 ) -> Fit:
     """Fit a model and the set-ups of the standard to the rows of a run that are not held out.
 
@@ -256,6 +297,8 @@ def fit_run(
             added to the fit; None leaves the inner parameters where they are.
         gross: Gross errors found before, to keep; None looks for them, as if noise were white.
         memory: Of the noise; None for white noise.
+        beside: A fit with more effects, whose size of the noise and widening of the prior are
+            taken; None finds those of this model.
 
     Raises:
         NotEnoughData: So few touches that nothing can be said.
@@ -278,7 +321,9 @@ def fit_run(
         A[kept], y[kept] = filter_.filtered(A[kept]), filter_.filtered(y[kept])
     free = Prior.of_effects((*setups, *moved))
     factor, widened, weight = 1.0, 1.0, row_weight(memory)
-    for remaining in reversed(range(PASSES)):
+    if beside is not None:
+        factor, widened = beside.noise.factor, beside.widened
+    for remaining in reversed(range(PASSES if beside is None else 1)):
         belief = Prior(machine.mean, machine.root * _widening(model, widened)).joined(free)
         whole = factor * weight
         X, rest = A @ belief.root / whole, (y - A @ belief.mean) / whole

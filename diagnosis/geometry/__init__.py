@@ -14,20 +14,24 @@ from diagnosis.geometry.changes import (
 )
 from diagnosis.geometry.functionals import Quantity
 from diagnosis.geometry.learnt import (
+    CHANGED,
     Correction,
     Estimate,
     GeometryRow,
     LearntGeometry,
+    changed_runs,
     geometry_rows,
     learnt_geometry,
 )
 
 __all__ = [
+    "CHANGED",
     "Correction",
     "Estimate",
     "GeometryRow",
     "LearntGeometry",
     "Quantity",
+    "changed_runs",
     "changed_since",
     "changing",
     "geometry_rows",

@@ -197,13 +197,47 @@ def learnt_geometry(
 
 def geometry_rows(fit: Fit, before: Prior | None = None) -> tuple[GeometryRow, ...]:
     """Every quantity of the geometry, axis by axis; arguments as of `learnt_geometry`."""
-    machine = len(fit.model.parameters)
-    theta = fit.theta[:machine]
+    theta = _machine(fit)
     has_course = bool(changed_since(fit.model))
     states = [state(fit.model, r) for r in range(len(fit.run.touches.runs) if has_course else 1)]
     # peaks are chosen between all states, so that choosing them favours none
-    known = [L @ theta for L in states] + ([] if before is None else [_padded(before, machine)])
+    known = [L @ theta for L in states] + ([] if before is None else [_padded(before, len(theta))])
     return tuple(_row(fit, one, states, before) for one in functionals(fit, np.mean(known, axis=0)))
+
+
+def changed_runs(fit: Fit) -> tuple[int, ...]:
+    """Runs in which a quantity differs by more than chance from a run since the last change.
+
+    Args:
+        fit: In which every run has its own geometry.
+    """
+    fitted = [int(i) for i in np.unique(fit.run.touches.run[fit.used])]
+    states = {i: state(fit.model, i) for i in fitted}
+    prior = fit.prior.root[: len(fit.model.parameters), : len(fit.model.parameters)]
+    quantities = list(functionals(fit, np.mean([L @ _machine(fit) for L in states.values()], 0)))
+    out: list[int] = []
+    alike = fitted[:1]
+    for i in fitted[1:]:
+        if any(
+            _differs(fit, one.weights, states[j], states[i], prior)
+            for one in quantities
+            for j in alike
+        ):
+            out.append(i)
+            alike = []
+        alike.append(i)
+    return tuple(out)
+
+
+def _differs(fit: Fit, w: Array, one: Array, other: Array, prior: Array) -> bool:
+    """Whether a quantity is determined in two states and differs between them."""
+    most = float(np.linalg.norm(w @ prior)) / DETERMINED
+    is_known = max(_of(fit, w @ one).u, _of(fit, w @ other).u) < most
+    return is_known and _is_clear(_of(fit, w @ other - w @ one))
+
+
+def _machine(fit: Fit) -> Array:
+    return fit.theta[: len(fit.model.parameters)]
 
 
 def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | None) -> GeometryRow:
@@ -213,7 +247,8 @@ def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | Non
     sd = float(np.linalg.norm(one.weights @ fit.prior.root[:machine, :machine]))
     values = [_of(fit, w) for w in every]
     is_known = [e.u * DETERMINED < sd for e in values]
-    course = tuple(e if k else None for e, k in zip(values, is_known, strict=True))
+    fitted = set(fit.run.touches.run[fit.used])
+    course = tuple(e if is_known[i] and i in fitted else None for i, e in enumerate(values))
     steps = [
         _of(fit, every[i + 1] - every[i]) if is_known[i] and is_known[i + 1] else None
         for i in range(len(every) - 1)

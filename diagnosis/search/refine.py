@@ -27,8 +27,12 @@ from twin.model import Effect, Tunable
 POINTS = 9
 """Points of every scan, over one distance of the grid to either side."""
 
-LEVELS = 4
-"""Scans, each four times finer than the one before."""
+LEVELS = 10
+"""Most scans, each four times finer than the one before: an effect of a thousand times the noise
+shows an inner parameter to a part in some ten thousand of the distance of its grid."""
+
+FEWEST = 3
+"""Scans that are made in any case: between the points of the first there may be nothing better."""
 
 SWEEPS = 6
 """Most turns through the inner parameters of an effect that has several: the best value of one
@@ -64,13 +68,15 @@ def _sweep(
         assert isinstance(best, Tunable)
         low, high = float(np.min(inner.grid)), float(np.max(inner.grid))
         for level in range(levels):
-            value = list(best.tuning.values())[index]
+            before, value = top, list(best.tuning.values())[index]
             half = spacing(inner, value) / 4.0**level
             for point in np.clip(np.linspace(value - half, value + half, POINTS), low, high):
                 trial = _moved(best, index, float(point))
                 found, size = _addition(base, trial)
                 if found > top:
                     best, top, scale = trial, found, size
+            if level >= FEWEST and top - before < SETTLED:
+                break
     return best, top, scale
 
 

@@ -5,11 +5,13 @@ a further effect, or like structure. So what was found is refined, its points of
 there, and the search is made again from that set: whatever only mopped up the difference falls.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from diagnosis.evidence import EffectSet, ScaledEffect, projected
+from diagnosis.evidence import EffectSet, Grid, ScaledEffect, projected, signatures
+from diagnosis.fit import continuous_inner
 from diagnosis.search.refine import refined_set, with_moved_points
-from diagnosis.search.selection import WORTH, EffectSubset, Search
+from diagnosis.search.selection import WORTH, EffectSubset, Member, Search
 
 SETTLINGS = 3
 """Most searches with points of the grid moved to refined inner parameters."""
@@ -32,10 +34,44 @@ def regridded(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubse
         start = [ScaledEffect(m.effect, m.scale) for m in chosen.members]
         members = refined_set(search.complement, start)
         effects = EffectSet(search.complement, projected(search.complement, members))
-        if effects.evidence < chosen.effects.evidence + WORTH:
+        kept, members = _needed(search, chosen.members, members)
+        is_better = effects.evidence >= chosen.effects.evidence + WORTH
+        if len(kept) == len(chosen.members) and not is_better:
             break
-        pairs = list(zip(chosen.members, members, strict=True))
-        pool = with_moved_points(search.pool, {m.variant: s.effect for m, s in pairs})
+        pool = with_moved_points(
+            search.pool, {m.variant: s.effect for m, s in zip(kept, members, strict=True)}
+        )
         search = Search(pool, search.fixed, search.progress, search.budget)
-        chosen = search.run([replace(m, effect=s.effect, scale=s.scale) for m, s in pairs])
+        moved = zip(kept, members, strict=True)
+        chosen = search.run([replace(m, effect=s.effect, scale=s.scale) for m, s in moved])
     return search, chosen
+
+
+def _needed(
+    search: Search, chosen: Sequence[Member], members: Sequence[ScaledEffect]
+) -> tuple[list[Member], list[ScaledEffect]]:
+    """A set without what only mops up: a member that falls where the others are refined without it.
+
+    Args:
+        search: As it was made.
+        chosen: Members of its result.
+        members: The same effects, refined beside one another.
+    """
+    complement = search.complement
+    for i in reversed(range(len(chosen))):
+        others = [s for k, s in enumerate(members) if k != i]
+        if not any(continuous_inner(s.effect, complement.touches) for s in others):
+            continue
+        others = refined_set(complement, others)
+        ordered = [*chosen[:i], *chosen[i + 1 :], chosen[i]]
+        grids = [
+            Grid(s.effect, (s.effect,), int(search.pool.tries[m.candidate]))
+            for m, s in zip(ordered, [*others, members[i]], strict=True)
+        ]
+        pool = signatures(complement, grids, search.pool.tried)
+        each = [Member(k, k, s.effect, s.scale) for k, s in enumerate([*others, members[i]])]
+        small = Search(pool, search.fixed, search.progress, search.budget)
+        base, whole = small.evaluate(each[:-1]), small.evaluate(each)
+        if not small.verified(base, whole, each[-1]).stands:
+            return [*chosen[:i], *chosen[i + 1 :]], others
+    return list(chosen), list(members)

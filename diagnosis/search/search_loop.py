@@ -7,7 +7,8 @@ no effect explains. So they are looked for in turn:
 1. the starting model is fitted, and gross errors are set aside;
 2. the library is searched for the set of effects that the touches in use ask for;
 3. the model is fitted again with that set, and gross errors are looked for anew; if they have
-   changed, or lie at an edge in time where a slip may explain them, it begins again;
+   changed, or lie at an edge in time where a slip may explain them, or if the set leaves far less
+   noise, it begins again with what the set left;
 4. once they stay, what the set leaves is tested for structure. Structure joins the set as a pattern
    without a name, and the effects must stand beside it: what only imitated it falls.
 """
@@ -43,6 +44,11 @@ from twin.record import Run
 
 ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
+
+QUIETER = 0.7
+"""Share of the noise, or of the widening of the prior, that found effects must leave for the search
+to be made again beside them: a large effect passes for noise, and for a machine worse than stated,
+and the model then imitates half of everything."""
 
 PERIODS = 4
 """Most periods of one component error of one axis."""
@@ -90,13 +96,14 @@ class DiagnosisTask:
         self,
         effects: Sequence[ScaledEffect] = (),
         gross: GrossErrors | None = None,
+        beside: Fit | None = None,
     ) -> Fit:
-        """The model with further effects, fitted."""
+        """The model with further effects, fitted; `gross` and `beside` as in `fit_run`."""
         model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
         prior = self.prior
         for sized in effects:
             prior = prior.joined(self.found_prior(sized))
-        return fit_run(self.run, model, prior, gross=gross, memory=self.memory)
+        return fit_run(self.run, model, prior, None, gross, self.memory, beside)
 
     def found_prior(self, sized: ScaledEffect) -> Prior:
         """Of the parameters of an effect that was added."""
@@ -226,15 +233,21 @@ def _until_gross_errors_stay(
         library = Library.of(ResidualSpace.of(base), candidates, progress)
         search, chosen = _searched(library, found, budget, progress)
         effects = refined_set(library.complement, _scaled(chosen))
-        again = task.fit((*added, *effects)).gross
-        further = unexplained_near_slip(touches, again, effects) & ~tried & (remaining > 1)
-        is_settled = np.array_equal(again.rows, base.gross.rows) and not further.any()
-        if is_settled or not remaining:
+        whole = task.fit((*added, *effects))
+        further = unexplained_near_slip(touches, whole.gross, effects) & ~tried & (remaining > 1)
+        is_same = np.array_equal(whole.gross.rows, base.gross.rows) and not further.any()
+        if (is_same and not _is_quieter(whole, base)) or not remaining:
             break
         tried |= further
-        base = task.fit(added, gross=without(again, further))
+        base = task.fit(added, without(whole.gross, further), whole)
         found = [s.effect.name for s in effects]
     return _with_structure(base, library, search, chosen, progress)
+
+
+def _is_quieter(whole: Fit, base: Fit) -> bool:
+    """Whether found effects leave clearly less noise, or a machine clearly less odd."""
+    noise, odd = whole.noise.factor, whole.widened
+    return noise < QUIETER * base.noise.factor or odd < QUIETER * base.widened
 
 
 def _with_structure(

@@ -33,6 +33,9 @@ CHANCE = 1e-3
 WORTH = 3.0
 """Least gain of log evidence by which an effect pays for its freedom: odds of twenty to one."""
 
+ALONE = 1.5
+"""Touches that a member must at least explain: what explains a single one explains an accident."""
+
 ALIKE = 0.95
 """Correlation of two fitted signatures from which one set need not be carried beside the other."""
 
@@ -120,6 +123,8 @@ class Verified:
         evidence: Gain of log evidence by this member.
         held_out: Held-out error with it over that without it.
         density: Gain of the held-out log predictive density by it.
+        touches: Effective number of touches that it explains, ``(sum d^2)^2 / sum d^4`` of what it
+            changes.
     """
 
     member: Member
@@ -127,6 +132,7 @@ class Verified:
     evidence: float
     held_out: float
     density: float
+    touches: float
 
     @property
     def stands(self) -> bool:
@@ -136,6 +142,7 @@ class Verified:
             and self.evidence > WORTH
             and self.held_out < 1.0
             and self.density > 0.0
+            and self.touches > ALONE
         )
 
 
@@ -293,12 +300,16 @@ class Search:
         scores = self.scores(others)
         ratio = whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300)
         density = whole.effects.held_out_log_density - others.effects.held_out_log_density
+        count = len(self.complement.u)
+        changed = (others.effects.residual - whole.effects.residual)[:count] ** 2
+        touches = float(changed.sum()) ** 2 / max(float(changed @ changed), 1e-300)
         return Verified(
             member=member,
             p_value=self.corrected(member.candidate, float(scores.p[member.variant])),
             evidence=float(whole.effects.evidence - others.effects.evidence),
             held_out=ratio,
             density=float(density),
+            touches=touches,
         )
 
     def corrected(self, candidate: int, p: float) -> float:

@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
     from twin.record import without_copies
 
     run, saved = read_inputs(
-        args.run_file, args.model, args.effects, "so the agreement is optimistic"
+        [args.run_file], args.model, args.effects, "so the agreement is optimistic"
     )
     model = saved.model if saved else ordinary_model(run.touches.chain)
     printed_by = asked_printer(args)

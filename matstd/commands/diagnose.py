@@ -23,52 +23,48 @@ WIDE = 40
 """Letters of a cell of words, so that the table of figures fits beside them."""
 
 
+LISTS = (
+    (
+        "--hold-out",
+        "RUN",
+        "learn nothing of these runs but where the standard stood, and tell how well the others "
+        "predict them",
+    ),
+    ("--add", "EFFECT", "add these effects to the model"),
+    ("--only", "KIND", "look for effects of these kinds alone, or of these names"),
+    ("--without", "KIND", "do not look for effects of these kinds, or of these names"),
+    (
+        "--pitch",
+        "AXIS=MM",
+        "pitch of the screw or scale of an axis: errors that repeat are looked for at it and at "
+        "its whole fractions, and it is preferred among periods that look alike",
+    ),
+)
+"""Options with one or more words, which may be given more than once."""
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
+    parser.add_argument(
+        "run_files",
+        metavar="RUN.csv",
+        nargs="+",
+        help="measurements; several runs of one machine (days, set-ups, standards) in their order",
+    )
     parser.add_argument(
         "--model",
         metavar="MODEL.toml",
         help="starting model; without it the ordinary geometric one",
     )
-    parser.add_argument(
-        "--add",
-        metavar="EFFECT",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="add these effects to the model",
-    )
+    for option, word, meaning in LISTS:
+        parser.add_argument(
+            option, metavar=word, action="extend", nargs="+", default=[], help=meaning
+        )
     parser.add_argument(
         "--auto", action="store_true", help="add whatever the diagnosis finds, step by step"
     )
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
-    )
-    parser.add_argument(
-        "--only",
-        metavar="KIND",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="look for effects of these kinds alone, or of these names",
-    )
-    parser.add_argument(
-        "--without",
-        metavar="KIND",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="do not look for effects of these kinds, or of these names",
-    )
-    parser.add_argument(
-        "--pitch",
-        metavar="AXIS=MM",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="pitch of the screw or scale of an axis: errors that repeat are looked for at it and "
-        "at its whole fractions, and it is preferred among periods that look alike",
     )
     parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
     add_pdf(parser)
@@ -85,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.progress import stages
 
     same = "so that its estimates are made anew: no touch counts twice"
-    run, saved = read_inputs(args.run_file, args.model, args.effects, same)
+    run, saved = read_inputs(args.run_files, args.model, args.effects, same, args.hold_out)
     run = with_pitches(run, args.pitch)
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
@@ -97,11 +93,15 @@ def run(args: argparse.Namespace) -> int:
             from report.pages import write_diagnosis_page
 
             show("report", 0, 1)
-            title = Path(args.run_file).name
+            title = _title(args)
             write_diagnosis_page(result, folder, title, np.random.default_rng(0))
             print_report(folder, printed_by)
     _tell(args, result)
     return 0
+
+
+def _title(args: argparse.Namespace) -> str:
+    return ", ".join(Path(path).name for path in args.run_files)
 
 
 def _diagnosed(
@@ -141,7 +141,7 @@ def _write(
     before = saved if saved and not is_learnt_from(saved, result.run) else None
     made_with = f"material-standard {versions()['material-standard']}"
     promised = result.choice.best.error if fit is result.fit and result.choice else None
-    name = Path(args.run_file).name
+    name = _title(args)
     told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
     write_model(folder / "model.toml", fit, name, before, made_with, promised, told)
     for i, plan in enumerate(result.plans, start=1):
@@ -154,7 +154,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
     from matstd.console import console, say
     from report.effects import plan_words, rival_words
-    from report.geometry import fault_sentences, ladder_sentence, noted_lines
+    from report.geometry import fault_sentences, ladder_sentence, noted_lines, trend_lines
     from report.words import remark_sentence, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
@@ -170,7 +170,10 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
             say(f"- {rivals}")
     for sentence in fault_sentences(result.faults):
         say(f"- {sentence}", style="bold")
-    for line in (ladder_sentence(result.geometry), *noted_lines(result.geometry)):
+    for line in trend_lines(result.trend):
+        say(f"- {line}", style="bold")
+    noted = () if result.trend else noted_lines(result.geometry)
+    for line in (ladder_sentence(result.geometry), *noted):
         say(f"- {line}")
     for remark in result.remarks:
         say(f"- {remark_sentence(remark)}")

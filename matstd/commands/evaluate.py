@@ -6,7 +6,7 @@ import argparse
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "logs", metavar="LOG.TXT", nargs="+", help="what FN 16 wrote, of one probe; in any order"
+        "logs", metavar="LOG.TXT", nargs="+", help="of our programs, of one probe; in any order"
     )
     parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="as calibrated")
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")

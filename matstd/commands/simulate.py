@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "programs", metavar="PROGRAM.H", nargs="+", help="in the order in which they are run"
+        "programs", metavar="PROGRAM", nargs="+", help="in the order in which they are run"
     )
     parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="what is probed")
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
@@ -58,7 +58,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="of noise and random errors (0)")
     parser.add_argument("--probe-length", type=float, help="mm; must be the program's")
     parser.add_argument("--probe-radius", type=float, help="mm; must be the program's")
-    parser.add_argument("--logs", metavar="FOLDER", help="also write what FN 16 prints")
+    parser.add_argument(
+        "--control",
+        metavar="NAME|FILE.toml",
+        default="itnc530",
+        help="whose words the programs have; needed for a dialect of your own (itnc530)",
+    )
+    parser.add_argument("--logs", metavar="FOLDER", help="also write the logs")
     parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
     parser.add_argument("--force", action="store_true", help="overwrite the output")
 
@@ -89,7 +95,7 @@ def run(args: argparse.Namespace) -> int:
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     record = read_sensors(args.sensors) if args.sensors else None
     machine = _machine(args, record, for_errors)
-    probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length)
+    probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
     with stages() as show:
         campaign = simulate(args.programs, standard, machine, for_noise, probe, show)
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
@@ -120,6 +126,7 @@ def _machine(
     import numpy as np
 
     from probe_paths.campaign import FIRST_MORNING, VirtualMachine, effects_over_record
+    from probe_paths.language import read_dialect
     from sensitivity.population import Population, drawn_errors
     from twin.files import read_errors, read_machine
     from twin.frames import fixed_xyz, pose
@@ -156,4 +163,5 @@ def _machine(
         length_error=probe.get("length", 0.0),
         noise=args.noise_um * UM,
         begin=FIRST_MORNING if record is None else record.begin,
+        dialect=read_dialect(args.control),
     )

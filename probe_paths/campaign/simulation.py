@@ -51,7 +51,7 @@ def simulate(
     """Run program files on the twin and evaluate the logs that they leave.
 
     Args:
-        programs: `.H` files with their masks beside them, in the order in which they are run.
+        programs: Files, masks of `.H` files beside them, in the order in which they are run.
         standard: The true one, which is also the calibrated one.
         machine: As it really is; the evaluation knows only its nominal chain.
         rng: For the noise of the trigger.
@@ -63,7 +63,7 @@ def simulate(
         NotReachable: A touch without contact; the program stopped there.
         DesignError: A program made for another standard.
     """
-    texts = [read_program(path, machine.chain, probe) for path in programs]
+    texts = [read_program(path, machine.chain, probe, machine.dialect) for path in programs]
     for done, text in enumerate(texts):
         progress("moves of the programs", done, len(texts))
         check_moves(text, standard, machine.chain)

@@ -21,18 +21,21 @@ from probe_paths.control.structure import (
     program_name,
     promise,
 )
-from probe_paths.language import read_blocks
+from probe_paths.language import Dialect, read_blocks
 from probe_paths.plan import Heading, Probe, ProgramFrame
 from twin.errors import BadFile
 from twin.machine import Chain
 
 
-def read_program(path: str | Path, chain: Chain, probe: Probe | None = None) -> ReadProgram:
+def read_program(
+    path: str | Path, chain: Chain, probe: Probe | None = None, dialect: Dialect | None = None
+) -> ReadProgram:
     """Read a program file and its masks, and execute it.
 
     Args:
-        path: The `.H` file; masks (`.A`) stand in the same folder.
+        path: The program; masks (`.A`) of an `.H` file stand in the same folder.
         probe: In the spindle; None takes the one that the program's head states.
+        dialect: Of the control, where it has words of its own.
 
     Raises:
         BadFile: Whatever the control, or a cautious operator, would not run.
@@ -45,14 +48,16 @@ def read_program(path: str | Path, chain: Chain, probe: Probe | None = None) -> 
         except FileNotFoundError:
             return None
 
-    return interpret(_content(path), path, mask, chain, probe)
+    return interpret(_content(path), path, mask, chain, probe, dialect)
 
 
-def stated_probe(path: str | Path, radius: float | None, length: float | None) -> Probe | None:
+def stated_probe(
+    path: str | Path, radius: float | None, length: float | None, dialect: Dialect | None = None
+) -> Probe | None:
     """The probe that a user states, mm; what is left open comes from the program's head."""
     if radius is None and length is None:
         return None
-    head, _ = heading(read_blocks(_content(Path(path)), path), Path(path))
+    head, _ = heading(read_blocks(_content(Path(path)), path, dialect), Path(path))
     return Probe(
         head.probe.radius if radius is None else radius,
         head.probe.length if length is None else length,
@@ -67,7 +72,12 @@ def _content(path: Path) -> bytes:
 
 
 def interpret(
-    data: bytes, path: Path, masks: MaskSource, chain: Chain, probe: Probe | None = None
+    data: bytes,
+    path: Path,
+    masks: MaskSource,
+    chain: Chain,
+    probe: Probe | None = None,
+    dialect: Dialect | None = None,
 ) -> ReadProgram:
     """Execute the text of a program.
 
@@ -76,18 +86,19 @@ def interpret(
         path: Its name: it must agree with the program's.
         masks: Where FN 16 finds its masks.
         probe: In the spindle; None takes the one that the program's head states.
+        dialect: Of the control, where it has words of its own.
 
     Raises:
         BadFile: Whatever the control, or a cautious operator, would not run.
     """
-    blocks = read_blocks(data, path)
+    blocks = read_blocks(data, path, dialect)
     name = program_name(blocks, path)
     places = labels(blocks, path)
     check_cycles(blocks, path)
     head, features = heading(blocks, path)
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
-    runner = Runner(blocks, places, frame, path, name, masks)
+    runner = Runner(blocks, places, frame, path, name, masks, head.log_lines)
     state = State(path, frame, np.full(len(chain.axes), np.nan), np.zeros(len(chain.axes)))
     steps = runner.run(0, state)
     runner.check_logged()

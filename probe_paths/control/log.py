@@ -1,4 +1,4 @@
-"""Reads the log that FN 16 of our programs writes, on a control or in the simulator.
+"""Reads the log that our programs write, on a control or in the simulator.
 
 A log is half an hour of a machine's time. Lines that cannot be read, cut-off ends and lines of
 somebody else cost the touch that they belong to and no other; every one is remarked. Strict is only
@@ -20,6 +20,7 @@ from probe_paths.plan import Heading, parse_heading
 from twin.errors import BadFile
 from twin.frames import Array
 from twin.record import IntArray
+from twin.units import DAY
 
 LARGEST = 1e6
 """A coordinate (mm, degrees) or a number of a touch beyond this was not logged by our programs."""
@@ -27,7 +28,8 @@ LARGEST = 1e6
 _PAIR = re.compile(r"([A-Z]+)\s*([-+]?\d+(?:\.\d+)?)(?=\s|\Z)")
 _CLOCK = re.compile(r"(?:END )?T *(\d{1,2}): *(\d{1,2}): *(\d{1,2})\Z")
 _WHOLE_CLOCK = len("T  0:  0:  0")
-_DATE = re.compile(r"DATE *(\d{4})- *(\d{1,2})- *(\d{1,2})\Z")
+_SECONDS = re.compile(r"(?:END )?T *(\d{1,5})\.\d*\Z")
+_DATE = re.compile(r"DATE *(\d{4})(?:- *(\d{1,2})- *(\d{1,2})|(\d\d)(\d\d)\.0*)\Z")
 _TOUCH = re.compile(r"P\s*[-+]?\d")
 _COMMA = re.compile(r"(?<=\d),(?=\d)")
 _VERSION = re.compile(r"MATSTD LOG \d+\Z")
@@ -207,7 +209,7 @@ class _PartReader:
         """Day of the head; None, and a remark, where it cannot be read."""
         match = _DATE.match(self._peek("DATE <y>-<m>-<d>"))
         try:
-            day = datetime(int(match[1]), int(match[2]), int(match[3])) if match else None
+            day = _day(match) if match else None
         except ValueError:
             day = None
         if day is None:
@@ -329,8 +331,16 @@ def _are_counters(values: Sequence[float]) -> bool:
     return all(0.0 < v < 1e6 and v == int(v) for v in values)
 
 
+def _day(match: re.Match[str]) -> datetime:
+    """Day of a head, as `2031-05-06` or as one number; raises ValueError for none."""
+    return datetime(int(match[1]), int(match[2] or match[4]), int(match[3] or match[5]))
+
+
 def _time_of_day(text: str) -> int | None:
-    """Seconds since midnight of a clock line; None for another line."""
+    """Seconds since midnight of a clock line, as `T h:m:s` or as seconds; None for another."""
+    seconds = _SECONDS.match(text)
+    if seconds is not None:
+        return int(seconds[1]) if int(seconds[1]) < DAY else None
     match = _CLOCK.match(text)
     if match is None:
         return None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from probe_paths.control.state import State
-from probe_paths.language import SYSTEM_INDEX, TOOL_LENGTH, Block, Kind
+from probe_paths.language import TOOL_LENGTH, Block, Datum, Kind, language_of
 from probe_paths.plan import LINEAR
 from twin.units import DEG
 
@@ -22,30 +22,27 @@ LONGEST_SEARCH = 10.0
 
 
 def system_datum(block: Block, state: State) -> float:
-    """FN 18: calibration of the probe, number of the tool, nominal rotary positions."""
+    """Calibration of the probe, number of the tool, nominal rotary positions."""
     probe = state.frame.probe
-    group, number = int(block.word("group")), int(block.word("number"))
-    index = int(block.words["index"] or 0)
-    letters = {SYSTEM_INDEX[a]: a for a in state.frame.letters if a not in LINEAR}
-    if (group, number) == (240, 1) and index in letters:
-        if not state.is_synchronous:
-            raise state.refusal(block, "a position read ahead", "FN 20: WAIT FOR SYNC before it")
-        return float(state.q[state.frame.chain.axis_index(letters[index])]) / DEG
+    places = {Datum(a): a for a in state.frame.letters if a not in LINEAR}
     known = {
-        (350, 11, 0): probe.radius,
-        (350, 12, 0): probe.tool_length,
-        (350, 14, 1): 0.0,
-        (350, 14, 2): 0.0,
+        Datum.RADIUS: probe.radius,
+        Datum.LENGTH: probe.tool_length,
+        Datum.OFFSET_X: 0.0,
+        Datum.OFFSET_Y: 0.0,
     }
-    if (group, number, index) == (20, 1, 0) and state.tool is not None:
-        return float(state.tool)
-    if (group, number, index) not in known:
-        raise state.refusal(
-            block,
-            f"ID{group} NR{number} IDX{index}",
-            "ID20 NR1, ID240 NR1 of a rotary axis, or ID350 NR11, NR12, NR14 IDX1, IDX2",
-        )
-    return known[group, number, index]
+    if state.tool is not None:
+        known[Datum.TOOL] = float(state.tool)
+    system = language_of(state.path).SYSTEM
+    datum = next((d for d, text in system.items() if text == block.word("datum")), None)
+    if datum in places:
+        if not state.is_synchronous:
+            raise state.refusal(block, "a position read ahead", f"{state.says.sync} before it")
+        return float(state.q[state.frame.chain.axis_index(places[datum])]) / DEG
+    if datum is None or datum not in known:
+        available = ", ".join(system[d] for d in (*known, *places))
+        raise state.refusal(block, block.word("datum"), f"one of {available}")
+    return known[datum]
 
 
 def check_cycle(state: State, block: Block, vector: Block, length: float) -> None:
@@ -59,12 +56,12 @@ def check_cycle(state: State, block: Block, vector: Block, length: float) -> Non
     back, distance = block.number("back"), block.number("distance")
     if not SHORTEST_BACK <= back <= distance:
         raise state.refusal(
-            block, repr(block.text), f"MB between {SHORTEST_BACK:g} mm and the path"
+            block, repr(block.text), f"{state.says.back} between {SHORTEST_BACK:g} mm and the path"
         )
     if distance - back > LONGEST_SEARCH:
         raise state.refusal(
             block,
-            f"a path of {distance:g} mm with MB {back:g}",
+            f"a path of {distance:g} mm with {state.says.back} {back:g}",
             f"at most {LONGEST_SEARCH:g} mm beyond the surface that is expected",
         )
 
@@ -104,7 +101,9 @@ def _tool_call(block: Block, state: State) -> None:
     if block.words["speed"] is not None:
         raise state.refusal(block, repr(block.text), "no speed: there is a probe in the spindle")
     if not state.is_tcpm_off or not state.is_retracted:
-        raise state.refusal(block, repr(block.text), "M129 and a retract with M91 before it")
+        says = state.says
+        expected = f"{says.reset} and a retract with {says.machine} before it"
+        raise state.refusal(block, repr(block.text), expected)
     state.tool = int(block.word("tool"))
     state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length
     state.length_off, state.length_tests = None, set()

@@ -6,7 +6,7 @@ import numpy as np
 
 from probe_paths.control.state import SAME, TOP, State
 from probe_paths.control.steps import Move
-from probe_paths.language import Block
+from probe_paths.language import Block, Q
 from probe_paths.plan import LINEAR
 from twin.frames import Array
 from twin.units import DEG, MINUTE
@@ -79,9 +79,11 @@ def _feed(state: State, block: Block) -> float | None:
     if word is not None:
         state.feed = float(word)
     if not state.feed:
-        raise state.refusal(block, repr(block.text), "a feed above zero, or FMAX")
+        raise state.refusal(block, repr(block.text), f"a feed above zero, or {state.says.rapid}")
     if state.feed > MAX_FEED:
-        raise state.refusal(block, f"F{state.feed:.0f}", f"F{MAX_FEED:.0f} at most, or FMAX")
+        raise state.refusal(
+            block, f"F{state.feed:.0f}", f"F{MAX_FEED:.0f} at most, or {state.says.rapid}"
+        )
     return state.feed
 
 
@@ -90,7 +92,8 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
     if len(rotary) != len(letters):
         raise state.refusal(block, repr(block.text), "rotary axes in a block of their own")
     if not state.is_retracted:
-        raise state.refusal(block, repr(block.text), "a retract (L Z.. R0 FMAX M91) before it")
+        raise state.refusal(block, repr(block.text), f"a retract ({state.says.retract}) before it")
+    state.stale |= {Q.POSE, Q.SIDE_1, Q.SIDE_2}
     for letter in rotary:
         column = state.frame.chain.axis_index(letter)
         step = target[column] - state.q[column]
@@ -107,13 +110,17 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
 def _retract(state: State, block: Block, target: Array, letters: list[str]) -> None:
     """Rules for a block with M91: Z alone, up, to the top of its travel."""
     if not state.is_tcpm_off:
-        raise state.refusal(block, repr(block.text), "M129 before M91")
+        raise state.refusal(
+            block, repr(block.text), f"{state.says.reset} before {state.says.machine}"
+        )
     if letters != ["Z"]:
-        raise state.refusal(block, repr(block.text), "Z alone with M91")
+        raise state.refusal(block, repr(block.text), f"Z alone with {state.says.machine}")
     column = state.frame.chain.axis_index("Z")
     top = state.frame.chain.link("Z").range[1]
     if target[column] < top - TOP:
-        raise state.refusal(block, f"Z{target[column]:+.4f} M91", f"at least Z{top - TOP:+.4f}")
+        raise state.refusal(
+            block, f"Z{target[column]:+.4f} {state.says.machine}", f"at least Z{top - TOP:+.4f}"
+        )
     if target[column] < state.q[column] - SAME:
         raise state.refusal(block, repr(block.text), "a retract that does not go down")
     state.is_retracted, state.clearance = True, None
@@ -126,7 +133,7 @@ def _check_height(
     column = state.frame.chain.axis_index("Z")
     before, after = state.q[column], target[column]
     if not np.isfinite(before):
-        raise state.refusal(block, repr(block.text), "a retract (L Z.. R0 FMAX M91) first")
+        raise state.refusal(block, repr(block.text), f"a retract ({state.says.retract}) first")
     if state.is_retracted:
         if "Z" not in letters:
             return
@@ -169,10 +176,12 @@ def _arrive(state: State, block: Block, target: Array) -> None:
 
 
 def retract_max(state: State, block: Block) -> Move:
-    """Execute `M140 MB MAX`: along the tool axis to the end of the travel."""
+    """Execute the retract after a missed touch: along the tool axis to the end of the travel."""
     state.check_status_was_tested(block)
     if not state.is_tcpm_off:
-        raise state.refusal(block, repr(block.text), "M129 before M140")
+        raise state.refusal(
+            block, repr(block.text), f"{state.says.reset} before {state.says.retract_max}"
+        )
     target = state.q.copy()
     column = state.frame.chain.axis_index("Z")
     target[column] = state.frame.chain.link("Z").range[1]

@@ -1,5 +1,6 @@
 """Executes the blocks of a program one after the other and collects what they do."""
 
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -9,7 +10,17 @@ from probe_paths.control.modes import check_cycle, set_mode, system_datum
 from probe_paths.control.motion import retract_max, straight_line
 from probe_paths.control.state import State
 from probe_paths.control.steps import STATUS, Halt, Move, Print, ProbeStep, Result, Step
-from probe_paths.language import LENGTH_LIMIT, Block, Kind, MaskLine, Q, parse_mask
+from probe_paths.language import (
+    LENGTH_LIMIT,
+    Block,
+    Kind,
+    MaskLine,
+    Q,
+    head_mask,
+    language_of,
+    parse_mask,
+    shared_masks,
+)
 from probe_paths.plan import ProgramFrame
 from twin.errors import BadFile
 from twin.units import MINUTE
@@ -34,6 +45,15 @@ _SILENT = {
 }
 
 
+_DECIMALS = 6
+_FORMAT = re.compile(r"%[\d.]+(?=LF|d)")
+
+
+def _shape(lines: Sequence[MaskLine]) -> tuple[tuple[str, tuple[int | str, ...]], ...]:
+    """Lines of a log without the widths of their numbers."""
+    return tuple((_FORMAT.sub("%", line.text), line.arguments) for line in lines)
+
+
 class Runner:
     """Executes blocks one after the other and collects what they do."""
 
@@ -45,11 +65,16 @@ class Runner:
         path: Path,
         name: str,
         masks: MaskSource,
+        remarks: Sequence[str],
     ) -> None:
         self.blocks, self.places, self.frame, self.path = blocks, places, frame, path
         self.name, self.folder = name, ""
         self.source = masks
         self.masks: dict[str, tuple[MaskLine, ...]] = {}
+        form = language_of(path).LOG
+        texts = [head_mask(form, name, remarks)]
+        texts += shared_masks(form, _DECIMALS, frame.chain.rotary_axes).values()
+        self.readable = {_shape(parse_mask(text, path)) for text in texts}
         self.touches: list[ProbeStep] = []
         self.logged: set[int] = set()
 
@@ -123,7 +148,9 @@ class Runner:
                 state.length_tests.add("LT" if is_less else "GT")
                 return
             if other.kind not in _SILENT:
-                raise state.refusal(other, repr(other.text), "STOP and FN 14 after another length")
+                raise state.refusal(
+                    other, repr(other.text), f"{state.says.halt} after another length"
+                )
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
         """Every block that changes the state or does something."""
@@ -168,6 +195,8 @@ class Runner:
             direction=direction / length,
             distance=block.number("distance"),
             feed=block.number("feed") / MINUTE,
+            slow_feed=float(block.words.get("slow") or 0.0) / MINUTE,
+            step_back=float(block.words.get("step") or 0.0),
             back=block.number("back"),
             side=state.side.copy(),
             number=state.whole(block, Q.TOUCH, "touch"),
@@ -175,12 +204,15 @@ class Runner:
             feature=state.whole(block, Q.FEATURE, "feature"),
         )
         self._check_sides(block, state, touch)
+        state.stale |= {Q.TOUCH, Q.FEATURE}
         left_over = state.parameters.get(result + STATUS)
         for part in range(4):
             state.write(block, result + part, Result(touch.index, part))
         if not isinstance(left_over, float) or left_over >= 0.0:
             raise state.refusal(
-                block, "the status of the touch before", f"FN 0: Q{result + STATUS} = -1 before it"
+                block,
+                "the status of the touch before",
+                f"{state.says.unset.format(q=result + STATUS)} before it",
             )
         state.untested, state.way_back = touch.index, state.q.copy()
         state.is_synchronous = False
@@ -205,7 +237,7 @@ class Runner:
         """FN 16 with the values of this moment."""
         state.check_status_was_tested(block)
         if not state.is_synchronous:
-            raise state.refusal(block, "a line printed ahead", "FN 20: WAIT FOR SYNC before it")
+            raise state.refusal(block, "a line printed ahead", f"{state.says.sync} before it")
         self._check_place(block, state)
         lines = self._mask(block, state)
         wanted = {a for line in lines for a in line.arguments if isinstance(a, int)}
@@ -218,27 +250,42 @@ class Runner:
         target, mask = block.word("target"), block.word("mask")
         folder = target.rpartition("\\")[0]
         self.folder = self.folder or folder
-        expected = f"{self.folder}\\{self.name}.TXT"
+        expected = f"{self.folder}\\{self.name}.TXT".lstrip("\\")
         if target != expected:
             raise state.refusal(block, f"a log {target}", expected)
         if mask.rpartition("\\")[0] != self.folder:
             raise state.refusal(block, f"mask {mask}", f"a mask in {self.folder}, where the log is")
 
     def _mask(self, block: Block, state: State) -> tuple[MaskLine, ...]:
+        if "lines" in block.words:
+            return self._readable(parse_mask(block.word("lines"), self.path), block, state)
         name = block.word("mask").split("\\")[-1]
         if name not in self.masks:
             text = self.source(name)
             if text is None:
                 raise state.refusal(block, f"mask {name}", "a mask file beside the program")
-            self.masks[name] = parse_mask(text, self.path.parent / name)
+            lines = parse_mask(text, self.path.parent / name)
+            self.masks[name] = self._readable(lines, block, state)
         return self.masks[name]
+
+    def _readable(
+        self, lines: tuple[MaskLine, ...], block: Block, state: State
+    ) -> tuple[MaskLine, ...]:
+        """Lines that the reader of logs will know: a head, a touch, a missed one or an end."""
+        if _shape(lines) not in self.readable:
+            raise state.refusal(
+                block,
+                f"{len(lines)} lines for the log that begin with {lines[0].text!r}",
+                "those of a head, a touch, a missed touch or an end, as they are emitted",
+            )
+        return lines
 
     def _check_end(self, state: State, block: Block, returns: list[int]) -> None:
         state.check_status_was_tested(block)
         if returns:
             raise state.refusal(block, "M30 inside a subprogram", "LBL 0 at its end")
         if not state.is_retracted:
-            raise state.refusal(block, "M30", "a retract (L Z.. R0 FMAX M91) at the end")
+            raise state.refusal(block, "M30", f"a retract ({state.says.retract}) at the end")
 
     def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
         """Only a touch without contact may end a program early, and only after a retract."""
@@ -248,7 +295,8 @@ class Runner:
                 self.path,
                 f"line {block.line}",
                 repr(block.text),
-                "M140 MB MAX, and no other move, after a touch without contact",
+                f"{language_of(self.path).SAYS.retract_max}, and no other move, after a touch "
+                "without contact",
             )
 
     def check_logged(self) -> None:
@@ -259,5 +307,5 @@ class Runner:
                     self.path,
                     f"line {touch.line}",
                     f"touch {touch.number} without a log line",
-                    "FN 16 with its results",
+                    f"{language_of(self.path).SAYS.printed} with its results",
                 )

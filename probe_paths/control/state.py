@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from probe_paths.control.steps import Value
-from probe_paths.language import FREE, LENGTH_LIMIT, TOOL_LENGTH, Block
+from probe_paths.language import FREE, LENGTH_LIMIT, Block, Says, language_of
 from probe_paths.plan import ProgramFrame
 from twin.errors import BadFile
 from twin.frames import Array
@@ -43,6 +43,7 @@ class State:
         way_back: Readings that the next move must return to after a touch.
         is_synchronous: FN 20 was read since the last motion.
         length_off: Parameter that holds how much longer the called tool is than the planned probe.
+        stale: Counters that belong to the touch or the visit before.
         length_tests: Which ends of its tolerance a jump has tested, "LT" and "GT".
     """
 
@@ -66,14 +67,20 @@ class State:
     is_synchronous: bool = False
     length_off: int | None = None
     length_tests: set[str] = field(default_factory=set)
+    stale: set[int] = field(default_factory=set)
 
     def copied(self) -> "State":
         """A state that can run on its own."""
         other = copy.copy(self)
         other.q, other.side = self.q.copy(), self.side.copy()
         other.parameters, other.shift_off = dict(self.parameters), set(self.shift_off)
-        other.length_tests = set(self.length_tests)
+        other.length_tests, other.stale = set(self.length_tests), set(self.stale)
         return other
+
+    @property
+    def says(self) -> Says:
+        """How the program's language says what a refusal asks for."""
+        return language_of(self.path).SAYS
 
     def refusal(self, block: Block, found: str, expected: str) -> BadFile:
         """The one clear line about a block."""
@@ -84,11 +91,11 @@ class State:
         missing = [
             name
             for name, there in (
-                ("M129", self.is_tcpm_off),
-                ("PLANE RESET STAY", self.is_plane_off),
-                ("CYCL DEF 7 with zeros in X, Y and Z", self.shift_off == set("XYZ")),
-                ("TOOL CALL", self.tool is not None),
-                ("CYCL DEF 247", self.preset is not None),
+                (self.says.reset, self.is_tcpm_off),
+                (self.says.plane, self.is_plane_off),
+                (self.says.shift, self.shift_off == set("XYZ")),
+                (self.says.tool, self.tool is not None),
+                (self.says.preset, self.preset is not None),
             )
             if not there
         ]
@@ -101,8 +108,7 @@ class State:
             raise self.refusal(
                 block,
                 f"{block.text!r} with a tool of untested length",
-                f"FN 12 and FN 11 on Q{TOOL_LENGTH} less the planned length, "
-                f"{LENGTH_LIMIT} mm at most, before it",
+                f"{self.says.length} less the planned length, {LENGTH_LIMIT} mm at most, before it",
             )
 
     def check_status_was_tested(self, block: Block) -> None:
@@ -111,7 +117,7 @@ class State:
             raise self.refusal(
                 block,
                 f"{block.text!r} after touch {self.untested + 1}",
-                "FN 12 on the status of the touch first",
+                f"{self.says.status} first",
             )
 
     def write(self, block: Block, q: int, value: Value) -> None:
@@ -119,6 +125,7 @@ class State:
         if q not in FREE:
             raise self.refusal(block, f"Q{q}", f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}")
         self.parameters[q] = value
+        self.stale.discard(q)
         if q == self.length_off:
             self.length_off = None
 
@@ -131,6 +138,8 @@ class State:
     def whole(self, block: Block, q: int, name: str) -> int:
         """A counter that must be set before a touch."""
         value = self.parameters.get(q)
+        if q in self.stale:
+            raise self.refusal(block, f"the {name} of the one before", f"{name} set anew")
         if not isinstance(value, float) or value != int(value):
             raise self.refusal(
                 block, f"Q{q} = {value}", f"a whole number ({name}) before the touch"

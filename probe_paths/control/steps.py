@@ -51,6 +51,8 @@ class ProbeStep:
         direction: Unit vector of the motion in readings, (A,); zero for rotary axes.
         distance: Longest travel, mm.
         feed: mm/s.
+        slow_feed: Of the second touch that measures, mm/s; 0 where the first one does.
+        step_back: From the surface before the second touch, mm.
         back: Retract after the contact, mm.
         side: Sign of the last motion of every axis before the touch, (A,); 0 where unknown.
         number: Of the touch, as the log will name it.
@@ -70,6 +72,8 @@ class ProbeStep:
     number: int
     pose: int
     feature: int
+    slow_feed: float = 0.0
+    step_back: float = 0.0
     on_miss: list["Step"] = field(default_factory=list)
 
 

@@ -1,21 +1,24 @@
-"""Heidenhain Klartext: words, dialects, masks, blocks.
+"""Programs of controls: words, dialects, lines of logs, blocks.
 
-A closed list: `klartext` writes its blocks, `read_blocks` takes no others. `Dialect` holds what
-differs between controls and workshops, `Q` the parameters that our programs use. A new block needs
-a function in `klartext`, a pattern in `Kind` and an execution in `probe_paths.control`.
+A closed list of blocks (`Kind`): a language (`klartext`, `gcode`) writes them, `read_blocks` takes
+no others. `Dialect` holds what differs between controls of one language and between workshops, read
+from a file by `read_dialect`; `Q` the parameters that our programs use. A new block needs a
+function in every language, a pattern in its reader and an execution in `probe_paths.control`.
 """
 
-from probe_paths.language.blocks import Block, Kind, read_blocks
+from probe_paths.language.blocks import Block, Kind
 from probe_paths.language.dialect import (
     FREE,
     LENGTH_LIMIT,
-    SYSTEM_INDEX,
     TOOL_LENGTH,
     Dialect,
     ErrorText,
     Label,
     Q,
 )
+from probe_paths.language.dialect_file import read_dialect
+from probe_paths.language.language import Datum, Says, Touch
+from probe_paths.language.languages import LANGUAGES, language_of, read_blocks
 from probe_paths.language.masks import (
     LOG_HEAD,
     MaskLine,
@@ -24,23 +27,32 @@ from probe_paths.language.masks import (
     parse_mask,
     shared_masks,
 )
+from probe_paths.language.text import MAX_LINE, checked_name, signed
 
 __all__ = [
     "FREE",
+    "LANGUAGES",
     "LENGTH_LIMIT",
     "LOG_HEAD",
-    "SYSTEM_INDEX",
+    "MAX_LINE",
     "TOOL_LENGTH",
     "Block",
+    "Datum",
     "Dialect",
     "ErrorText",
     "Kind",
     "Label",
     "MaskLine",
     "Q",
+    "Says",
     "SharedMask",
+    "Touch",
+    "checked_name",
     "head_mask",
+    "language_of",
     "parse_mask",
     "read_blocks",
+    "read_dialect",
     "shared_masks",
+    "signed",
 ]

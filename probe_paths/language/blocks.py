@@ -1,4 +1,4 @@
-"""Text of a program to blocks: a closed list, and one clear line for everything else."""
+"""The closed list of blocks; Klartext to blocks, and one clear line for everything else."""
 
 import re
 from collections.abc import Mapping
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
-from probe_paths.language.klartext import CYCLE_NAMES, DISTANCE_WORDS
+from probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
 from twin.errors import BadFile
 
 _NUM = r"[+-]\d{1,5}(?:\.\d{0,7})?"
@@ -19,7 +19,7 @@ LONGEST = 1000
 
 
 class Kind(Enum):
-    """The blocks of our programs; each value is the pattern of the whole block."""
+    """The blocks of our programs; each value is the pattern of the whole block in Klartext."""
 
     BEGIN = r"BEGIN PGM (?P<name>\S+) (?P<unit>\S+)"
     END = r"END PGM (?P<name>\S+) (?P<unit>\S+)"
@@ -40,11 +40,11 @@ class Kind(Enum):
         rf"L(?P<axes>(?: [A-Z]{_NUM})+)(?P<radius> R0)?"
         r"(?: F(?P<feed>MAX|\d+))?(?P<functions>(?: M\d+)*)"
     )
-    PROBE_NAME = rf"TCH PROBE 4\.0 (?:{'|'.join(CYCLE_NAMES)})"
+    PROBE_NAME = r"TCH PROBE 4\.0 (?P<cycle>[A-Z0-9][A-Z0-9 -]*)"
     PROBE_RESULT = r"TCH PROBE 4\.1 Q(?P<q>\d+)"
     PROBE_VECTOR = rf"TCH PROBE 4\.2 IX(?P<x>{_NUM}) IY(?P<y>{_NUM}) IZ(?P<z>{_NUM})"
     PROBE_PATH = (
-        rf"TCH PROBE 4\.3 (?:{'|'.join(DISTANCE_WORDS)}) ?(?P<distance>{_NUM}) F(?P<feed>\d+) "
+        rf"TCH PROBE 4\.3 (?P<word>[A-Z][A-Z -]*?) ?(?P<distance>{_NUM}) F(?P<feed>\d+) "
         rf"MB(?P<back>{_NUM}) REFERENCE SYSTEM: ?(?P<system>[01])"
     )
     # a control that saves a program leaves out blanks, zeros and the last line end
@@ -56,9 +56,7 @@ class Kind(Enum):
     )
     ERROR = r"FN ?14: ERROR ?= ?(?P<number>\d+)"
     PRINT = rf"FN ?16: F-PRINT (?P<mask>{_PATH}) ?/ ?(?P<target>{_PATH})"
-    READ = (
-        r"FN ?18: SYSREAD Q(?P<q>\d+) ?= ?ID(?P<group>\d+) NR(?P<number>\d+)(?: IDX(?P<index>\d+))?"
-    )
+    READ = r"FN ?18: SYSREAD Q(?P<q>\d+) ?= ?(?P<datum>ID\d+ NR\d+(?: IDX\d+)?)"
     WAIT = r"FN ?20: WAIT FOR SYNC"
     CALL = r"CALL LBL (?P<label>[1-9]\d*)"
     LABEL = r"LBL (?P<label>\d+)"
@@ -122,7 +120,7 @@ class Block:
         return float(self.word(name))
 
 
-def read_blocks(data: bytes, path: str | Path) -> list[Block]:
+def read_klartext(data: bytes, path: str | Path, dialect: Dialect) -> list[Block]:
     """Blocks of a program file.
 
     Block numbers either stand everywhere and count from 0, or nowhere. A line that ends in a
@@ -131,12 +129,13 @@ def read_blocks(data: bytes, path: str | Path) -> list[Block]:
     Args:
         data: Content of the file.
         path: Its name, for messages.
+        dialect: Whose spelling of cycle 4 is known besides the usual ones.
 
     Raises:
         BadFile: A byte outside ASCII, mixed line ends, a last line cut off, a number out of
             sequence, a block that is not in the closed list.
     """
-    lines = _physical_lines(data, path)
+    lines = physical_lines(data, path)
     blocks: list[Block] = []
     numbered: bool | None = None
     i = 0
@@ -162,11 +161,12 @@ def read_blocks(data: bytes, path: str | Path) -> list[Block]:
             if (match[1].lstrip("0") or "0") != str(len(blocks)):
                 raise BadFile(path, f"line {first}", f"block number {match[1]}", str(len(blocks)))
             folded = match[2]
-        blocks.append(_parse(folded, first, path))
+        blocks.append(_parse(folded, first, path, dialect))
     return blocks
 
 
-def _physical_lines(data: bytes, path: str | Path) -> list[str]:
+def physical_lines(data: bytes, path: str | Path) -> list[str]:
+    """Lines of a program file, blanks at their ends dropped; raises BadFile."""
     if not data:
         raise BadFile(path, "file", "nothing", "a program that begins with BEGIN PGM")
     try:
@@ -184,7 +184,7 @@ def _physical_lines(data: bytes, path: str | Path) -> list[str]:
     return lines
 
 
-def _parse(text: str, line: int, path: str | Path) -> Block:
+def _parse(text: str, line: int, path: str | Path, dialect: Dialect) -> Block:
     """The block of one line, remarks at its end dropped."""
     for kind in _REMARK_KINDS:
         match = _PATTERNS[kind].match(text)
@@ -193,9 +193,18 @@ def _parse(text: str, line: int, path: str | Path) -> Block:
     bare = text.split(";")[0].rstrip()
     for kind, pattern in _PATTERNS.items():
         match = pattern.match(bare)
-        if match is not None:
+        if match is not None and _is_known(match.groupdict(), dialect):
             return Block(line, kind, match.groupdict(), text)
     for beginning, expected in _KNOWN_OTHERS:
         if re.match(beginning, bare):
             raise BadFile(path, f"line {line}", repr(text), expected)
     raise BadFile(path, f"line {line}", repr(text), _ANYTHING)
+
+
+def _is_known(words: Mapping[str, str | None], dialect: Dialect) -> bool:
+    """Whether the dialog text of cycle 4 is the usual one or that of the dialect."""
+    return words.get("cycle") in (None, *CYCLE_NAMES, dialect.cycle_name) and words.get("word") in (
+        None,
+        *DISTANCE_WORDS,
+        dialect.distance_word,
+    )

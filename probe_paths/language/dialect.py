@@ -1,10 +1,8 @@
 """What differs between controls and workshops, and which Q parameters our programs use."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Literal
-
-from probe_paths.language.klartext import ProbeWords
 
 
 class Q(IntEnum):
@@ -36,9 +34,6 @@ TOOL_LENGTH = 114
 FREE = range(1600, 2000)
 """Parameters that a program may write."""
 
-SYSTEM_INDEX = {letter: i + 1 for i, letter in enumerate("XYZABCUVW")}
-"""Order of the axes in the control's system data (IDX of ID240)."""
-
 
 class Label(IntEnum):
     """Subprograms of our programs."""
@@ -59,30 +54,43 @@ LENGTH_LIMIT = 1
 """By how much the probe's length may differ from the planned one, mm: the gap that is planned."""
 
 
+CYCLE_NAMES = ("MEASURING IN 3D", "MEASURING IN 3-D")
+DISTANCE_WORDS = ("SET UP", "ABST", "DIST")
+"""Spellings of cycle 4 on different software; the first of each is the default."""
+
+
 @dataclass(frozen=True)
 class Dialect:
-    """Words and numbers of one control and one workshop.
+    """Words and numbers of one control and one workshop; the defaults are those of an iTNC 530.
 
     Attributes:
-        words: Spelling of cycle 4.
-        folder: Of programs, masks and logs on the control.
+        language: In which blocks are spelt.
+        cycle_name: Of cycle 4, after `4.0`; its number identifies the cycle.
+        distance_word: Before the longest path in `4.3`.
+        folder: Of programs, masks and logs on the control; empty where it takes no folders.
         tool: Number of the probe in the tool table.
         preset: Row of the preset table; it stands at the origin of the table frame with every
             rotary axis at zero.
         prefix: First letters of every program name.
-        result_height: What Z of cycle 4 belongs to: the spindle's `gauge` point (no length
-            compensation) or the `tip` of the tool table. One touch on the machine settles it.
+        result_height: What Z of a touch in the log belongs to: the spindle's `gauge` point (no
+            length compensation) or the `tip` of the tool table. One touch settles it.
         log_decimals: Of coordinates in the log.
+        slow_feed: Of the second touch, mm/min, where the control measures by a second, slow one.
+        step_back: From the surface before the second touch, mm.
     """
 
-    words: ProbeWords = field(default_factory=ProbeWords)
+    language: Literal["klartext", "gcode"] = "klartext"
+    cycle_name: str = CYCLE_NAMES[0]
+    distance_word: str = DISTANCE_WORDS[0]
     folder: str = "TNC:\\MATSTD"
     tool: int = 30
     preset: int = 1
     prefix: str = "MS"
     result_height: Literal["gauge", "tip"] = "gauge"
     log_decimals: int = 6
+    slow_feed: float = 0.0
+    step_back: float = 0.0
 
     def on_control(self, name: str) -> str:
         """Full name of a file on the control."""
-        return f"{self.folder}\\{name}"
+        return f"{self.folder}\\{name}" if self.folder else name

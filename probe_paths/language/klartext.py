@@ -1,55 +1,22 @@
 """Blocks of Heidenhain Klartext, as text: the closed list of words that our programs use.
 
 Nothing here knows of machines or standards. Every function returns the text of one block without
-its number; `Listing` numbers them. Coordinates carry a sign and four decimals always, which is the
+its number; `listed` numbers them. Coordinates carry a sign and four decimals always, which is the
 resolution the control takes, so that what is planned, printed and read back is the same number.
 """
 
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
+from probe_paths.language.dialect import TOOL_LENGTH, Dialect
+from probe_paths.language.language import Datum, Says, Touch
+from probe_paths.language.masks import LogForm, MaskLine
+from probe_paths.language.text import axis_words, checked_line, checked_name, parameter, signed
 from twin.errors import DesignError
 
-MAX_LINE = 72
-"""Longest physical line that is emitted, characters; the control's own limit is not documented."""
-
-MAX_NAME = 16
-"""Longest program name that the oldest software displays whole."""
-
-MAX_VALUE = 99999.9999
-"""Largest coordinate that the control takes, mm or degrees."""
-
+ENDING = ".H"
 LINE_END = "\r\n"
-
-CYCLE_NAMES = ("MEASURING IN 3D", "MEASURING IN 3-D")
-DISTANCE_WORDS = ("SET UP", "ABST", "DIST")
-"""Spellings of cycle 4 on different software; the first of each is the default."""
-
-_NAME = re.compile(r"[A-Z][A-Z0-9_]*\Z")
-_SPINDLE = re.compile(r"(?<![A-Z0-9])(M0?[34]|M1[34])(?!\d)|TOOL CALL.*\bS\s?\d")
-
-
-def checked_name(name: str) -> str:
-    """Program name that every software generation takes; raises DesignError."""
-    if not _NAME.match(name) or len(name) > MAX_NAME:
-        raise DesignError(
-            f"program name '{name}': expected a letter, then letters A-Z, digits or _, "
-            f"at most {MAX_NAME} characters"
-        )
-    return name
-
-
-def signed(value: float, decimals: int = 4) -> str:
-    """A number as the control wants it: sign, point, fixed decimals; never a negative zero.
-
-    Raises:
-        DesignError: A value beyond the input range of the control, or none at all.
-    """
-    if not abs(value) <= MAX_VALUE:
-        raise DesignError(f"coordinate {value} is beyond the control's range of {MAX_VALUE}")
-    rounded = round(value, decimals) + 0.0
-    return f"{rounded:+.{decimals}f}"
+HAS_MASKS = True
+SUBPROGRAMS_FIRST = False
 
 
 def begin(name: str) -> str:
@@ -76,11 +43,8 @@ def structure(text: str) -> str:
 
 def stock(low: Sequence[float], high: Sequence[float]) -> list[str]:
     """The two blocks of the raw part: simulation graphics only."""
-    return [f"BLK FORM 0.1 Z {_axes('XYZ', low)}", f"BLK FORM 0.2 {_axes('XYZ', high)}"]
-
-
-def _axes(letters: str, values: Sequence[float]) -> str:
-    return " ".join(f"{a}{signed(v)}" for a, v in zip(letters, values, strict=True))
+    corners = [axis_words(dict(zip("XYZ", corner, strict=True))) for corner in (low, high)]
+    return [f"BLK FORM 0.1 Z {corners[0]}", f"BLK FORM 0.2 {corners[1]}"]
 
 
 def line(position: Mapping[str, float], feed: float | None = None, words: str = "") -> str:
@@ -91,9 +55,23 @@ def line(position: Mapping[str, float], feed: float | None = None, words: str = 
         feed: mm/min (degrees/min for rotary axes alone), whole numbers.
         words: M functions at the end of the block.
     """
-    axes = " ".join(f"{axis}{signed(value)}" for axis, value in position.items())
     speed = "FMAX" if feed is None else f"F{feed:.0f}"
-    return f"L {axes} R0 {speed} {words}".rstrip()
+    return f"L {axis_words(position)} R0 {speed} {words}".rstrip()
+
+
+def turn(position: Mapping[str, float]) -> str:
+    """Rapid move of rotary axes, the shorter way."""
+    return line(position, words=SHORTER_WAY)
+
+
+def retract(z: float) -> str:
+    """Z to a reading of the machine, where rotary axes may turn."""
+    return line({"Z": z}, words="M91")
+
+
+def retract_max(z: float) -> str:
+    """Along the tool axis to the end of the travel."""
+    return RETRACT_MAX
 
 
 def datum_shift_off() -> list[str]:
@@ -118,8 +96,7 @@ def tool_call(number: int) -> str:
 
 def assign(q: int, value: float) -> str:
     """FN 0 with a number; whole numbers are written without decimals."""
-    text = f"{value:+.0f}" if value == int(value) else signed(value)
-    return f"FN 0: Q{q:d} = {text}"
+    return f"FN 0: Q{q:d} = {parameter(value)}"
 
 
 def difference(q: int, minuend: int, subtrahend: float) -> str:
@@ -142,67 +119,34 @@ def stop_with_error(number: int) -> str:
     return f"FN 14: ERROR= {number:d}"
 
 
-def print_masked(mask: str, target: str) -> str:
+def printed(mask: str, lines: Sequence[MaskLine], target: str) -> str:
     """FN 16: write the lines of a mask file to a log."""
     return f"FN 16: F-PRINT {mask} / {target}"
 
 
-def system_read(q: int, group: int, number: int, index: int | None = None) -> str:
+def read(q: int, datum: Datum) -> str:
     """FN 18: read a system datum into a parameter."""
-    tail = "" if index is None else f" IDX{index:d}"
-    return f"FN 18: SYSREAD Q{q:d} = ID{group:d} NR{number:d}{tail}"
+    return f"FN 18: SYSREAD Q{q:d} = {SYSTEM[datum]}"
 
 
 WAIT = "FN 20: WAIT FOR SYNC"
 """Stops the look-ahead, so that system data are read where the machine stands."""
 
 
-@dataclass(frozen=True)
-class ProbeWords:
-    """Dialog text of cycle 4, which differs between software versions.
-
-    Attributes:
-        cycle_name: After `4.0`; the number identifies the cycle.
-        distance_word: Before the longest path in `4.3`.
-    """
-
-    cycle_name: str = CYCLE_NAMES[0]
-    distance_word: str = DISTANCE_WORDS[0]
-
-    def __post_init__(self) -> None:
-        for word, known in (
-            (self.cycle_name, CYCLE_NAMES),
-            (self.distance_word, DISTANCE_WORDS),
-        ):
-            if word not in known:
-                raise DesignError(f"word '{word}' of cycle 4: expected one of {', '.join(known)}")
-
-
-def probe_vector(
-    words: ProbeWords,
-    result: int,
-    direction: Sequence[float],
-    distance: float,
-    feed: float,
-    back: float,
-) -> list[str]:
+def probe_vector(dialect: Dialect, result: int, touch: Touch) -> list[str]:
     """Touch probe cycle 4 in its four blocks.
 
     Args:
-        words: Spelling of the dialog text.
+        dialect: Spelling of the dialog text.
         result: First of four consecutive parameters: X, Y, Z and status.
-        direction: Probing vector in the workpiece frame.
-        distance: Longest path from the start, mm.
-        feed: Probing feed, mm/min.
-        back: Retract after the contact, mm.
     """
-    vector = " ".join(f"I{a}{signed(v)}" for a, v in zip("XYZ", direction, strict=True))
+    vector = " ".join(f"I{a}{signed(v)}" for a, v in zip("XYZ", touch.direction, strict=True))
     return [
-        f"TCH PROBE 4.0 {words.cycle_name}",
+        f"TCH PROBE 4.0 {dialect.cycle_name}",
         f"TCH PROBE 4.1 Q{result:d}",
         f"TCH PROBE 4.2 {vector}",
-        f"TCH PROBE 4.3 {words.distance_word} {signed(distance)} F{feed:.0f} "
-        f"MB{signed(back)} REFERENCE SYSTEM:0",
+        f"TCH PROBE 4.3 {dialect.distance_word} {signed(touch.distance)} F{touch.feed:.0f} "
+        f"MB{signed(touch.back)} REFERENCE SYSTEM:0",
     ]
 
 
@@ -226,38 +170,56 @@ OPERATOR_STOP = "STOP"
 PROGRAM_STOP = "M30"
 
 
-class Listing:
-    """A program in the making: numbers its blocks and refuses what must never be emitted."""
+RESET: Sequence[str] = (TCPM_OFF, PLANE_OFF, *datum_shift_off())
+UNWIND: Sequence[str] = (SHORTER_WAY_OFF,)
 
-    def __init__(self) -> None:
-        self._lines: list[str] = []
-        self._count = 0
+_CLOCK = ("T%3d:%3d:%3d", ("HOUR", "MIN", "SEC"))
+LOG = LogForm(
+    clock=_CLOCK,
+    date=(("DATE%5d-%3d-%3d", ("YEAR4", "MONTH", "DAY")), _CLOCK),
+    counter="%8.1LF",
+    is_wide=True,
+)
 
-    def add(self, *blocks: str) -> None:
-        """Append blocks; one block may hold several physical lines (cycle parameters).
+SYSTEM: Mapping[Datum, str] = {
+    Datum.RADIUS: "ID350 NR11",
+    Datum.LENGTH: "ID350 NR12",
+    Datum.OFFSET_X: "ID350 NR14 IDX1",
+    Datum.OFFSET_Y: "ID350 NR14 IDX2",
+    Datum.TOOL: "ID20 NR1",
+    Datum.A: "ID240 NR1 IDX4",
+    Datum.B: "ID240 NR1 IDX5",
+    Datum.C: "ID240 NR1 IDX6",
+}
 
-        Raises:
-            DesignError: A line too long or not ASCII, or a block that starts the spindle.
-        """
-        for block in blocks:
-            text = f"{self._count:d} {block}"
-            for physical in text.split(LINE_END):
-                _check_line(physical)
-            self._lines.append(text)
-            self._count += 1
+SAYS = Says(
+    reset="M129",
+    plane="PLANE RESET STAY",
+    shift="CYCL DEF 7 with zeros in X, Y and Z",
+    tool="TOOL CALL",
+    preset="CYCL DEF 247",
+    machine="M91",
+    retract="L Z.. R0 FMAX M91",
+    retract_max="M140 MB MAX",
+    rapid="FMAX",
+    sync="FN 20: WAIT FOR SYNC",
+    status="FN 12 on the status of the touch",
+    length=f"FN 12 and FN 11 on Q{TOOL_LENGTH}",
+    unset="FN 0: Q{q} = -1",
+    printed="FN 16",
+    halt="STOP and FN 14",
+    back="MB",
+)
 
-    @property
-    def text(self) -> str:
-        """The whole file, CRLF line ends."""
-        return LINE_END.join(self._lines) + LINE_END
 
+def listed(blocks: Sequence[str]) -> str:
+    """The whole file: blocks numbered, one block may hold several lines (cycle parameters).
 
-def _check_line(physical: str) -> None:
-    if not physical.isascii():
-        raise DesignError(f"block '{physical}' has characters outside ASCII")
-    if len(physical) > MAX_LINE:
-        raise DesignError(
-            f"block '{physical}' has {len(physical)} characters, at most {MAX_LINE} are emitted"
-        )
-    if _SPINDLE.search(physical.split(";")[0]):
-        raise DesignError(f"block '{physical}' would start the spindle with a probe in it")
+    Raises:
+        DesignError: A line too long or not ASCII, or a block that starts the spindle.
+    """
+    numbered = [f"{i} {block}" for i, block in enumerate(blocks)]
+    for block in numbered:
+        for physical in block.split(LINE_END):
+            checked_line(physical)
+    return LINE_END.join(numbered) + LINE_END

@@ -1,14 +1,15 @@
-"""Mask files of FN 16: written, read strictly, and filled in as the control would."""
+"""Lines of a log: written as mask files of FN 16, read strictly, filled in as a control would."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
+from typing import NamedTuple
 
-from probe_paths.language.dialect import TOOL_LENGTH, Dialect, Q
-from probe_paths.language.klartext import LINE_END, MAX_LINE, checked_name
+from probe_paths.language.dialect import TOOL_LENGTH, Q
+from probe_paths.language.text import MAX_LINE, checked_name
 from twin.errors import BadFile, DesignError
 
 
@@ -25,14 +26,38 @@ LOG_HEAD = "MATSTD LOG 1"
 
 _LINE = re.compile(r'"(?P<text>[^"]*)"(?P<arguments>(,[A-Z0-9]+)*);\Z')
 _FORMAT = re.compile(r"%(\d+)(?:\.(\d+))?(LF|d)")
-_CLOCK = {
-    "DAY": "day",
-    "MONTH": "month",
-    "YEAR4": "year",
-    "HOUR": "hour",
-    "MIN": "minute",
-    "SEC": "second",
+_CLOCK: dict[str, Callable[[datetime], int]] = {
+    "DAY": lambda now: now.day,
+    "MONTH": lambda now: now.month,
+    "YEAR4": lambda now: now.year,
+    "HOUR": lambda now: now.hour,
+    "MIN": lambda now: now.minute,
+    "SEC": lambda now: now.second,
+    "CALENDAR": lambda now: 10_000 * now.year + 100 * now.month + now.day,
+    "SECONDS": lambda now: 3600 * now.hour + 60 * now.minute + now.second,
 }
+"""What a clock can be asked for: SECONDS of the day, CALENDAR as one number 20310506."""
+
+LINE_END = "\r\n"
+
+Fields = tuple[str, Sequence[str]]
+"""Text with formats, and what they print."""
+
+
+class LogForm(NamedTuple):
+    """How a control prints clock and counters.
+
+    Attributes:
+        clock: Line of a time of day.
+        date: Lines of the day and the time in the head.
+        counter: Format of whole numbers.
+        is_wide: Whether numbers are printed in columns.
+    """
+
+    clock: Fields
+    date: Sequence[Fields]
+    counter: str
+    is_wide: bool
 
 
 @dataclass(frozen=True)
@@ -55,7 +80,7 @@ class MaskLine:
             width, decimals, kind = match.groups()
             argument = next(numbers)
             if isinstance(argument, str):
-                return f"{getattr(now, _CLOCK[argument]):{width}d}"
+                return f"{_CLOCK[argument](now):{width}{'d' if kind == 'd' else f'.{decimals}f'}}"
             shape = f"{width}.0f" if kind == "d" else f"{width}.{decimals or 0}f"
             return f"{values[argument] + 0.0:{shape}}"
 
@@ -99,7 +124,7 @@ def _argument(word: str, path: str | Path, where: str) -> int | str:
     raise BadFile(path, where, word, f"a Q parameter or one of {', '.join(_CLOCK)}")
 
 
-def _mask(lines: Sequence[tuple[str, Sequence[str]]]) -> str:
+def _mask(lines: Sequence[Fields]) -> str:
     """Text of a mask file; raises DesignError where a line is too long."""
     out = []
     for text, arguments in lines:
@@ -114,49 +139,59 @@ def _q(parameter: int) -> str:
     return f"Q{int(parameter)}"
 
 
-def shared_masks(dialect: Dialect, rotary: Sequence[str]) -> dict[str, str]:
+def shared_masks(form: LogForm, decimals: int, rotary: Sequence[str]) -> dict[str, str]:
     """Masks that every program of a campaign uses, by file name.
 
     Args:
+        form: Of the control.
+        decimals: Of coordinates.
         rotary: Letters of the machine's rotary axes.
     """
-    d = dialect.log_decimals
+    number = _number(form, decimals)
+    side = "%5.1LF" if form.is_wide else form.counter
     sides = [Q.SIDE_1, Q.SIDE_2][: len(rotary)]
     places = [Q.ROTARY_1, Q.ROTARY_2][: len(rotary)]
     counters = [("P", Q.TOUCH), ("S", Q.POSE), ("F", Q.FEATURE)]
     came_from = [("U" + a, q) for a, q in zip(rotary, sides, strict=True)]
     turned = [(a, q) for a, q in zip(rotary, places, strict=True)]
     measured = [("X", Q.RESULT_X), ("Y", Q.RESULT_Y), ("Z", Q.RESULT_Z)]
-    clock = ("T%3d:%3d:%3d", ("HOUR", "MIN", "SEC"))
-    point = [_fields(counters, "%8.1LF"), _fields(measured, f"%{d + 7}.{d}LF")]
+    point = [_fields(counters, form.counter), _fields(measured, number)]
     if turned:
-        point += [_fields(turned, f"%{d + 7}.{d}LF"), _fields(came_from, "%5.1LF")]
+        point += [_fields(turned, number), _fields(came_from, side)]
+    clock = form.clock
+    missed = _fields([("NOCONTACT P", Q.TOUCH)], form.counter)
     return {
         f"{SharedMask.POINT}.A": _mask([*point, clock]),
-        f"{SharedMask.END}.A": _mask([("END T%3d:%3d:%3d", clock[1])]),
-        f"{SharedMask.NO_CONTACT}.A": _mask([_fields([("NOCONTACT P", Q.TOUCH)], "%8.1LF"), clock]),
+        f"{SharedMask.END}.A": _mask([(f"END {clock[0]}", clock[1])]),
+        f"{SharedMask.NO_CONTACT}.A": _mask([missed, clock]),
     }
+
+
+def _number(form: LogForm, decimals: int) -> str:
+    """Format of a coordinate: a sign, five digits, a point and the decimals, in a column."""
+    return f"%{decimals + 7 if form.is_wide else 1}.{decimals}LF"
 
 
 def _fields(named: Sequence[tuple[str, int]], form: str) -> tuple[str, list[str]]:
     return " ".join(name + form for name, _ in named), [_q(q) for _, q in named]
 
 
-def head_mask(name: str, remarks: Sequence[str]) -> str:
+def head_mask(form: LogForm, name: str, remarks: Sequence[str]) -> str:
     """Mask of one program's head: what was planned, then the calibration of the probe.
 
     Args:
+        form: Of the control.
         name: Of the program.
         remarks: Lines of the program's own head (standard, set-up), printed as they are.
     """
     checked_name(name)
-    lines: list[tuple[str, Sequence[str]]] = [(LOG_HEAD, ()), (f"PGM {name}", ())]
+    number = _number(form, 6)
+    lines: list[Fields] = [(LOG_HEAD, ()), (f"PGM {name}", ())]
     lines += [(remark, ()) for remark in remarks]
     lines += [
-        ("DATE%5d-%3d-%3d", ("YEAR4", "MONTH", "DAY")),
-        ("T%3d:%3d:%3d", ("HOUR", "MIN", "SEC")),
-        _fields([("TOOL", Q.TOOL), ("PRESET", Q.PRESET)], "%8.1LF"),
-        _fields([("R", Q.PROBE_RADIUS), ("L", Q.PROBE_LENGTH)], "%13.6LF"),
-        _fields([("EX", Q.OFFSET_X), ("EY", Q.OFFSET_Y), ("TL", TOOL_LENGTH)], "%13.6LF"),
+        *form.date,
+        _fields([("TOOL", Q.TOOL), ("PRESET", Q.PRESET)], form.counter),
+        _fields([("R", Q.PROBE_RADIUS), ("L", Q.PROBE_LENGTH)], number),
+        _fields([("EX", Q.OFFSET_X), ("EY", Q.OFFSET_Y), ("TL", TOOL_LENGTH)], number),
     ]
     return _mask(lines)

@@ -1,7 +1,7 @@
 """Space for the probe: heights at which nothing stands in the way, and gaps at a touch."""
 
 from dataclasses import dataclass
-from itertools import pairwise, product
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -121,15 +121,16 @@ def swing_height(chain: Chain, path: Array, solid: SolidHull, probe: Probe) -> A
     turn_by = np.diff(path, axis=0)
     rise = ((turn_by / (_SWING - 1)) ** 2 @ _arms(chain, solid, probe)) / 8.0
     shares = np.linspace(0.0, 1.0, _SWING)
-    # a return rises as high as the way there; an axis that stands still needs one sample
-    ends = np.sort(np.stack([path[:-1], path[1:]]), axis=0).transpose(1, 0, 2)
-    ways, way = np.unique(ends.reshape(len(ends), -1), axis=0, return_inverse=True)
-    highest = np.empty(len(ways))
-    for i, (low, high) in enumerate(ways.reshape(len(ways), 2, -1)):
-        samples = [a + shares * (b - a) if b > a else [a] for a, b in zip(low, high, strict=True)]
-        between = np.array(list(product(*samples)))
-        highest[i] = top_height(chain, between, solid, probe).max(initial=-np.inf)
-    return highest[way.ravel()] + rise
+    known: dict[bytes, float] = {}  # a return rises as high as the way there
+    for i, ends in enumerate(np.sort(np.stack([path[:-1], path[1:]], axis=1), axis=1)):
+        if ends.tobytes() not in known:
+            # an axis that stands still needs one sample
+            samples = [a + shares * (b - a) if b > a else [a] for a, b in ends.T]
+            between = np.array(list(product(*samples)))
+            height = top_height(chain, between, solid, probe).max(initial=-np.inf)
+            known[ends.tobytes()] = float(height)
+        rise[i] += known[ends.tobytes()]
+    return rise
 
 
 def _arms(chain: Chain, solid: SolidHull, probe: Probe) -> Array:

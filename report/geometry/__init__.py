@@ -10,12 +10,21 @@ from report.geometry.geometry_words import (
     geometry_lines,
     ladder_sentence,
     noted_lines,
+    quantity_name,
+    shown_unit,
+    sized,
 )
+from report.geometry.trend_words import change_sentences, trend_lines
 
 __all__ = [
+    "change_sentences",
     "correction_line",
     "fault_sentences",
     "geometry_lines",
     "ladder_sentence",
     "noted_lines",
+    "quantity_name",
+    "shown_unit",
+    "sized",
+    "trend_lines",
 ]

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from diagnosis.geometry import Correction, GeometryRow, LearntGeometry, Quantity
+from diagnosis.geometry import Correction, Estimate, GeometryRow, LearntGeometry, Quantity
 from report.numbers import digits, with_uncertainty
 from report.words import microns
 from twin.units import UM, URAD
@@ -105,6 +105,17 @@ def value_words(row: GeometryRow) -> str:
     if row.before is None:
         return now
     return f"{_value(row.before.value, row.before.u, factor, '')} → {now}"
+
+
+def shown_unit(unit: str) -> tuple[str, float]:
+    """Unit in which a quantity is told, and one of it in the base unit."""
+    return _UNITS[unit]
+
+
+def sized(estimate: Estimate, unit: str) -> str:
+    """`41.0 ± 2.0 µrad`, from an estimate in a base unit."""
+    shown, factor = _UNITS[unit]
+    return _value(estimate.value, estimate.u, factor, shown)
 
 
 def _value(value: float, u: float, factor: float, unit: str) -> str:

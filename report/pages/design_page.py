@@ -29,7 +29,6 @@ from report.words import (
     verdict_of_design,
 )
 from twin.errors import DesignError
-from twin.files import assumed_point
 from twin.units import DEG, UM
 
 MAPS, CURVES = "sensitivity", "touch_curves.png"
@@ -65,7 +64,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         plan=design.plan,
         programs=design.programs,
         pictures=pictures,
-        remarks=[*map(assumed_point, design.project.chain.assumed_points), *remarks],
+        remarks=[*design.project.chain.remarks, *remarks],
         placeholders=(folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER"),
         curves_caption=_draw_curves(design, folder),
         **study_content(design.study, maps),

@@ -22,6 +22,7 @@ from report.pages.residual_section import (
     residual_pictures,
     setting,
 )
+from report.pages.trend_section import trend_section
 from report.plots import (
     draw_candidates,
     draw_effect,
@@ -97,6 +98,7 @@ def write_diagnosis_page(
         after=residual_pictures(place, "after", result.fit) if len(result.steps) > 1 else [],
         on_standard=_on_standard(result, place),
         geometry=geometry_section(result.geometry),
+        trend=trend_section(result.trend, place),
         detectable=_detectable(result.detectable),
         candidates=[(parse_effect(c.effect, chain), c) for c in result.candidates],
         plans=[_plan(p) for p in result.plans],

@@ -12,7 +12,6 @@ from report.words import dominant_words, place_words, sampling_words, unsampled
 from sensitivity.shares import regions
 from sensitivity.study import Study, Volume, has_volume, level, volume
 from twin.errors import DesignError
-from twin.files import assumed_point
 from twin.frames import Array
 from twin.machine import Family, Symbol
 from twin.units import DEG, UM, URAD
@@ -57,7 +56,7 @@ def write_study_page(
         folder / "report.html",
         "sensitivity.html",
         folder=folder,
-        remarks=[*map(assumed_point, study.chain.assumed_points), *remarks],
+        remarks=[*study.chain.remarks, *remarks],
         source=project,
         **study_content(study, shown),
     )

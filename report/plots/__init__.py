@@ -13,6 +13,7 @@ from report.plots.reach_picture import draw_reach
 from report.plots.residual_pictures import draw_normal_plot, draw_over_variables
 from report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, is_spread
 from report.plots.touch_curve_picture import draw_touch_curves
+from report.plots.trend_picture import draw_trend
 
 __all__ = [
     "draw_candidates",
@@ -27,6 +28,7 @@ __all__ = [
     "draw_reach",
     "draw_rivals",
     "draw_touch_curves",
+    "draw_trend",
     "is_form",
     "is_spread",
     "write_order_picture",

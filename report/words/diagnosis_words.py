@@ -3,6 +3,8 @@
 import math
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from diagnosis.answer import Comparison, Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Condition, Shape, Side, Structure
@@ -247,9 +249,16 @@ scatter by a few per cent."""
 def promise_sentence(found: Comparison, promised: float) -> str:
     """The error of a prediction beside the one that its model promised (mm), in plain words."""
     word = "worse than" if found.rms > BROKEN * promised else "as good as"
+    expected = float(np.sqrt(np.mean(found.u[found.counted] ** 2)))
+    elsewhere = (
+        f" At these touches, which are not those that it was made from, {microns(expected)} "
+        "are to be expected of its uncertainty."
+        if expected > BROKEN * promised
+        else ""
+    )
     return (
         f"That is {word} was promised: {microns(found.rms)} beside {microns(promised)}, the error "
-        "of rows that the model had not seen when it was made."
+        f"of rows that the model had not seen when it was made.{elsewhere}"
     )
 
 

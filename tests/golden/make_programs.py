@@ -14,6 +14,7 @@ from artefact.body.standard import STEEL, Base, Standard
 from artefact.reach.touchable import Requests
 from probe_paths.emit.program import ProgramSet, make_programs
 from probe_paths.emit.writer import Feeds
+from probe_paths.language.dialect_file import read_dialect
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
@@ -23,6 +24,7 @@ from twin.record.touches import Setup
 from twin.units import DEG
 
 FOLDER = Path(__file__).parent / "programs"
+LINUXCNC = Path(__file__).parent / "linuxcnc"
 POSES = ((0.0, 0.0), (0.0, 120.0), (-30.0, 60.0), (-60.0, 170.0), (20.0, -100.0))
 """B and C of the table poses, degrees."""
 
@@ -107,14 +109,14 @@ def plan() -> TouchPlan:
     return plan_touches(small, machine(), Probe(), setup(), requests(small), options)
 
 
-def programs() -> ProgramSet:
-    """The golden programs, three files."""
-    return make_programs(plan(), feeds=Feeds(touches_per_file=24))
+def programs(control: str = "itnc530") -> ProgramSet:
+    """The golden programs of a control, three files."""
+    return make_programs(plan(), read_dialect(control), Feeds(touches_per_file=24))
 
 
 if __name__ == "__main__":
     made = programs()
-    for path in made.write(FOLDER):
+    for path in made.write(FOLDER) + programs("linuxcnc").write(LINUXCNC):
         print(path)
     for refused in plan().refused:
         print(refused)

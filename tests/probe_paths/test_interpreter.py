@@ -162,7 +162,7 @@ SEEDED: dict[str, tuple[Change, str]] = {
     "length check the wrong way": (swap("LT -1", "LT +1"), "after a touch without contact"),
     "length of another probe": (swap("- +163.0", "- +150.0"), "163 mm, as the head says"),
     "parameter left over": (drop("FN 0: Q1606"), "a parameter set by this program"),
-    "touch number forgotten": (drop("FN 0: Q1620", 1), "a number of its own"),
+    "touch number forgotten": (drop("FN 0: Q1620", 1), "touch set anew"),
     "stated side wrong": (edit(r"Q1623 = \+1", "Q1623 = -1"), "as it last moved"),
     "no pre-move": (edit(r"^L B\S+ C\S+ R0 FMAX M126", ";", 0), "as it last moved"),
     "printed ahead": (drop("FN 20", 1), "FN 20: WAIT FOR SYNC before it"),

@@ -2,11 +2,13 @@ import numpy as np
 import pytest
 
 from probe_paths.language import klartext as k
-from probe_paths.language.blocks import Kind, read_blocks
-from probe_paths.language.dialect import Dialect
+from probe_paths.language.blocks import Kind
+from probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
+from probe_paths.language.language import Datum, Touch
+from probe_paths.language.languages import read_blocks
 from probe_paths.plan.heading import Heading, parse_heading, rounded_setup
 from probe_paths.plan.probe import Probe
-from twin.errors import DesignError
+from twin.errors import BadFile, DesignError
 from twin.frames import pose, rotation
 from twin.record.touches import Setup
 
@@ -37,42 +39,39 @@ def test_program_names_that_old_software_cannot_show_are_refused(name):
 @pytest.mark.parametrize("block", ["M3", "M03", "L Z+1.0000 R0 FMAX M13", "TOOL CALL 5 Z S1000"])
 def test_a_spindle_start_is_never_listed(block):
     with pytest.raises(DesignError, match="would start the spindle"):
-        k.Listing().add(block)
+        k.listed([block])
 
 
 @pytest.mark.parametrize(
     "block", ["M30", "M126", "L Z-1.0000 R0 FMAX M91", "TOOL CALL 3 Z", "M140 MB MAX"]
 )
 def test_other_m_functions_are_no_spindle_start(block):
-    listing = k.Listing()
-    listing.add(block)
-    assert listing.text == f"0 {block}\r\n"
+    assert k.listed([block]) == f"0 {block}\r\n"
 
 
 def test_long_and_foreign_lines_are_refused():
     with pytest.raises(DesignError, match="at most 72"):
-        k.Listing().add(k.comment("X" * 80))
+        k.listed([k.comment("X" * 80)])
     with pytest.raises(DesignError, match="outside ASCII"):
-        k.Listing().add(k.comment("20 \N{DEGREE SIGN}"))
+        k.listed([k.comment("20 \N{DEGREE SIGN}")])
     with pytest.raises(DesignError, match="ends in ~"):
         k.comment("to be continued ~")
 
 
 def test_every_block_of_the_vocabulary_is_one_that_the_parser_knows():
-    listing = k.Listing()
-    listing.add(
+    text = k.listed([
         k.begin("ALL"), k.comment("TEXT"), k.structure("HEAD"), *k.stock([0, 0, 0], [1, 2, 3]),
         k.TCPM_OFF, k.PLANE_OFF, *k.datum_shift_off(), k.tool_call(7), k.preset(3), k.WAIT,
         k.line({"Z": -1.0}, words="M91"), k.line({"B": -30.0, "C": 5.0}, 1000, k.SHORTER_WAY),
         k.SHORTER_WAY, k.SHORTER_WAY_OFF, k.assign(1601, 2), k.assign(1601, -2.5),
-        k.system_read(1601, 350, 14, 1), k.system_read(1601, 350, 11), k.call(90),
-        *k.probe_vector(k.ProbeWords(), 1610, [0.0, 0.6, -0.8], 8.0, 250.0, 5.0),
-        k.print_masked("TNC:\\A\\M.A", "TNC:\\A\\L.TXT"), k.PROGRAM_STOP, k.label(90, "WHY"),
+        k.read(1601, Datum.OFFSET_X), k.read(1601, Datum.RADIUS), k.call(90),
+        *k.probe_vector(Dialect(), 1610, Touch([0.0, 0.6, -0.8], 8.0, 250.0, 5.0)),
+        k.printed("TNC:\\A\\M.A", [], "TNC:\\A\\L.TXT"), k.PROGRAM_STOP, k.label(90, "WHY"),
         k.jump_if_less(1613, 0, 91), k.jump_if_greater(1607, 2, 91),
         k.difference(1607, 114, 163.5), k.LABEL_END, k.label(91), k.RETRACT_MAX, k.OPERATOR_STOP,
         k.stop_with_error(1014), k.end("ALL"),
-    )  # fmt: skip
-    blocks = read_blocks(listing.text.encode("ascii"), "ALL.H")
+    ])  # fmt: skip
+    blocks = read_blocks(text.encode("ascii"), "ALL.H")
     assert {b.kind for b in blocks} == set(Kind) - {Kind.TCPM_ON}
 
 
@@ -84,19 +83,22 @@ def test_the_form_in_which_a_control_saves_is_read_alike():
     assert words[0] == words[1] == words[2]
 
 
-@pytest.mark.parametrize("word", k.DISTANCE_WORDS)
-@pytest.mark.parametrize("name", k.CYCLE_NAMES)
+@pytest.mark.parametrize("word", DISTANCE_WORDS)
+@pytest.mark.parametrize("name", CYCLE_NAMES)
 def test_every_dialect_of_cycle_4_is_read_back(word, name):
-    blocks = k.probe_vector(k.ProbeWords(name, word), 1610, [0.0, 0.0, -1.0], 8.0, 250.0, 5.0)
-    listing = k.Listing()
-    listing.add(*blocks)
-    path = read_blocks(listing.text.encode("ascii"), "A.H")[3]
+    dialect = Dialect(cycle_name=name, distance_word=word)
+    blocks = k.probe_vector(dialect, 1610, Touch([0.0, 0.0, -1.0], 8.0, 250.0, 5.0))
+    path = read_blocks(k.listed(blocks).encode("ascii"), "A.H")[3]
     assert (path.number("distance"), path.number("feed"), path.number("back")) == (8.0, 250.0, 5.0)
 
 
-def test_unknown_dialect_words_are_refused():
-    with pytest.raises(DesignError, match="expected one of SET UP, ABST, DIST"):
-        k.ProbeWords(distance_word="SETUP")
+def test_words_of_a_dialect_are_known_to_its_reader_alone():
+    own = Dialect(cycle_name="MESSEN IN 3D", distance_word="WEG")
+    blocks = k.probe_vector(own, 1610, Touch([0.0, 0.0, -1.0], 8.0, 250.0, 5.0))
+    text = k.listed(blocks).encode("ascii")
+    assert read_blocks(text, "A.H", own)[3].number("distance") == 8.0
+    with pytest.raises(BadFile, match=r"line 1.*MEASURING IN 3D"):
+        read_blocks(text, "A.H")
     assert Dialect(folder="TNC:\\P").on_control("A.H") == "TNC:\\P\\A.H"
 
 

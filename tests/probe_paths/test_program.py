@@ -9,9 +9,10 @@ import pytest
 from probe_paths.control.clock import Clock
 from probe_paths.emit.program import make_programs
 from probe_paths.emit.writer import Feeds, visit_title
-from probe_paths.language.blocks import Kind, read_blocks
+from probe_paths.language.blocks import Kind
 from probe_paths.language.dialect import Dialect
-from probe_paths.language.klartext import MAX_LINE, ProbeWords
+from probe_paths.language.languages import read_blocks
+from probe_paths.language.text import MAX_LINE
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import PlanOptions, requests_at
@@ -113,8 +114,14 @@ def test_the_duration_is_that_of_the_read_text(plan, programs):
 
 
 def test_dialect_words_reach_the_text(plan):
-    words = ProbeWords("MEASURING IN 3-D", "ABST")
-    dialect = Dialect(words, "TNC:\\CAL", tool=12, preset=4, prefix="FF")
+    dialect = Dialect(
+        cycle_name="MEASURING IN 3-D",
+        distance_word="ABST",
+        folder="TNC:\\CAL",
+        tool=12,
+        preset=4,
+        prefix="FF",
+    )
     text = make_programs(plan, dialect).programs[0].text
     assert "TCH PROBE 4.0 MEASURING IN 3-D\r\n" in text
     assert "TCH PROBE 4.3 ABST +8.0000 F250 MB+5.0000 REFERENCE SYSTEM:0" in text

@@ -10,7 +10,7 @@ from twin.effects.location import LocationError
 from twin.effects.periodic import usual_distance
 from twin.effects.probe import ProbeRadius, normal_in_tool
 from twin.effects.second_time import MARK, Again, again
-from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
+from twin.effects.setup_error import SHIFT_SD, TURN_SD, SetupError, setup_errors
 
 __all__ = [
     "MARK",
@@ -22,6 +22,7 @@ __all__ = [
     "HigherOrder",
     "LocationError",
     "ProbeRadius",
+    "SetupError",
     "again",
     "component",
     "normal_in_tool",

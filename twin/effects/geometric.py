@@ -24,7 +24,8 @@ from twin.units import DEG
 HIGHEST = 12
 """Degree beyond which a name is a slip: what varies faster is `periodic`."""
 PROPOSED_DEGREE = 4
-"""Two degrees beyond the ordinary model; faster changes are proposed as `periodic`."""
+"""Two degrees beyond the ordinary model of a linear axis; what changes faster is `periodic`."""
+_DEGREES = re.compile(r"(?:(\d+)-)?(\d+)\Z")
 _SHAPE = re.compile(r"([a-z]+)(?:,([\d.]+))?(?:@(-?[\d.]+(?:e-?\d+)?))?\Z")
 
 
@@ -87,31 +88,40 @@ def component(chain: Chain, name: str, shape: ShapeName, **options: float) -> Co
 
 @dataclass(frozen=True)
 class HigherOrder:
-    """One component error of an axis up to some degree, or up to some harmonic.
+    """One component error of an axis over some degrees, or some harmonics.
 
-    T_k are the Chebyshev polynomials (T_1 and T_2 are the linear and the parabolic distribution) of
-    u, the reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are
+    ``E = sum a_k T_k(u)``, or ``sum s_k sin kq + c_k cos kq``, k from `lowest` to `degree`. T_k are
+    the Chebyshev polynomials (T_1 and T_2 are the linear and the parabolic distribution) of u, the
+    reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are
     expected to fall as ``1/k^1.5`` from the size of the class.
 
     Attributes:
         symbol: Which component of which axis.
-        degree: n.
+        degree: The highest.
         sd: Expected standard deviation of the first coefficient, mm or rad.
         rotary: Whether harmonics are meant.
+        lowest: The lowest degree.
     """
 
     symbol: Symbol
     degree: int
     sd: float
     rotary: bool = False
+    lowest: int = 1
 
     kind = "geometric"
     is_told_whole = True
 
     @property
     def name(self) -> str:
-        """`geometric(EYX,4)`."""
-        return f"geometric({self.symbol.name},{self.degree})"
+        """`geometric(EYX,4)`, `geometric(EYX,3-4)`: up to degree 4, and degrees 3 and 4 alone."""
+        degrees = f"{self.lowest}-{self.degree}" if self.lowest > 1 else f"{self.degree}"
+        return f"geometric({self.symbol.name},{degrees})"
+
+    @property
+    def degrees(self) -> range:
+        """Every degree that is in it."""
+        return range(self.lowest, self.degree + 1)
 
     @property
     def title(self) -> Title:
@@ -123,7 +133,7 @@ class HigherOrder:
         """Coefficients, by rising degree; sine before cosine."""
         unit = self.symbol.unit
         out = []
-        for k in range(1, self.degree + 1):
+        for k in self.degrees:
             for name in (f"sin{k}", f"cos{k}") if self.rotary else (f"T{k}",):
                 out.append(Parameter(name, unit, self.sd / k**1.5))
         return tuple(out)
@@ -133,19 +143,20 @@ class HigherOrder:
         where = touches.chain.twist_of(self.symbol)
         q = touches.reading(self.symbol.link)
         if self.rotary:
-            harmonics = [f(k * q) for k in range(1, self.degree + 1) for f in (np.sin, np.cos)]
+            harmonics = [f(k * q) for k in self.degrees for f in (np.sin, np.cos)]
             return tuple(Term(j, where, amount) for j, amount in enumerate(harmonics))
         u = touches.chain.link(self.symbol.link).scaled(q)
         basis = [np.ones_like(u), u]
         for _ in range(1, self.degree):
             basis.append(2.0 * u * basis[-1] - basis[-2])
-        return tuple(Term(k - 1, where, basis[k]) for k in range(1, self.degree + 1))
+        return tuple(Term(j, where, basis[k]) for j, k in enumerate(self.degrees))
 
 
-def higher_order(chain: Chain, symbol: Symbol, degree: int) -> HigherOrder:
-    """One component error up to some degree, with the prior of the default ranges."""
+def higher_order(chain: Chain, symbol: Symbol, degree: int, lowest: int = 1) -> HigherOrder:
+    """One component error over some degrees, with the prior of the default ranges."""
     rotary = chain.link(symbol.link).kind == "rotary"
-    return HigherOrder(symbol, degree, Ranges().sd(chain, symbol), rotary)
+    sd = Ranges().sd(chain, symbol)
+    return HigherOrder(symbol=symbol, degree=degree, sd=sd, rotary=rotary, lowest=lowest)
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Effect:
@@ -153,13 +164,18 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     check_count(KIND.usage, arguments, 2, 3)
     symbol = component_symbol(chain, arguments[0])
     rest = ",".join(arguments[1:])
-    if rest.isdigit() and 1 <= int(rest) <= HIGHEST:
-        return higher_order(chain, symbol, int(rest))
+    degrees = _DEGREES.match(rest)
+    if degrees is not None:
+        lowest, highest = int(degrees[1] or 1), int(degrees[2])
+        if 1 <= lowest <= highest <= HIGHEST:
+            return higher_order(chain, symbol, highest, lowest)
     match = _SHAPE.match(rest)
     word = next((s for s in SHAPES if match is not None and s == match.group(1)), None)
     if match is None or word is None:
         raise refusal(
-            KIND.usage, arguments, f"a degree of 1 to {HIGHEST} or one of {', '.join(SHAPES)}"
+            KIND.usage,
+            arguments,
+            f"a degree of 1 to {HIGHEST}, two such as 3-4, or one of {', '.join(SHAPES)}",
         )
     _, periods, phase = match.groups()
     sd = Ranges().sd(chain, symbol)
@@ -173,11 +189,16 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
 
 
 def propose(touches: Touches) -> Iterable[HigherOrder]:
-    """Every component error of an axis that moved, two degrees beyond the ordinary model."""
+    """Every component error of an axis that moved, in the degrees beyond the ordinary model.
+
+    That has two of a linear axis and one of a rotary one; a degree that stood in both would have a
+    size in neither.
+    """
     axes = moving_axes(touches)
     for symbol in touches.chain.symbols:
         if symbol.family is Family.COMPONENT and symbol.link in axes:
-            yield higher_order(touches.chain, symbol, PROPOSED_DEGREE)
+            lowest = 2 if touches.chain.link(symbol.link).kind == "rotary" else 3
+            yield higher_order(touches.chain, symbol, PROPOSED_DEGREE, lowest)
 
 
 KIND = Kind(
@@ -186,7 +207,8 @@ KIND = Kind(
     title="component error of an axis",
     synonyms="positioning, straightness, roll, pitch, yaw, scale error, linear error, "
     "guideway error, run-out, wobble of an axis",
-    formula="E = sum a_k T_k(u), k <= n (linear axis); sum s_k sin kq + c_k cos kq (rotary)",
+    formula="E = sum a_k T_k(u), k <= n or m <= k <= n (linear axis); "
+    "sum s_k sin kq + c_k cos kq (rotary)",
     units="a_k, s_k, c_k: µm or µrad",
     typical="3 to 10 µm, 10 to 40 µrad; old machines ten times that",
     source="ISO 230-1:2012 (component errors); ISO 230-7 (harmonics of an axis of rotation)",

@@ -7,14 +7,20 @@ stood there and what was expected. Writers write whole files or none.
 from twin.files.error_file import errors_toml, read_errors
 from twin.files.machine_file import MachineTables, Pair, Vector, read_machine
 from twin.files.pose_file import read_poses, reading_columns
-from twin.files.run_columns import assumed_point
 from twin.files.run_file import SetupTable, read_run
 from twin.files.run_writer import write_run
 from twin.files.sensor_file import SensorRecord, read_sensors
-from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.files.toml import (
+    Table,
+    check_format,
+    checked,
+    one_line_end,
+    parse_toml,
+    read_bytes,
+    read_text,
+)
 from twin.files.whole import (
     NOT_WRITABLE,
-    UNFINISHED,
     refuse_own_input,
     refuse_to_overwrite,
     write_whole,
@@ -23,18 +29,18 @@ from twin.files.whole import (
 
 __all__ = [
     "NOT_WRITABLE",
-    "UNFINISHED",
     "MachineTables",
     "Pair",
     "SensorRecord",
     "SetupTable",
     "Table",
     "Vector",
-    "assumed_point",
     "check_format",
     "checked",
     "errors_toml",
+    "one_line_end",
     "parse_toml",
+    "read_bytes",
     "read_errors",
     "read_machine",
     "read_poses",

@@ -40,18 +40,23 @@ class Table(BaseModel):
 T = TypeVar("T", bound=BaseModel)
 
 
-def read_text(path: str | Path) -> str:
-    """Text of a user's file; raises BadFile if it is missing or not UTF-8."""
+def read_bytes(path: str | Path) -> bytes:
+    """What a user's file holds; raises BadFile if it cannot be read."""
     try:
-        data = Path(path).read_bytes()
+        return Path(path).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
         found = getattr(error, "strerror", None) or str(error)
         raise BadFile(path, "file", found, "a file that can be read") from error
+
+
+def read_text(path: str | Path) -> str:
+    """Text of a user's file; raises BadFile if it is missing or not UTF-8."""
+    data = read_bytes(path)
     for begin, what in _NO_TEXT.items():
         if data.startswith(begin):
             raise BadFile(path, "file", what, "a text file (UTF-8)")
     try:
-        return _one_line_end(data.decode("utf-8-sig"))
+        return one_line_end(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         if b"\0" in data:
@@ -68,7 +73,7 @@ def is_file(path: Path) -> bool:
         return False
 
 
-def _one_line_end(text: str) -> str:
+def one_line_end(text: str) -> str:
     """Text with line feeds, whichever system wrote it."""
     return text.replace("\r\n", "\n").replace("\r", "\n")
 

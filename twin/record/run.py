@@ -57,6 +57,13 @@ class Run(Shown):
             digest.update((np.round(values, 9) + 0.0).tobytes())  # + 0.0: no negative zeros
         return digest.hexdigest()[:16]
 
+    @property
+    def fingerprints(self) -> tuple[str, ...]:
+        """Of every run that was joined, in their order, and last of all together."""
+        of = self.touches.run
+        each = [self[of == i].fingerprint for i in np.unique(of)]
+        return (*each, self.fingerprint) if len(each) > 1 else (self.fingerprint,)
+
     def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Run":
         """The measurements of some rows, as a new record."""
         return replace(

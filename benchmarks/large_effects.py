@@ -1,0 +1,99 @@
+"""Effects ten times their usual size: found, found once, with the right size?
+
+    python benchmarks/large_effects.py [--runs 20] [--first 0] [--times 10] [--jobs 1]
+
+Each run hides one effect in the independent exact simulator, by its own formula there, so many
+times as large as the library expects it; every other run has chips, a noise that is not as stated
+and a spindle that runs besides. Right is the effect, or one that the same touches cannot tell from
+it, and nothing beside it.
+"""
+
+import argparse
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
+
+MACHINES = ("hsm600u", "fork", "hmc1995")
+SEED = 41
+
+
+def drawn(rng: np.random.Generator, label: str, hard: bool):
+    """A random effect of any kind that the machine can have, without its size."""
+    from simulator_draw import draw
+    from simulator_experiment import MACHINES as FILES
+    from simulator_machine import read_machine
+
+    return draw(rng, read_machine(FILES[label]), hard)
+
+
+def usual(name: str, chain) -> float:
+    """Size of an effect that the library expects, in the unit in which amplitudes are told."""
+    from diagnosis.fit import file_unit
+    from twin.library import parse_effect
+
+    first = parse_effect(name, chain).parameters[0]
+    return float(first.sd / file_unit(first.unit)[1])
+
+
+def simulated(number: int, times: float):
+    """A run that hides a large effect, and the truth about it."""
+    from simulator_case import read_back, simulate_case
+
+    rng = np.random.default_rng([SEED, number])
+    label, hard = MACHINES[number % 3], bool(number % 2)
+    chain = read_back(*simulate_case(rng, label)[:2]).touches.chain
+    effect = drawn(rng, label, hard)
+    effect.amplitude = times * usual(effect.name, chain)
+    run, machine, truth = simulate_case(rng, label, [effect], hard)
+    return read_back(run, machine), truth["hidden"][0]
+
+
+def one(job: tuple[int, float]):
+    """What was hidden, what was found, whether that is right, true size, found size, seconds."""
+    from diagnosis.answer import Verdict, diagnose
+
+    run, hidden = simulated(*job)
+    start = time.process_time()
+    result = diagnose(run)
+    seconds = time.process_time() - start
+    steps = [s for s in result.steps if s.effect is not None]
+    names = {hidden["effect"], *(a[1] for a in hidden["alike"])}
+    right = result.verdict is Verdict.MISSING and len(steps) == 1
+    if right:
+        rivals = {r.effect.name for r in steps[0].confusion.rivals}
+        right = steps[0].effect.name in names or hidden["effect"] in rivals
+    own = next((s for s in steps if s.effect.name == hidden["effect"]), None)
+    size = next((r for r in own.reported if r.quantity == "amplitude"), None) if own else None
+    found = ", ".join(s.effect.name for s in steps) or "-"
+    told = None if size is None else (size.value, size.u)
+    return job[0], hidden, found, result.verdict.value, right, told, seconds
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--runs", type=int, default=20)
+    parser.add_argument("--first", type=int, default=0, help="number of the first run")
+    parser.add_argument("--times", type=float, default=10.0, help="size over the usual one")
+    parser.add_argument("--jobs", type=int, default=1)
+    args = parser.parse_args()
+    jobs = [(args.first + k, args.times) for k in range(args.runs)]
+    with ProcessPoolExecutor(args.jobs) as pool:
+        results = list(pool.map(one, jobs))
+    for number, hidden, found, verdict, right, told, seconds in results:
+        size = "" if told is None else f", told {abs(told[0]):.5g} ± {told[1]:.2g}"
+        print(
+            f"{'ok   ' if right else 'WRONG'} {number:3} {hidden['effect']} "
+            f"{hidden['amplitude']:.4g} ({hidden['signal_to_noise']:.0f} times the noise) -> "
+            f"{found} [{verdict}]{size}  {seconds:.1f} s"
+        )
+    print(f"right {sum(r[4] for r in results)} of {len(results)}")
+
+
+if __name__ == "__main__":
+    main()

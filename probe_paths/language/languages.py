@@ -1,0 +1,34 @@
+"""Which languages there are, and which one a file is written in."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from probe_paths.language import gcode, klartext
+from probe_paths.language.blocks import Block, read_klartext
+from probe_paths.language.dialect import Dialect
+from probe_paths.language.gcode_reader import read_gcode
+from probe_paths.language.language import Language
+
+LANGUAGES: Mapping[str, Language] = {"klartext": klartext, "gcode": gcode}
+"""By the name that dialects give."""
+
+
+def language_of(path: str | Path) -> Language:
+    """Language of a program file, by the ending of its name."""
+    return gcode if Path(path).suffix.lower() == gcode.ENDING else klartext
+
+
+def read_blocks(data: bytes, path: str | Path, dialect: Dialect | None = None) -> list[Block]:
+    """Blocks of a program file in the language of its name.
+
+    Args:
+        data: Content of the file.
+        path: Its name.
+        dialect: Of the control, where it has words of its own.
+
+    Raises:
+        BadFile: Whatever is not in the closed list of the language, or not a whole text.
+    """
+    if language_of(path).ENDING == gcode.ENDING:
+        return read_gcode(data, path)
+    return read_klartext(data, path, dialect or Dialect())

@@ -1,0 +1,84 @@
+"""What changed between several runs, in words."""
+
+from collections.abc import Sequence
+
+from diagnosis.answer import Trend
+from diagnosis.geometry import CHANGED, Estimate, GeometryRow, Quantity
+from report.geometry.geometry_words import quantity_name, shown_unit, sized
+from report.numbers import digits
+from report.words import microns
+from twin.units import UM
+
+TOLD = 4
+"""Changes of one run that are told in a sentence, the largest over the travel first."""
+
+
+def change_sentences(trend: Trend) -> list[str]:
+    """A sentence for every run but the first: what changed into it, or what would have shown."""
+    names = [run.name for run in trend.runs]
+    out = []
+    for i in range(1, len(names)):
+        if trend.runs[i].is_held_out:
+            continue
+        earlier = max(k for k in range(i) if k == 0 or not trend.runs[k].is_held_out)
+        between = f"from {names[earlier]} to {names[i]}"
+        rows = changed_rows(trend, i)
+        if i not in trend.changed:
+            out.append(f"{between} nothing of the geometry changed{_would_have(trend.rows, i)}")
+        elif not rows:
+            out.append(f"{between} the geometry changed, no quantity by itself beyond chance")
+        else:
+            told = [_changed(row, i) for row in rows[:TOLD]]
+            more = f"; and {len(rows) - TOLD} more in the table" if len(rows) > TOLD else ""
+            out.append(f"{between} {'; '.join(told)}{more}")
+    return out
+
+
+def trend_lines(trend: Trend | None) -> list[str]:
+    """What the console tells of several runs; nothing of a single one."""
+    return [] if trend is None else [*change_sentences(trend), _left_out(trend)]
+
+
+def _left_out(trend: Trend) -> str:
+    """How well every run is predicted by the others."""
+    known = [(run.name, run.left_out) for run in trend.runs if run.left_out is not None]
+    errors = [f"{name} {microns(error)}" for name, error in known]
+    return f"each run predicted by the others, its set-ups fitted: {', '.join(errors)} rms"
+
+
+def changed_rows(trend: Trend, run: int) -> list[GeometryRow]:
+    """Quantities that changed into a run, the largest over the travel first."""
+    changed = [row for row in trend.known_best(run) if row.has_changed_into(run)]
+    return sorted(changed, key=lambda row: -_at_ends(row, run))
+
+
+def _at_ends(row: GeometryRow, run: int) -> float:
+    """What a change does over the travel, mm."""
+    step = row.steps[run - 1]
+    return 0.0 if step is None else abs(step.value) * row.lever
+
+
+def _changed(row: GeometryRow, run: int) -> str:
+    """`squareness of Y to X (EC0Y) changed by 38.0 ± 2.9 µrad, 19 µm over the travel, ...`."""
+    step, now, before = row.steps[run - 1], row.course[run], _last(row.course[:run])
+    assert step is not None  # it has changed
+    over = "" if row.unit == "mm" else f" ({digits(_at_ends(row, run) / UM, 2)} µm over the travel)"
+    was = "" if before is None else f" from {sized(before, row.unit)}"
+    to = "" if now is None else f" to {sized(now, row.unit)}"
+    return f"{quantity_name(row)} changed{was}{to}, by {sized(step, row.unit)}{over}"
+
+
+def _last(course: Sequence[Estimate | None]) -> Estimate | None:
+    return next((e for e in reversed(course) if e is not None), None)
+
+
+def _would_have(rows: Sequence[GeometryRow], run: int) -> str:
+    """The smallest change of a squareness or a scale that would have been told."""
+    seen = []
+    for row in rows:
+        step = row.steps[run - 1]
+        if row.quantity in (Quantity.SQUARENESS, Quantity.SCALE) and step is not None:
+            unit, factor = shown_unit(row.unit)
+            least = digits(CHANGED * step.u / factor, 2)
+            seen.append(f"{quantity_name(row)} by {least} {unit}")
+    return f"; these runs would have shown {', '.join(seen)}" if seen else " that these runs show"

@@ -1,0 +1,243 @@
+"""Programs for LinuxCNC: the same steps as for the iTNC, read strictly, taken by rs274."""
+
+import re
+import shutil
+import subprocess
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from probe_paths.campaign.collisions import check_moves
+from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.evaluation import evaluate
+from probe_paths.campaign.virtual_run import run_programs
+from probe_paths.control.interpreter import interpret
+from probe_paths.control.log import read_log
+from probe_paths.control.steps import Halt, Move, Print, ProbeStep
+from probe_paths.language import gcode
+from probe_paths.language.dialect_file import read_dialect
+from probe_paths.language.languages import read_blocks
+from twin.errors import BadFile
+from twin.units import NM, UM
+
+LAST_DIGIT = 2e-4
+NUMBER = re.compile(r"[+-]\d+\.\d+")
+
+
+@pytest.fixture(scope="module")
+def made(golden):
+    return golden.programs("linuxcnc")
+
+
+@pytest.fixture(scope="module")
+def twins(made, chain):
+    """Every golden program for LinuxCNC, read from its text."""
+    return [interpret(p.text.encode(), Path(p.file), {}.get, chain) for p in made.programs]
+
+
+def test_programs_are_those_of_the_golden_files(made, golden):
+    assert made.masks == {}
+    assert {p.name for p in golden.LINUXCNC.iterdir()} == {p.file for p in made.programs}
+    for program in made.programs:
+        text = (golden.LINUXCNC / program.file).read_bytes().decode("ascii")
+        assert NUMBER.sub("#", text) == NUMBER.sub("#", program.text)
+        ours, golden_numbers = (
+            np.array([float(v) for v in NUMBER.findall(t)]) for t in (program.text, text)
+        )
+        assert np.abs(ours - golden_numbers).max() < LAST_DIGIT
+
+
+def test_steps_are_those_of_the_itnc(twins, read):
+    """Moves, touches, logs and stops in the same order, with the same readings."""
+    for ours, klartext in zip(twins, read, strict=True):
+        assert ours.heading.lines == klartext.heading.lines
+        for a, b in zip(ours.steps, klartext.steps, strict=True):
+            assert type(a) is type(b)
+            assert type(a) in (Move, ProbeStep, Print, Halt)
+            if isinstance(a, Move | ProbeStep):
+                np.testing.assert_array_equal(a.q, b.q)
+                assert a.feed == b.feed
+            if isinstance(a, ProbeStep):
+                assert [type(s) for s in a.on_miss] == [type(s) for s in b.on_miss]
+                assert (a.number, a.pose, a.feature) == (b.number, b.pose, b.feature)
+                assert a.slow_feed * 60.0 == 12.0
+
+
+def test_the_collision_check_is_the_same(twins, small, chain, made):
+    for program in twins:
+        check_moves(program, small, chain)
+    text = made.programs[0].text
+    lines = text.splitlines()
+    place = next(i for i, line in enumerate(lines) if line.startswith("G1 Z"))
+    for i in (place, place + 3):  # to the start of the touch, and back to it
+        lines[i] = re.sub(r"Z([+-][\d.]+)", lambda m: f"Z{float(m[1]) - 6.0:+.4f}", lines[i])
+    dipped = interpret("\n".join([*lines, ""]).encode(), Path("MS_A_1.ngc"), {}.get, chain)
+    with pytest.raises(BadFile, match=r"line 12\d: found a gap of"):
+        check_moves(dipped, small, chain)
+
+
+@pytest.fixture(scope="module")
+def parts(twins, small, chain):
+    runs = run_programs(twins, small, VirtualMachine(chain), np.random.default_rng(0))
+    return [p for r in runs for name, t in r.log.items() for p in read_log(name, "CB", t)]
+
+
+def test_logs_evaluate_to_nothing_on_a_perfect_machine(parts, small, chain, plan):
+    run = evaluate(parts, small, chain, UM)
+    assert len(run) == len(plan)
+    assert np.abs(run.deviation).max() < NM
+    assert all(part.is_complete and not part.remarks for part in parts)
+    assert parts[0].begin == datetime(2000, 1, 1, 8, 0, 0)
+
+
+def test_a_log_as_linuxcnc_prints_it_is_read(parts, tmp_path):
+    text = """MATSTD LOG 1
+PGM MS_A_1
+STANDARD SMALL-1 SETUP a
+ORIGIN X+12.000000 Y-8.000000 Z+5.000000
+TURNED A+0.000000 B+0.000000 C+20.053523
+PROBE RADIUS +3.000000 LENGTH TO BALL CENTRE +160.000000
+STYLUS L+80.000000 R+2.000000 BODY R+25.000000
+NOSE R+45.000000 TABLE R+160.000000
+DATE20310506.000000
+T86390.000000
+TOOL30.000000 PRESET1.000000
+R3.000000 L163.000000
+EX0.000000 EY0.000000 TL163.000000
+P1.000000 S1.000000 F3.000000
+X-55.123456 Y35.891800 Z197.838900
+C-100.000000 B20.000000
+UC-1.000000 UB-1.000000
+T5.000000
+END T6.000000
+"""
+    (tmp_path / "MS_A_1.TXT").write_text(text)
+    (part,) = read_log(tmp_path / "MS_A_1.TXT", ("C", "B"))
+    assert part.is_complete
+    assert part.begin == datetime(2031, 5, 6, 23, 59, 50)
+    assert part.time.tolist() == [15.0]  # over midnight
+    assert part.xyz.tolist() == [[-55.123456, 35.8918, 197.8389]]
+    assert {a: v.tolist() for a, v in part.side.items()} == {"C": [-1.0], "B": [-1.0]}
+
+
+def test_two_touches_take_longer_than_one(made, programs, plan):
+    """By hand: 0.3 mm back at 250 mm/min and 0.3 mm at 12 mm/min."""
+    longer = 0.3 * 60.0 * (1.0 / 250.0 + 1.0 / 12.0)
+    assert abs(made.duration - programs.duration - len(plan) * longer) < 1e-6
+
+
+def changed(text, old, new):
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("G91\n", "G90\n", r"line \d+: found 'G90', expected G91"),
+        ("F#7\n", "F#5\n", r"line \d+: .*F#5', expected .*F#7"),
+        ("#1613 = [#5070 - 1]", "#1613 = 0", r"expected #1613 = \[#5070 - 1\]"),
+        ("O191 ENDIF\n", "", r"expected O191 ENDIF"),
+        ("O191 IF [#1613 LT +0]\nO91 CALL\nO191 ENDIF\n", "", "IF on the status of the touch"),
+        ("G53 G0 Z-1.0000\nT30", "G53 G0 Z-100.0000\nT30", r"at least Z-20"),
+        ("G61\n", "G64\n", r"'G64', expected"),
+        ("G61\n", "", r"G61 before it"),
+        ("G92.1\n", "", r"G92.1 before it"),
+        ("G43 G54\n", "G54\n", r"'G54', expected"),
+        ("G43 G54\n", "", r"G43 G54 before it"),
+        ("T30 M6\n", "T30 M6 S500\n", "no speed"),
+        ("T30 M6\n", "M3\nT30 M6\n", "no spindle start"),
+        ("T30 M6\n", "T31 M6\n", r"tool 30, expected 31"),
+        (" G94\n", "\n", r"expected"),
+        ("O192 IF", "O192 IF [1 EQ 1]\nO192 IF", "expected O<number> SUB"),
+        ("[#5403 - +163.0000]", "[#5403 - +165.0000]", r"165 mm, expected 163"),
+        ("#1613 = -1\n", "", r"status of the touch before|expected #1613 = -1"),
+        ("[250] [+5.0000]", "[2500] [+5.0000]", r"F2500, expected F1 to F1000"),
+        ("[+8.0000] [250]", "[+80.0000] [250]", r"at most 10 mm beyond"),
+        ("O90 CALL\n", "", r"IF on the status"),
+        ("(LOGAPPEND,MS_A_1.TXT)", "(LOGAPPEND,OTHER.TXT)", r"a log OTHER.TXT, expected MS_A_1"),
+        ("(LOGAPPEND,MS_A_1.TXT)", "(LOGOPEN,MS_A_1.TXT)", r"expected \(LOGAPPEND"),
+        ("(LOG,X#1610", "(LOG,X#1699", "as they are emitted"),
+        ("G0 X", "G0 U", r"axis U, expected"),
+        ("M30\n", "", "no M30"),
+        ("(END PGM MS_A_1 MM)\n", "", "as the last block"),
+        ("G0 B+25.0000", "G38.3 Z-5.0000 F100\nG0 B+25.0000", "probing moves stand in subprogram"),
+        ("(BEGIN PGM MS_A_1 MM)", "(BEGIN PGM MS_A_2 MM)", r"MS_A_1"),
+    ],
+)
+def test_what_must_not_run_is_one_line(old, new, reason, made, chain):
+    text = changed(made.programs[0].text, old, new)
+    with pytest.raises(BadFile, match=reason) as refusal:
+        interpret(text.encode(), Path("MS_A_1.ngc"), {}.get, chain)
+    assert "\n" not in str(refusal.value)
+
+
+def test_every_line_that_is_lost_is_noticed_or_a_remark(made, chain):
+    """A touch less, a status less, half a test: no line of the code can go without a word."""
+    lines = made.programs[1].text.splitlines()
+    code = [i for i, line in enumerate(lines) if not line.startswith(";")]
+    silent = [lines[i] for i in code if _is_taken(lines[:i] + lines[i + 1 :], chain)]
+    # these the control or the operator does not need, or a move or touch follows all the same
+    for line in silent:
+        assert re.match(r"M66 E0 L0$|M0$|G0 |G53 G0 Z", line), line
+
+
+def _is_taken(lines, chain):
+    try:
+        interpret("\n".join([*lines, ""]).encode(), Path("MS_A_2.ngc"), {}.get, chain)
+    except BadFile:
+        return False
+    return True
+
+
+def test_words_have_one_spelling_at_both_ends():
+    """Every function of the language, read back by its reader."""
+    d = read_dialect("linuxcnc")
+    touch = gcode.Touch([0.0, 0.6, -0.8], 8.0, 250.0, 5.0)
+    blocks = [
+        gcode.begin("ALL"), gcode.label(90, "WHY"), gcode.jump_if_less(1613, 0, 91),
+        gcode.LABEL_END, *gcode.RESET, gcode.tool_call(7), gcode.preset(3), gcode.WAIT,
+        gcode.line({"Z": 1.0}), gcode.line({"B": -30.0}, 1000), gcode.assign(1601, -2.5),
+        *gcode.probe_vector(d, 1610, touch), gcode.PROGRAM_STOP, gcode.end("ALL"),
+    ]  # fmt: skip
+    found = read_blocks(gcode.listed(blocks).encode(), "ALL.ngc")
+    preset = next(b for b in found if b.kind.name == "PRESET")
+    assert preset.word("row") == "+3"
+    path = next(b for b in found if b.kind.name == "PROBE_PATH")
+    assert (path.number("distance"), path.number("back"), path.number("slow")) == (8.0, 5.0, 12.0)
+    assert [b.kind.name for b in found[-4:]] == ["LABEL", "JUMP", "LABEL", "END"]
+
+
+@pytest.mark.skipif(shutil.which("rs274") is None, reason="LinuxCNC (rs274) is not installed")
+@pytest.mark.parametrize("number", [0, 1, 2])
+def test_the_interpreter_of_linuxcnc_takes_every_block(number, made, tmp_path):
+    """Every touch is taken as met, so that no block is left out; a bad block is not taken."""
+    program = made.programs[number]
+    met = program.text.replace("[#5070 - 1]", "0").replace("#5070 GT 0", "1 GT 0")
+    done = interpreted(met, tmp_path)
+    assert "PROGRAM_END" in done
+    assert done.count("STRAIGHT_PROBE") == 2 * program.touches
+    assert "PROGRAM_END" not in interpreted(met.replace("\nG0 Z", "\nG0 H", 1), tmp_path)
+    missed = interpreted(program.text, tmp_path)  # where nothing is simulated nothing is met
+    assert "(ABORT,1014)" in missed
+    assert "PROGRAM_END" not in missed
+    other_probe = re.sub(r"#1607 = .*", "#1607 = +5", program.text)
+    assert "(ABORT,1011)" in interpreted(other_probe, tmp_path)
+
+
+def interpreted(text, folder):
+    """What rs274 says of a program."""
+    (folder / "tool.tbl").write_text("T30 P30 Z163.0 D6.0\n")
+    (folder / "a.var").write_text("")
+    (folder / "A.ngc").write_text(text)
+    done = subprocess.run(
+        ["rs274", "-t", "tool.tbl", "-v", "a.var", "-g", "A.ngc"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    return done.stdout + done.stderr
