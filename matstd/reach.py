@@ -159,9 +159,9 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
     retract = chain.link("Z").range[1] - options.retract
     to_rise = top_height(chain, poses, solid, tool) + options.clearance
     turns = np.flatnonzero(to_rise <= retract)  # the way to the others is of no use
-    path = np.tile(home_readings(chain), (2 * len(turns) + 1, 1))
-    path[1::2] = poses[turns]
-    turning = swing_height(chain, path, solid, tool)[::2] + 0.5 * options.clearance
+    home = home_readings(chain)
+    ways = [swing_height(chain, np.stack([home, poses[i]]), solid, tool)[0] for i in turns]
+    turning = np.array(ways) + 0.5 * options.clearance
     to_rise[turns] = np.maximum(to_rise[turns], turning)
     return to_rise, retract
 

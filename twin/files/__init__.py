@@ -14,9 +14,8 @@ from twin.files.toml import (
     Table,
     check_format,
     checked,
-    one_line_end,
     parse_toml,
-    read_bytes,
+    read_any_text,
     read_text,
 )
 from twin.files.whole import (
@@ -38,9 +37,8 @@ __all__ = [
     "check_format",
     "checked",
     "errors_toml",
-    "one_line_end",
     "parse_toml",
-    "read_bytes",
+    "read_any_text",
     "read_errors",
     "read_machine",
     "read_poses",

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.errors import BadFile
-from twin.files import one_line_end, read_bytes, read_text
+from twin.files import read_any_text
 from twin.frames import Array
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
@@ -191,26 +191,13 @@ def _cell(value: object) -> str | float:
 
 def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
     """Rows of a text file, its numbers read."""
-    text = _decoded(path)
+    text = read_any_text(path)
     counts = {s: _typical(text, s) for s in _SEPARATORS}
     separator = next((s for s in _SEPARATORS if counts[s] >= 1), ",")
     reader = csv.reader(io.StringIO(text), delimiter=separator)
     rows = [(reader.line_num, [c.strip() for c in row]) for row in reader]
     mark = _decimal_mark(path, rows)
     return [(line, [_number(c, mark) for c in row]) for line, row in rows]
-
-
-def _decoded(path: Path) -> str:
-    """Text of a file as spreadsheets and instruments save it: UTF-8, UTF-16, else Windows-1252."""
-    data = read_bytes(path)
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return one_line_end(data.decode("utf-16", errors="replace"))
-    try:
-        data.decode("utf-8")
-    except UnicodeDecodeError:
-        if b"\0" not in data:
-            return one_line_end(data.decode("cp1252", errors="replace"))
-    return read_text(path)
 
 
 def _typical(text: str, separator: str) -> float:
