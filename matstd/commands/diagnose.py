@@ -6,8 +6,16 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
-from matstd.start import add_pitch, add_start, first_model, model_file
+from matstd.options import (
+    REPORT_FILES,
+    add_pdf,
+    add_pitch,
+    add_start,
+    asked_printer,
+    first_model,
+    model_file,
+    print_report,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable

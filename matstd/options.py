@@ -1,12 +1,54 @@
-"""What a comparison or a diagnosis starts from: where the standard stands, geometry, a model."""
+"""Options that several commands share: `--start`, `--model`, `--pitch`, `--pdf`."""
+
+from __future__ import annotations
 
 import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from twin.errors import DesignError
-from twin.machine import Chain
-from twin.model import Model
+
+if TYPE_CHECKING:
+    from report.pages import Printer
+    from twin.machine import Chain
+    from twin.model import Model
 
 SETUP, GEOMETRY = "setup", "geometry"
+"""Words of `--start`."""
+
+REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
+"""Results that not every run of such a command leaves."""
+
+
+def add_pdf(parser: argparse.ArgumentParser) -> None:
+    """The argument `--pdf`."""
+    parser.add_argument(
+        "--pdf",
+        action="store_true",
+        default=None,
+        help="print the report into report.pdf too (by WeasyPrint or a browser of this machine)",
+    )
+
+
+def asked_printer(args: argparse.Namespace) -> Printer | None:
+    """What prints the page, looked for before the work begins; None where no PDF is wanted.
+
+    Raises:
+        MissingLibrary: It is wanted, and nothing here can print.
+    """
+    if not args.pdf:
+        return None
+    from report.pages import printer
+
+    return printer()
+
+
+def print_report(folder: Path, printed_by: Printer | None) -> None:
+    """Print the page of a folder, if anything shall."""
+    if printed_by is not None:
+        from report.pages import write_pdf
+
+        write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
 
 def add_start(parser: argparse.ArgumentParser, without: str) -> None:
@@ -60,5 +102,6 @@ def model_file(args: argparse.Namespace) -> str | None:
 def first_model(args: argparse.Namespace, chain: Chain) -> Model:
     """The starting model where no model file is named."""
     from twin.library import ordinary_model
+    from twin.model import Model
 
     return Model(chain, ()) if args.start == SETUP else ordinary_model(chain)
