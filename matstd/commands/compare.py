@@ -87,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
-    from report.geometry import fault_sentences, ladder_sentence, noted_lines
+    from report.geometry import console_lines
     from report.numbers import signed
     from report.words import (
         comparison_sentence,
@@ -107,10 +107,8 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
-    for sentence in fault_sentences(found.faults):
-        say(f"- {sentence}", style="bold")
-    for line in (ladder_sentence(found.geometry), *noted_lines(found.geometry)):
-        say(f"- {line}")
+    for line, is_first in console_lines(found.run.touches, found.geometry, found.faults):
+        say(f"- {line}", style="bold" if is_first else None)
     for remark in found.remarks:
         say(f"- {remark_sentence(remark)}")
     first = "" if args.no_report else "report.html, "

@@ -153,7 +153,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
     from matstd.console import console, say
     from report.effects import plan_words, rival_words
-    from report.geometry import fault_sentences, ladder_sentence, noted_lines, trend_lines
+    from report.geometry import console_lines
     from report.words import remark_sentence, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
@@ -167,13 +167,9 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     for step in result.steps:
         if step.effect is not None and (rivals := rival_words(step)):
             say(f"- {rivals}")
-    for sentence in fault_sentences(result.faults):
-        say(f"- {sentence}", style="bold")
-    for line in trend_lines(result.trend):
-        say(f"- {line}", style="bold")
-    noted = () if result.trend else noted_lines(result.geometry)
-    for line in (ladder_sentence(result.geometry), *noted):
-        say(f"- {line}")
+    known = result.run.touches, result.geometry, result.faults, result.trend
+    for line, is_first in console_lines(*known):
+        say(f"- {line}", style="bold" if is_first else None)
     for remark in result.remarks:
         say(f"- {remark_sentence(remark)}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:
