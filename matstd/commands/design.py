@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
 
 if TYPE_CHECKING:
