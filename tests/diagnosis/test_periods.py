@@ -121,7 +121,7 @@ def test_a_small_sine_is_found_beside_a_large_one_in_a_long_log() -> None:
 
 
 def test_what_was_scanned_is_told() -> None:
-    """Targets 6 mm apart over 295 mm: periods from 1 to 50 mm, as the effect's own scan has them."""
+    """Targets 6 mm apart over 295 mm: periods from 1 to 50 mm."""
     found = diagnose(positioning(np.arange(5.0, 300.0, 6.0), 2.5, 0.0))
     assert found.verdict is Verdict.NONE
     (scan,) = next(d for d in found.detectable if d.effect.name == "periodic(EXX)").scanned
