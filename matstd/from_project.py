@@ -25,6 +25,11 @@ _ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
 """Largest gap kept round the probe, mm, and the same as a share of the ball's radius."""
 
 
+_DROPPED = 0.1
+"""Of the touches that a plan may drop, each with its reason: the choice knows of room at touches,
+the plan of every move."""
+
+
 def probe(project: Project) -> Probe:
     """The probe in the spindle."""
     stated = project.probe
@@ -115,6 +120,7 @@ def plan_options(project: Project) -> PlanOptions:
     return PlanOptions(
         smallest_gap=0.5 * _room(project),
         clearance=project.workshop.clearance_mm,
+        tolerated=int(_DROPPED * project.standard.touches),
         retract=project.workshop.retract_mm,
         workshop=workshop(project),
     )

@@ -95,7 +95,9 @@ def suspects(run: Run, is_absurd: bool) -> Iterator[Suspect]:
 
 
 def has_minutes_for_seconds(run: Run) -> bool:
-    """Whether touches follow each other faster than any probe can make them."""
+    """Whether touches of a probe follow each other faster than it can make them."""
+    if not run.touches.instrument.is_ball_on_standard:
+        return False
     steps = np.diff(np.unique(run.touches.time))
     return bool(len(steps) > 1 and np.median(steps) < TOO_FAST)
 
@@ -159,9 +161,12 @@ def _with_link(chain: Chain, changed: Link) -> Chain:
 
 
 def _is_computed(run: Run) -> bool:
-    """Whether the deviations are those of the readings, rather than of another instrument."""
-    difference = np.abs(run.deviation - computed_deviation(run.touches))
-    return bool(np.median(difference) < AS_COMPUTED)
+    """Whether the deviations are those of the readings, rather than of another instrument.
+
+    Where readings are nominal theirs are zero, which small deviations do not differ from by much.
+    """
+    difference = np.median(np.abs(run.deviation - computed_deviation(run.touches)))
+    return bool(difference < min(AS_COMPUTED, 0.5 * np.median(np.abs(run.deviation))))
 
 
 def recomputed(run: Run, touches: Touches) -> Run:

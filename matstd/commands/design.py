@@ -60,6 +60,8 @@ def run(args: argparse.Namespace) -> int:
     say(verdict, style="bold")
     for line in others:
         say(f"- {line}")
+    for refusal in made.plan.refused:
+        say(f"- touch dropped: {refusal}")
     for machine in made.machines:
         say(f"- {proof_line(machine.seed + 1, machine.in_workspace, machine.proof)}")
     say(f"{args.output}: look at report.html")

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
     "dev_um = -(actual - target) along the direction of motion",
+    "arm": "the tracker says where the reflector really is, the readings where the controller "
+    "believes it; in the run stands dev_um = believed - measured along x, y and z of the tracker",
     "part": "measured - nominal is where the tool really went; in the run it stands as "
     "dev_um = -(measured - nominal) along each coordinate",
     "standard": "measured - calibrated is what the controller believes; in the run it stands as "
@@ -43,10 +45,44 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="nominal/measured list of a calibrated plate or standard this machine measured",
     )
+    kind.add_argument(
+        "--arm",
+        action="store_true",
+        help="serial arm under a tracker: columns j1, j2 ... of joints and x, y, z of a reflector",
+    )
     kind.add_argument("--map", metavar="MAP.toml", help="any other table, by a mapping file")
     parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
+    parser.add_argument(
+        "--dh",
+        metavar="DH.csv",
+        help="with --arm, for --machine: Denavit and Hartenberg's a alpha d theta, a row a joint",
+    )
+    parser.add_argument(
+        "--modified", action="store_true", help="the parameters of --dh are modified ones (Craig)"
+    )
+    parser.add_argument(
+        "--reflector",
+        metavar=("X", "Y", "Z"),
+        type=float,
+        nargs=3,
+        help="with --arm: place of the reflector, mm, in the tool frame, or with --dh in the frame "
+        "of the flange; found from the data where it is not stated",
+    )
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
     parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
+    parser.add_argument(
+        "--target",
+        metavar="COLUMN",
+        default="",
+        help="with --positioning: where the axis was told to go, if the header does not say; of "
+        "two encoders the one that the control believes",
+    )
+    parser.add_argument(
+        "--actual",
+        metavar="COLUMN",
+        default="",
+        help="with --positioning: where the axis really was, by the better instrument",
+    )
     parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
     parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
     parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
@@ -65,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
     sheets = [read_sheet(path, args.sheet) for path in args.files]
-    if len(sheets) > 1 and (args.map or args.positioning):
+    if len(sheets) > 1 and (args.map or args.positioning or args.arm):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:
         if sheet.left_out:
@@ -129,14 +165,18 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     from twin.foreign import machine_text
     from twin.units import UM
 
-    meaning = "positioning" if args.positioning else "part" if args.part else "standard"
-    measured, chain = (
-        _positioning(args, sheets[0]) if args.positioning else _points(args, sheets, meaning)
-    )
+    meaning = next(m for m in _SIGN if getattr(args, m))
+    if args.positioning:
+        measured, chain = _positioning(args, sheets[0])
+    elif args.arm:
+        measured, chain = _arm(args, sheets[0])
+    else:
+        measured, chain = _points(args, sheets, meaning)
     machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
     if not args.machine:
         refuse_to_overwrite(machine, args.force)
-        write_whole(machine, machine_text(chain, ", ".join(s.path.name for s in sheets)))
+        source = ", ".join(s.path.name for s in sheets)
+        write_whole(machine, machine_text(chain, source, is_known=args.arm))
     relative = Path(os.path.relpath(machine, output.resolve().parent)).as_posix()
     write_run(output, measured, relative)
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
@@ -148,19 +188,58 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
 def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A positioning test as a run."""
+    import numpy as np
+
+    from matstd.console import say
     from twin.errors import DesignError
     from twin.files import read_machine
     from twin.foreign import one_axis_machine, positioning_run, read_positioning
-    from twin.units import UM, URAD
+    from twin.units import DEG, UM, URAD
 
     axis = args.positioning
     if axis not in tuple("XYZABC"):
         raise DesignError(f"--positioning {axis}: expected one of X Y Z A B C")
-    test = read_positioning(sheet, axis, args.unit)
+    test = read_positioning(sheet, axis, args.unit, (args.target, args.actual))
+    low, high = (
+        v / (DEG if axis in "ABC" else 1.0) for v in (test.target.min(), test.target.max())
+    )
+    up, down = (int((test.direction == s).sum()) for s in (1, -1))
+    say(
+        f"- {len(np.unique(test.target))} targets from {low:g} to {high:g}, "
+        f"{len(np.unique(test.cycle))} cycles or strokes; {up} readings with {axis} growing, "
+        f"{down} with it falling"
+    )
     turns = axis in "ABC"
     u = _uncertainty(args, "u_urad", URAD) if turns else _uncertainty(args, "u_um", UM)
     chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
     return positioning_run(test, chain, u), chain
+
+
+def _arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
+    """An arm under a tracker as a run."""
+    import numpy as np
+
+    from matstd.console import say
+    from twin.errors import DesignError
+    from twin.files import read_machine
+    from twin.foreign import arm_from_dh, joint_readings, read_sheet, tracker_run
+    from twin.units import UM
+
+    if bool(args.machine) == bool(args.dh):
+        given = "both given" if args.dh else "neither given"
+        raise DesignError(f"--machine, --dh: {given}; expected the arm by one of them")
+    chain, turned = read_machine(args.machine) if args.machine else None, np.eye(3)
+    q, columns = joint_readings(sheet, chain.programmed_axes if chain else ())
+    if chain is None:
+        chain, turned = arm_from_dh(read_sheet(args.dh), q, is_modified=args.modified)
+    stated = None if args.reflector is None else turned @ np.array(args.reflector)
+    measured = tracker_run(sheet, chain, q, _uncertainty(args, "u_um", UM), stated)
+    pairs = zip(columns, chain.programmed_axes, strict=True)
+    say(f"- axes: {', '.join(f'{column} is {axis}' for column, axis in pairs)}")
+    at = ", ".join(f"{v:.3f}" for v in measured.touches.target[0])
+    how = "found" if stated is None else "stated"
+    say(f"- reflector at ({at}) mm of the tool frame, as {how}; the tracker's frame is the set-up")
+    return measured, chain
 
 
 def _points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple[Run, Chain]:

@@ -1,51 +1,31 @@
 """Looks at every move of a program, as read from its text, for something in its way."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from artefact.body import Meeting, Standard, contact
 from probe_paths.control import Move, ProbeStep, ReadProgram
 from probe_paths.plan import (
     SMALLEST_GAP,
-    SMALLEST_STEP,
     ToolClearance,
     solid_hull,
+    stroke_gaps,
     swing_height,
     top_height,
 )
 from twin.errors import BadFile
-from twin.frames import Array, apply, inverse
-from twin.machine import Chain, tip
+from twin.frames import Array, apply, inverse, turn
+from twin.machine import Chain, linear_directions, tip
 from twin.record import IntArray, Labels
-
-_MARCHES = 400  # steps as long as the clearance; a path that needs more grazes, and is refused
-
-
-@dataclass(frozen=True, eq=False)
-class _Moves:
-    """Positioning moves between known positions: line in the file, readings before and after."""
-
-    line: IntArray
-    before: Array
-    after: Array
-
-    @property
-    def fields(self) -> tuple[IntArray, Array, Array]:
-        """Line, readings before, readings after."""
-        return self.line, self.before, self.after
-
-    def __getitem__(self, rows: IntArray) -> "_Moves":
-        return _Moves(self.line[rows], self.before[rows], self.after[rows])
 
 
 def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
-    """Refuse a program that would drive the probe into the standard or the table.
+    """Refuse a program that would drive the probe into anything.
 
-    The machine and the set-up are taken as nominal. Moves above everything are free; below that
-    the ball and the whole tool are marched along each move, and along each touch until its expected
-    contact, never further than their gaps. Turning moves are looked at over all positions between.
-    Probe and table are those that the program's head states.
+    The machine and the set-up are taken as nominal; probe and workshop are those that the head
+    states. Moves of the linear axes that are not above everything are swept with ball and tool, and
+    so is every touch: to its contact, beyond it where the surface is not met, and up again after
+    that. Its ball has to meet the stated feature first. Turning moves are looked at over all
+    positions between.
 
     Args:
         program: As read from its text.
@@ -57,33 +37,36 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     probe, setup = program.heading.probe, program.heading.setup
     workshop = program.heading.workshop
     assert workshop is not None, "no program is read without it"
-    solid = solid_hull(standard, setup, workshop)
-    moves = _moves(program)
-    rotary = [chain.axis_index(name) for name in chain.rotary_axes]
-    z = chain.axis_index("Z")
-    turning = np.any(np.abs(moves.after - moves.before)[:, rotary] > 0.0, axis=1)
-    for i in np.flatnonzero(turning):
-        path = np.stack([moves.before[i, rotary], moves.after[i, rotary]])
-        over = moves.after[i, z] - swing_height(chain, path, solid, probe)[0]
-        _refuse(program, moves.line[i : i + 1], np.array([over]), np.array(["what turns"]))
-    straight = moves[np.flatnonzero(~turning)]
-    lowest = np.minimum(straight.before[:, z], straight.after[:, z])
-    low = straight[
-        np.flatnonzero(lowest < top_height(chain, straight.after[:, rotary], solid, probe))
-    ]
     clearance = ToolClearance(
         chain=chain, standard=standard, setup=setup, probe=probe, workshop=workshop
     )
-    strokes = _strokes(program, chain)
-    if len(low.line):
-        _refuse(program, low.line, _marched(clearance, low), np.full(len(low.line), "the standard"))
-    swept = _Moves(*(np.concatenate(pair) for pair in zip(low.fields, strokes.fields, strict=True)))
-    gap, nearest = clearance.swept_gap(swept.before, swept.after)
-    _refuse(program, swept.line, gap, nearest)
+    solid = solid_hull(standard, setup, workshop)
+    line, before, after = _moves(program)
+    rotary = [chain.axis_index(name) for name in chain.rotary_axes]
+    z = chain.axis_index("Z")
+    is_turning = np.any(np.abs(after - before)[:, rotary] > 0.0, axis=1)
+    for i in np.flatnonzero(is_turning):
+        path = np.stack([before[i, rotary], after[i, rotary]])
+        level = min(before[i, z], after[i, z])
+        over = level - swing_height(chain, path, solid, probe, level - SMALLEST_GAP)[0]
+        _refuse(program, line[i : i + 1], np.array([over]), np.array(["what turns"]))
+    lowest = np.minimum(before[:, z], after[:, z]) - SMALLEST_GAP
+    is_low = lowest < top_height(chain, after[:, rotary], solid, probe)
+    low = np.flatnonzero(is_low & ~is_turning)
+    ends = np.round(np.concatenate([before[low], after[low]], axis=1), 6)
+    # a way down and the same way up again count once
+    back = np.concatenate([after[low], before[low]], axis=1)
+    is_later = [tuple(a) > tuple(b) for a, b in zip(ends, np.round(back, 6), strict=True)]
+    ends[is_later] = back[is_later]
+    _, first = np.unique(np.round(ends, 6), axis=0, return_index=True)
+    low = low[np.sort(first)]
+    gap, nearest = clearance.swept_gap(before[low], after[low])
+    _refuse(program, line[low], gap, nearest)
+    _check_touches(program, clearance)
 
 
-def _moves(program: ReadProgram) -> _Moves:
-    """Positioning moves of a program; the spindle's column stays at zero."""
+def _moves(program: ReadProgram) -> tuple[IntArray, Array, Array]:
+    """Moves between known positions: line, readings before and after; spindle at zero."""
     lines, before, after = [], [], []
     here = None
     for step in program.steps:
@@ -96,48 +79,35 @@ def _moves(program: ReadProgram) -> _Moves:
         elif isinstance(step, ProbeStep):
             here = step.q
     width = 0 if here is None else len(here)
-    return _Moves(
+    return (
         np.array(lines, dtype=np.int64),
         np.nan_to_num(np.array(before).reshape(-1, width)),
         np.nan_to_num(np.array(after).reshape(-1, width)),
     )
 
 
-def _strokes(program: ReadProgram, chain: Chain) -> _Moves:
-    """Touches from their starts to the contacts that are expected, as far off as they retract."""
-    touches = program.touches
-    width = len(chain.axes)
-    start = np.array([touch.q for touch in touches]).reshape(-1, width)
-    way = np.array([touch.back * touch.direction for touch in touches]).reshape(-1, width)
-    return _Moves(np.array([touch.line for touch in touches], dtype=np.int64), start, start + way)
-
-
-def _marched(clearance: ToolClearance, moves: _Moves) -> Array:
-    """Smallest gap of the ball along straight moves, (M,), mm; from below."""
+def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
+    """Every touch, to its contact, beyond and up again; raises BadFile."""
+    touches, chain = program.touches, clearance.chain
+    line = np.array([touch.line for touch in touches], dtype=np.int64)
+    start = np.array([touch.q for touch in touches]).reshape(-1, len(chain.axes))
+    direction = np.array([touch.direction for touch in touches]).reshape(start.shape)
+    back = np.array([touch.back for touch in touches])
+    distance = np.array([touch.distance for touch in touches])
+    feature = np.array([program.features[touch.feature] for touch in touches], dtype="U32")
     T_artefact_table = inverse(clearance.setup.T_table_artefact)
-    start, end = (
-        apply(T_artefact_table, tip(clearance.chain, q, clearance.probe.length))
-        for q in (moves.before, moves.after)
-    )
-    length = np.linalg.norm(end - start, axis=1)
-    direction = (end - start) / np.maximum(length, 1e-12)[:, None]
-    travel, smallest = np.zeros(len(length)), np.full(len(length), np.inf)
-    active = np.arange(len(length))
-    for _ in range(_MARCHES):
-        centre = start[active] + travel[active, None] * direction[active]
-        gap = clearance.standard.distance(centre) - clearance.probe.radius
-        smallest[active] = np.minimum(smallest[active], gap)
-        # the gap cannot shrink faster than the ball moves
-        travel[active] += np.maximum(gap - SMALLEST_GAP, SMALLEST_STEP)
-        active = active[(travel[active] < length[active]) & (gap >= SMALLEST_GAP)]
-        if not len(active):
-            break
-    # beside a steep face the distance is far from below: what seems tight is met on exact shapes
-    tight = np.flatnonzero(smallest < SMALLEST_GAP)
-    wide = clearance.probe.radius + SMALLEST_GAP
-    met = contact(clearance.standard, start[tight], direction[tight], wide, length[tight])
-    smallest[tight[met.meeting == Meeting.NOTHING]] = SMALLEST_GAP
-    return smallest
+    columns = [chain.axis_index(a) for a in chain.linear_axes]
+    along = linear_directions(chain, start)
+    way = turn(T_artefact_table, np.einsum("nij,nj->ni", along, direction[:, columns]))
+    centre = apply(T_artefact_table, tip(chain, start, clearance.probe.length))
+    met = contact(clearance.standard, centre, way, clearance.probe.radius, distance)
+    good = (met.meeting == Meeting.SURFACE) & (met.feature == feature)
+    for i in np.flatnonzero(~good)[:1]:
+        found = f"a ball that {met.meeting[i]} {met.feature[i]}".rstrip()
+        raise BadFile(program.path, f"line {line[i]}", found, f"touch {touches[i].number} on {feature[i]}")
+    looks = stroke_gaps(clearance, start, direction, back, distance, feature, SMALLEST_GAP)
+    for stage, (gap, nearest) in looks.items():
+        _refuse(program, line, gap, np.array([f"{name} {stage}" for name in nearest]))
 
 
 def _refuse(program: ReadProgram, line: IntArray, gap: Array, nearest: Labels) -> None:

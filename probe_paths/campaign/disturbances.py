@@ -22,7 +22,9 @@ from twin.thermal import ThermalLag
 
 Disturbance = Callable[[Touches], Contribution]
 
-_PER_TOUCH = ("q", "length", "radius", "point", "normal", "time", "approach", "feature", "pose")
+_PER_TOUCH = (
+    "q", "length", "radius", "point", "normal", "time", "approach", "feature", "pose", "offset"
+)  # fmt: skip
 
 
 def effects_over_record(

@@ -8,7 +8,6 @@ collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of p
 
 from probe_paths.plan.clearance import (
     SMALLEST_GAP,
-    SMALLEST_STEP,
     ToolClearance,
     readings_at,
     solid_hull,
@@ -20,16 +19,17 @@ from probe_paths.plan.heading import Heading, calibration_hash, parse_heading, s
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, waypoints
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
+from probe_paths.plan.strokes import Stage, stroke_gaps
 from probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
 
 __all__ = [
     "LINEAR",
     "SMALLEST_GAP",
-    "SMALLEST_STEP",
     "Heading",
     "PlanOptions",
     "Probe",
     "ProgramFrame",
+    "Stage",
     "ToolClearance",
     "TouchPlan",
     "Visit",
@@ -42,6 +42,7 @@ __all__ = [
     "requests_at",
     "solid_hull",
     "stated_serial",
+    "stroke_gaps",
     "swing_height",
     "top_height",
     "waypoints",

@@ -1,27 +1,32 @@
 """Space for the probe: heights at which nothing stands in the way, and gaps at a touch."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from artefact.body import Standard
-from artefact.reach import Workshop, clearance_in_workshop, still_frames, table_face
+from artefact.reach import Workshop, still_frames, table_face
+from probe_paths.plan.bodies import Bodies, standing_bodies
 from probe_paths.plan.probe import Probe
+from probe_paths.plan.separation import Sweeps, gaps
 from twin.frames import Array, apply, inverse, turn
 from twin.machine import Chain, linear_directions, table_to_tool, tip
-from twin.record import Labels, Setup
+from twin.record import IntArray, Labels, Setup
 
 SMALLEST_GAP = 0.5
 """Least gap between the probe and anything solid while it is positioned, mm."""
 
-SMALLEST_STEP = 0.25
-"""Of a march along a move, mm."""
+_BLOCK = 200  # moves that are looked at together, against every body and with every piece
 
 _SWING = 25
 """Samples of every axis that turns in a move: all turn, in no order that is known. Half a turn is
 cut every 7 degrees, between which nothing within 300 mm of an axis rises by 0.6 mm."""
+
+_CLOSER = 97  # samples where the first ones do not decide: a sixteenth of that rise
 
 
 class SolidHull(NamedTuple):
@@ -104,16 +109,19 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
     return level
 
 
-def swing_height(chain: Chain, path: Array, solid: SolidHull, probe: Probe) -> Array:
+def swing_height(
+    chain: Chain, path: Array, solid: SolidHull, probe: Probe, allowed: float = np.inf
+) -> Array:
     """Highest `top_height` along a path of the rotary axes, whichever turns first; from above.
 
     Between two samples that are d apart a point at a distance r from an axis rises above both by
-    r d^2 / 8 at most, which is added.
+    r d^2 / 8 at most, which is added. Where that makes the difference, it is looked at closer.
 
     Args:
         path: Rotary readings in order, shape (W, R), rad.
         solid: What stands on the table, table frame.
         probe: In the spindle.
+        allowed: Reading of Z that must not be exceeded, mm.
 
     Returns:
         Of each of the W - 1 moves, mm.
@@ -121,12 +129,28 @@ def swing_height(chain: Chain, path: Array, solid: SolidHull, probe: Probe) -> A
     arms = _arms(chain, solid, probe)
     highest = np.empty(len(path) - 1)
     for i, (start, end) in enumerate(pairwise(path)):
-        turn_by = end - start
-        shares = [np.linspace(0.0, 1.0, _SWING if angle else 1) for angle in turn_by]
-        between = start + np.array(list(product(*shares))) * turn_by
-        rise = float(np.sum(arms * (turn_by / (_SWING - 1)) ** 2)) / 8.0
-        highest[i] = top_height(chain, between, solid, probe).max(initial=-np.inf) + rise
+        for samples in (_SWING, _CLOSER):
+            met, rise = _swung(chain, start, end - start, samples, solid, probe, arms)
+            highest[i] = met + rise
+            if met > allowed or highest[i] <= allowed:
+                break
     return highest
+
+
+def _swung(
+    chain: Chain,
+    start: Array,
+    turn_by: Array,
+    samples: int,
+    solid: SolidHull,
+    probe: Probe,
+    arms: Array,
+) -> tuple[float, float]:
+    """Highest `top_height` at samples of one turn, and how much more it may be between them."""
+    shares = [np.linspace(0.0, 1.0, samples if angle else 1) for angle in turn_by]
+    between = start + np.array(list(product(*shares))) * turn_by
+    rise = float(np.sum(arms * (turn_by / (samples - 1)) ** 2)) / 8.0
+    return float(top_height(chain, between, solid, probe).max(initial=-np.inf)), rise
 
 
 def _arms(chain: Chain, solid: SolidHull, probe: Probe) -> Array:
@@ -144,10 +168,10 @@ def _arms(chain: Chain, solid: SolidHull, probe: Probe) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class ToolClearance:
-    """How near stylus, body and spindle come to anything solid at single readings.
+    """How near ball, stylus, body and spindle come to anything solid.
 
     Attributes:
-        setup: Where it is believed to stand.
+        setup: Where the standard is believed to stand.
         probe: In the spindle.
         workshop: What stands there beside it.
     """
@@ -158,51 +182,112 @@ class ToolClearance:
     probe: Probe
     workshop: Workshop
 
+    @cached_property
+    def bodies(self) -> Bodies:
+        """Everything solid, table frame."""
+        return standing_bodies(self.standard, self.setup.T_table_artefact, self.workshop)
+
+    @cached_property
+    def _tool(self) -> Array:
+        """Begin, end, radius and ball of every piece of the tool, (P, 4), mm; the ball first."""
+        ball = self.probe.radius
+        ends = [end for end, _ in self.probe.shape.cylinders]
+        radii = [radius for _, radius in self.probe.shape.cylinders]
+        # below this height the stylus is hidden in the ball
+        begin = float(np.sqrt(ball**2 - min(radii[0], ball) ** 2))
+        rows = [
+            (low, high, r, 0.0) for low, high, r in zip([begin, *ends], ends, radii, strict=False)
+        ]
+        return np.array([(0.0, 0.0, 0.0, ball), *rows])
+
     def gap(self, q: Array) -> tuple[Array, Labels]:
         """Gap between the probe above its ball and anything solid at readings (N, A).
 
         Returns:
             Smallest gap (N,), mm, and the name of what is nearest (N,).
         """
-        near = clearance_in_workshop(
-            self.standard,
-            self.setup.T_table_artefact,
-            table_to_tool(self.chain, q),
-            tip(self.chain, q, self.probe.length),
-            self.probe.shape,
-            self.workshop,
-            still_frames(self.workshop.on, self.chain, q),
-        )
-        return near.distance, near.body
+        return self.swept_gap(q, q, with_ball=False, enough=np.inf)
 
-    def swept_gap(self, before: Array, after: Array) -> tuple[Array, Labels]:
-        """Smallest gap of the tool above its ball along straight moves of the linear axes.
-
-        The gap of a body that is shifted shrinks no faster than it moves, so each march goes on by
-        the gap that it finds, and ends where less than `SMALLEST_GAP` is left.
+    def swept_gap(
+        self,
+        before: Array,
+        after: Array,
+        with_ball: bool = True,
+        with_tool: bool = True,
+        spared: NDArray[np.bool_] | None = None,
+        enough: float = SMALLEST_GAP,
+    ) -> tuple[Array, Labels]:
+        """Smallest gap of the tool along straight moves of the linear axes.
 
         Args:
             before: Readings at the beginning, (M, A).
             after: Readings at the end, (M, A).
+            with_ball: Whether the ball is looked at.
+            with_tool: Whether what is above the ball is.
+            spared: Bodies that a move is meant to come near to, (M, B).
+            enough: A gap that is larger need not be known better than that, mm.
 
         Returns:
             The gap (M,), mm, from below, and the name of what is nearest (M,).
         """
-        way = after - before
-        length = np.linalg.norm(way, axis=1)
-        # a way down and the same way up again count once
-        leading = np.take_along_axis(way, np.argmax(np.abs(way), axis=1)[:, None], axis=1)
-        low, high = np.where(leading < 0.0, after, before), np.where(leading < 0.0, before, after)
-        ends = np.round(np.concatenate([low, high], axis=1), 6)
-        _, first, same = np.unique(ends, axis=0, return_index=True, return_inverse=True)
-        smallest, nearest = np.full(len(first), np.inf), np.full(len(first), "", dtype="U32")
-        travel, active = np.zeros(len(first)), np.arange(len(first))
-        while len(active):
-            rows = first[active]
-            share = np.minimum(travel[active] / np.maximum(length[rows], 1e-12), 1.0)
-            gap, body = self.gap(before[rows] + share[:, None] * way[rows])
-            closer = gap < smallest[active]
-            smallest[active[closer]], nearest[active[closer]] = gap[closer], body[closer]
-            travel[active] += np.maximum(gap - SMALLEST_GAP, SMALLEST_STEP)
-            active = active[(share < 1.0) & (gap >= SMALLEST_GAP)]
-        return smallest[same.reshape(-1)], nearest[same.reshape(-1)]
+        tool = self._tool[0 if with_ball else 1 : None if with_tool else 1]
+        bodies = self.bodies
+        best = np.full((len(before), len(bodies.name)), np.inf)
+        frames = [still_frames(bodies.on.tolist(), self.chain, q) for q in (before, after)]
+        T_table_tool = table_to_tool(self.chain, before)
+        for on in frames[0]:
+            T = frames[0][on]
+            begin, end = (
+                apply(frame[on], tip(self.chain, q, self.probe.length))
+                for frame, q in zip(frames, (before, after), strict=True)
+            )
+            axis = turn(T, T_table_tool[:, :3, 2])
+            rows = np.flatnonzero(bodies.on == on)
+            for some in np.array_split(np.arange(len(begin)), len(begin) // _BLOCK + 1):
+                place = (begin[some], axis[some], (end - begin)[some])
+                skip = None if spared is None else spared[np.ix_(some, rows)]
+                best[np.ix_(some, rows)] = _gaps_to(bodies, rows, place, tool, skip, enough)
+        nearest = np.argmin(best, axis=1)
+        return best[np.arange(len(best)), nearest], bodies.name[nearest]
+
+
+def _gaps_to(
+    bodies: Bodies,
+    rows: IntArray,
+    place: tuple[Array, Array, Array],
+    tool: Array,
+    spared: NDArray[np.bool_] | None,
+    enough: float,
+) -> Array:
+    """Gaps of M moves from some bodies, over all pieces of the tool, (M, rows), mm."""
+    move, piece, body = (i.reshape(-1) for i in np.indices((len(place[0]), len(tool), len(rows))))
+    if spared is not None:
+        keep = ~spared[move, body]
+        move, piece, body = move[keep], piece[keep], body[keep]
+    gap = gaps(_sweeps(place, tool, move, piece), bodies.hulls[rows[body]], enough)
+    for i in np.flatnonzero(np.isin(rows, list(bodies.parts))):
+        near = np.flatnonzero((body == i) & (gap < enough))
+        parts = bodies.parts[int(rows[i])]
+        each = np.repeat(near, len(parts))
+        part = np.tile(np.arange(len(parts)), len(near))
+        finer = gaps(_sweeps(place, tool, move[each], piece[each]), parts[part], enough)
+        gap[near] = finer.reshape(len(near), len(parts)).min(axis=1)
+    best = np.full((len(place[0]), len(rows)), np.inf)
+    np.minimum.at(best, (move, body), gap)
+    return best
+
+
+def _sweeps(
+    place: tuple[Array, Array, Array], tool: Array, move: IntArray, piece: IntArray
+) -> Sweeps:
+    centre, axis, way = place
+    low, high, radius, ball = tool[piece].T
+    return Sweeps(
+        centre=centre[move],
+        axis=axis[move],
+        way=way[move],
+        low=low,
+        high=high,
+        radius=radius,
+        ball=ball,
+    )

@@ -18,6 +18,7 @@ from probe_paths.plan.frame import LINEAR, ProgramFrame
 from probe_paths.plan.heading import rounded_setup, rounded_workshop
 from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, rotary_path, visits
 from probe_paths.plan.probe import Probe
+from probe_paths.plan.strokes import Stage, stroke_gaps
 from probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
 from twin.errors import DesignError, NotReachable, ShapeMismatch
 from twin.frames import Array
@@ -46,7 +47,7 @@ class _Task:
             shape=self.probe.shape,
             length=self.probe.length,
             steepest=o.steepest,
-            room=o.smallest_gap,
+            room=-np.inf,  # exact gaps are looked at below, with the whole way
             standoff=o.standoff,
             search=o.search,
             workshop=o.workshop,
@@ -171,7 +172,7 @@ def _examined(task: _Task, wanted: Requests, height: Array) -> _Touches:
 
 
 def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
-    """Touches with a reason against those whose way in brings the tool too near to something."""
+    """Touches with a reason against those that bring the tool too near to something."""
     rows = np.flatnonzero(touches.reason == "")
     above = touches.start[rows].copy()
     above[:, task.chain.axis_index("Z")] = height[rows]
@@ -183,14 +184,25 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
         probe=task.probe,
         workshop=o.workshop,
     )
+    limit = min(SMALLEST_GAP, o.smallest_gap)
+    start = touches.start[rows]
+    direction = np.zeros(start.shape)
+    direction[:, [task.chain.axis_index(name) for name in LINEAR]] = touches.direction[rows]
+    looks = stroke_gaps(
+        clearance,
+        start,
+        direction,
+        back=np.full(len(rows), o.standoff),
+        distance=np.full(len(rows), o.standoff + o.search),
+        feature=touches.feature[rows],
+        enough=max(limit, o.smallest_gap),
+    )
+    down = clearance.swept_gap(above, start, enough=limit)
     reason = touches.reason.copy()
-    for before, after in (
-        (above, touches.start[rows]),
-        (touches.start[rows], touches.contact[rows]),
-    ):
-        gap, nearest = clearance.swept_gap(before, after)
-        for i in np.flatnonzero(gap < min(SMALLEST_GAP, o.smallest_gap)):
-            words = f"{gap[i]:.2f} mm between probe and {nearest[i]} on its way in"
+    for stage, (gap, nearest) in (*looks.items(), (Stage.WAY_IN, down)):
+        least = o.smallest_gap if stage is Stage.TOUCH else limit
+        for i in np.flatnonzero(gap < least):
+            words = f"{gap[i]:.2f} mm between probe and {nearest[i]} {stage}"
             reason[rows[i]] = reason[rows[i]] or words
     return replace(touches, reason=reason)
 

@@ -107,14 +107,23 @@ def test_bad_input_gets_one_line_and_no_file(folder, capsys, more, expected):
 
 
 def test_a_program_that_stops_leaves_no_run_file(folder, capsys):
+    """The standard stands 9 mm too low, and the probe gives up 3 mm beyond where it should be."""
+    assert command(folder, "--setup-error", "Z=-9mm") == 2
+    message = capsys.readouterr().err
+    assert "touch 1 on" in message
+    assert "has no contact: the ball meets nothing" in message
+    assert message.count("\n") == 1
+    assert not (folder / "out" / "run.csv").exists()
+
+
+def test_a_touch_that_looks_the_other_way_is_refused_before_it_runs(folder, capsys):
     path = folder / "programs" / "MS_A_1.H"
     data = path.read_bytes()
     vector = data.split(b"TCH PROBE 4.2 ")[2].split(b"\r\n")[0]
     path.write_bytes(data.replace(vector, vector.translate(bytes.maketrans(b"+-", b"-+"))))
     assert command(folder) == 2
     message = capsys.readouterr().err
-    assert "touch 2 on" in message
-    assert "has no contact: the ball meets nothing" in message
+    assert "a ball that meets nothing within the travel, expected touch 2 on" in message
     assert message.count("\n") == 1
     assert not (folder / "out" / "run.csv").exists()
 

@@ -13,6 +13,7 @@ from twin.errors import BadFile
 from twin.files.run_file import read_run
 from twin.foreign.points import linear_machine, points_run, read_points
 from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
+from twin.foreign.serial_arm import arm_from_dh
 from twin.foreign.sheet import bare, read_sheet, unit_of_column
 from twin.library.ordinary import ordinary_model
 from twin.record.touches import at_poses
@@ -287,6 +288,12 @@ def test_the_examples_of_the_page_are_read(tmp_path):
     positioning, plate = blocks_of_the_page("csv")
     assert len(read_positioning(read_sheet(saved(tmp_path, positioning)), "X").target) == 12
     assert len(read_points(read_sheet(saved(tmp_path, plate))).nominal) == 3
+    log, report, dh = blocks_of_the_page("text")
+    sheet = read_sheet(saved(tmp_path, log))
+    assert read_positioning(sheet, "X", named=("motor", "scale")).direction.tolist() == [0, 1, 1]
+    assert read_points(read_sheet(saved(tmp_path, report))).feature.tolist() == ["HOLE1"]
+    chain, _ = arm_from_dh(read_sheet(saved(tmp_path, dh)), np.zeros((2, 6)))
+    assert chain.axes == ("C", "B", "B1", "B2", "C1", "B3")
     assert blocks_of_the_page("toml")[0].replace(" ", "").count("from=") == 3
 
 
@@ -299,3 +306,77 @@ def test_two_lists_are_two_set_ups(tmp_path):
     run = read_run(out)
     assert len(run.touches.setups) == 2
     assert len(run) == 16
+
+
+def test_units_in_a_row_of_their_own_behind_a_blank_and_in_an_old_encoding(tmp_path):
+    """What spreadsheets of laboratories hold besides: umlauts of Windows, means below the table."""
+    text = (
+        "Messprotokoll;;\nPosition;1 vor;1 rück\nmm;µm;µm\n0,0;1,0;2,0\n50,5;3,0;4,0\n"
+        "99,0;5,0;6,0\nMittel;3,0;4,0\n"
+    )
+    path = tmp_path / "old.csv"
+    path.write_bytes(text.encode("cp1252"))
+    sheet = read_sheet(path)
+    assert sheet.columns == ("Position [mm]", "1 vor [µm]", "1 rück [µm]")
+    assert sheet.left_out == (7,)
+    test = read_positioning(sheet, "X")
+    assert test.deviation[test.direction < 0] / UM == pytest.approx([2.0, 4.0, 6.0])
+    path.write_bytes(text.replace("mm;µm;µm\n", "").replace("vor;", "vor µm;").encode("utf-16"))
+    sheet = read_sheet(path)
+    assert [unit_of_column(c) for c in sheet.columns] == [None, "µm", None]
+
+
+def test_a_wide_table_of_actual_positions(tmp_path):
+    text = "target [mm];1+;1-\n0,0;0,0010;0,0020\n50,0;50,0030;50,0040\n100,0;100,0050;100,0060\n"
+    test = read_positioning(read_sheet(saved(tmp_path, text)), "X")
+    assert test.deviation[test.direction > 0] / UM == pytest.approx([1.0, 3.0, 5.0])
+    assert test.deviation[test.direction < 0] / UM == pytest.approx([2.0, 4.0, 6.0])
+
+
+ENCODERS = "\t".join(["time [ms]", "motor [mm]", "scale [mm]", "nut [°C]"])
+
+
+def test_a_log_of_two_encoders(tmp_path):
+    """Strokes and directions are those of the motion; a rest belongs to the stroke before it."""
+    at = [0.0, 1.0, 2.0, 2.0, 1.0, 0.0, 0.5]
+    rows = [f"{20 * k}\t{x}\t{x + 1e-3 * k}\t{20 + k}" for k, x in enumerate(at)]
+    sheet = read_sheet(saved(tmp_path, "\n".join([ENCODERS, *rows]) + "\n", "log.txt"))
+    test = read_positioning(sheet, "X", named=("motor", "scale"))
+    assert test.deviation / UM == pytest.approx(np.arange(7.0))
+    assert test.direction.tolist() == [0, 1, 1, 1, -1, -1, 1]
+    assert test.cycle.tolist() == [1, 1, 1, 1, 2, 2, 3]
+    assert test.time == pytest.approx(0.02 * np.arange(7))
+    assert test.temperature["nut"] == pytest.approx(20.0 + np.arange(7))
+    run = positioning_run(test, one_axis_machine("X", test.target), 0.1 * UM)
+    assert run.touches.pose.tolist() == [0, 0, 0, 0, 1, 1, 2], "strokes are held out"
+    assert run.deviation / UM == pytest.approx(-np.arange(7.0))
+    with pytest.raises(BadFile, match="--target"):
+        read_positioning(sheet, "X")
+    with pytest.raises(BadFile, match="no column 'motro'"):
+        read_positioning(sheet, "X", named=("motro", "scale"))
+
+
+REPORT = """Feature,Axis,Nominal,Actual,Dev
+HOLE1,,,,
+,X,0.000,0.001,0.001
+,Y,0.000,0.002,0.002
+,D,10.000,10.010,0.010
+HOLE2,,,,
+,X,100.000,100.010,0.010
+,Y,50.000,49.995,-0.005
+,D,10.000,10.008,0.008
+"""
+
+
+def test_a_report_with_a_row_a_coordinate(tmp_path):
+    points = read_points(read_sheet(saved(tmp_path, REPORT)))
+    assert points.feature.tolist() == ["HOLE1", "HOLE2"]
+    assert points.nominal.tolist() == [[0.0, 0.0, 0.0], [100.0, 50.0, 0.0]]
+    np.testing.assert_allclose(points.deviation[:, :2] / UM, [[1.0, 2.0], [10.0, -5.0]], atol=1e-6)
+    assert np.isnan(points.deviation[:, 2]).all(), "a diameter is no coordinate"
+
+
+def test_measured_coordinates_go_before_deviations_without_a_unit(tmp_path):
+    text = "name,x nom,x meas,dev x\nH1,0,0.001,1\nH2,50,50.002,2\n"
+    points = read_points(read_sheet(saved(tmp_path, text)))
+    assert points.deviation[:, 0] / UM == pytest.approx([1.0, 2.0])

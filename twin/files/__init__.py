@@ -10,7 +10,14 @@ from twin.files.pose_file import read_poses, reading_columns
 from twin.files.run_file import SetupTable, read_run
 from twin.files.run_writer import write_run
 from twin.files.sensor_file import SensorRecord, read_sensors
-from twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from twin.files.toml import (
+    Table,
+    check_format,
+    checked,
+    parse_toml,
+    read_any_text,
+    read_text,
+)
 from twin.files.whole import (
     NOT_WRITABLE,
     UNFINISHED,
@@ -33,6 +40,7 @@ __all__ = [
     "checked",
     "errors_toml",
     "parse_toml",
+    "read_any_text",
     "read_errors",
     "read_machine",
     "read_poses",

@@ -40,13 +40,18 @@ class Table(BaseModel):
 T = TypeVar("T", bound=BaseModel)
 
 
-def read_text(path: str | Path) -> str:
-    """Text of a user's file; raises BadFile if it is missing or not UTF-8."""
+def _bytes(path: str | Path) -> bytes:
+    """What a user's file holds; raises BadFile if it cannot be read."""
     try:
-        data = Path(path).read_bytes()
+        return Path(path).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
         found = getattr(error, "strerror", None) or str(error)
         raise BadFile(path, "file", found, "a file that can be read") from error
+
+
+def read_text(path: str | Path) -> str:
+    """Text of a user's file; raises BadFile if it is missing or not UTF-8."""
+    data = _bytes(path)
     for begin, what in _NO_TEXT.items():
         if data.startswith(begin):
             raise BadFile(path, "file", what, "a text file (UTF-8)")
@@ -58,6 +63,23 @@ def read_text(path: str | Path) -> str:
             raise BadFile(path, "file", "no text", "a text file (UTF-8)") from error
         found = f"byte {data[error.start]:#04x}, which is no UTF-8"
         raise BadFile(path, f"line {line}", found, "text saved as UTF-8") from error
+
+
+def read_any_text(path: str | Path) -> str:
+    """Text as spreadsheets and instruments save it: UTF-8, UTF-16, else Windows-1252.
+
+    Raises:
+        BadFile: The file cannot be read, or holds no text.
+    """
+    data = _bytes(path)
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return _one_line_end(data.decode("utf-16", errors="replace"))
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        if b"\0" not in data:
+            return _one_line_end(data.decode("cp1252", errors="replace"))
+    return read_text(path)
 
 
 def is_file(path: Path) -> bool:

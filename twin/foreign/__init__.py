@@ -1,4 +1,4 @@
-"""Tables of others made run files: positioning tests, lists of points, any table by a mapping.
+"""Tables of others made run files: positioning, points, arms under a tracker, any by a mapping.
 
 In go workbooks and text as instruments and CMMs write them, with the words of their headers, their
 units, separators and decimal marks; out come a `Run` (or its text) and, where no machine file is
@@ -10,13 +10,16 @@ from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
 from twin.foreign.points import joined_points, linear_machine, points_run, read_points
 from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
+from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
 from twin.foreign.sheet import ANGLES, MM, Sheet, read_sheet
 
 __all__ = [
     "ANGLES",
     "MM",
     "Sheet",
+    "arm_from_dh",
     "joined_points",
+    "joint_readings",
     "linear_machine",
     "machine_text",
     "mapped_run",
@@ -26,4 +29,5 @@ __all__ = [
     "read_points",
     "read_positioning",
     "read_sheet",
+    "tracker_run",
 ]

@@ -1,14 +1,20 @@
 """Machine files for imported measurements: what the data tell of a machine, to be checked."""
 
+import numpy as np
+
+from twin.frames import Array
 from twin.machine import Chain
 from twin.units import DEG
 
+SIDES = "# PLACEHOLDER: which axes carry the workpiece (a prime) the data cannot tell"
 
-def machine_text(chain: Chain, source: str) -> str:
+
+def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
     """Text of a machine file whose travels are those of some data.
 
     Args:
         source: What it was made from, for the first line.
+        is_known: Whether order, lines and sides of the axes are stated by the source.
 
     Returns:
         TOML in which everything that the data cannot tell is marked PLACEHOLDER.
@@ -17,7 +23,7 @@ def machine_text(chain: Chain, source: str) -> str:
         f"# Made from {source}. What is marked PLACEHOLDER the data cannot tell: check it.",
         'format = "machine/1"',
         f'name = "{chain.name}"  # PLACEHOLDER',
-        "# PLACEHOLDER: which axes carry the workpiece (a prime) the data cannot tell",
+        *(() if is_known else (SIDES,)),
         f'chain = "{chain.notation}"',
     ]
     for axis in chain.programmed_axes:
@@ -30,6 +36,14 @@ def machine_text(chain: Chain, source: str) -> str:
             f"range = [{low / unit:.12g}, {high / unit:.12g}]  # PLACEHOLDER: that of the data",
         ]
         if link.kind == "rotary":
-            x, y, z = (float(v) for v in link.point)
-            lines.append(f"point = [{x!r}, {y!r}, {z!r}]  # PLACEHOLDER: a point of its line, mm")
+            doubt = "" if is_known else "  # PLACEHOLDER: a point of its line, mm"
+            lines.append(f"point = {_listed(link.point)}{doubt}")
+        if not link.points_along_letter:
+            lines.append(f"direction = {_listed(link.direction)}")
+    if np.any(chain.table_origin):
+        lines += ["", "[workpiece]", f"origin = {_listed(chain.table_origin)}"]
     return "\n".join(lines) + "\n"
+
+
+def _listed(values: Array) -> str:
+    return f"[{', '.join(repr(float(v)) for v in values)}]"

@@ -12,6 +12,7 @@ Both compare where a point is with where it should be, and mean opposite things:
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -56,7 +57,8 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     """Points from a table with columns such as `x nominal [mm]`, `x measured [mm]`.
 
     Deviations (`dx [µm]`) may stand in place of measured coordinates. A coordinate without a
-    column is zero and not measured.
+    column is zero and not measured. A row may also hold one coordinate of a point, whose letter
+    stands in a column of its own, as reports of CMMs are laid out.
 
     Args:
         unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
@@ -64,6 +66,9 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     Raises:
         BadFile: No nominal or no measured coordinate; a deviation without a unit.
     """
+    letters = _letters(sheet)
+    if letters is not None:
+        return _by_coordinate(sheet, letters, unit)
     nominal = np.zeros((len(sheet), 3))
     deviation = np.full((len(sheet), 3), np.nan)
     found = _roles(sheet)
@@ -73,7 +78,7 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
         if ("measured", letter) in found:
             measured = _coordinate(sheet, found["measured", letter], unit or "mm")
             deviation[:, i] = measured - nominal[:, i]
-        if ("deviation", letter) in found:
+        elif ("deviation", letter) in found:
             deviation[:, i] = _coordinate(sheet, found["deviation", letter], unit)
     if not np.isfinite(deviation).any() or not any(role == "nominal" for role, _ in found):
         raise BadFile(
@@ -89,6 +94,52 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
         feature=np.array(_texts(sheet, names, _NAME, "")),
         setup=np.array(_texts(sheet, names, _SETUP, "a")),
         line=np.array(sheet.lines),
+    )
+
+
+def _letters(sheet: Sheet) -> list[str] | None:
+    """Letter of the coordinate that every row holds, "" of other rows; None where rows hold points.
+
+    Most rows have one; of a report with diameters at least a third.
+    """
+    for i in range(len(sheet.columns)):
+        named = [c.upper() if c.upper() in ("X", "Y", "Z") else "" for c in sheet.text(i)]
+        if 3 * sum(map(bool, named)) > len(named):
+            return named
+    return None
+
+
+def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointList:
+    """Points of a table with a row a coordinate; a point ends where its name changes or a letter
+    comes again.
+    """  # noqa: D205
+    names = [bare(c) for c in sheet.columns]
+    columns = [
+        next((i for i, n in enumerate(names) if p.search(n)), None) for p in (_NOMINAL, _MEASURED)
+    ]
+    if columns[0] is None or columns[1] is None:
+        found = f"columns {', '.join(map(repr, sheet.columns))}"
+        raise BadFile(sheet.path, "header", found, "columns such as 'nominal' and 'measured'")
+    nominal, measured = (_coordinate(sheet, c, unit or "mm") for c in columns if c is not None)
+    label, setup = _texts(sheet, names, _NAME, ""), _texts(sheet, names, _SETUP, "a")
+    rows = [k for k, letter in enumerate(letters) if letter]
+    points: list[dict[str, int]] = []
+    for before, k in pairwise([-1, *rows]):
+        if before < 0 or label[k] != label[before] or letters[k] in points[-1]:
+            points.append({})
+        points[-1][letters[k]] = k
+    at, off = np.zeros((len(points), 3)), np.full((len(points), 3), np.nan)
+    for p, point in enumerate(points):
+        for letter, k in point.items():
+            i = "XYZ".index(letter)
+            at[p, i], off[p, i] = nominal[k], measured[k] - nominal[k]
+    first = [next(iter(point.values())) for point in points]
+    return PointList(
+        at,
+        off,
+        np.array([label[k] for k in first]),
+        np.array([setup[k] for k in first]),
+        np.array([sheet.lines[k] for k in first]),
     )
 
 

@@ -10,12 +10,14 @@ Reference:
 """
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from twin.errors import BadFile
-from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
+from twin.foreign.axis_log import strokes, temperatures
+from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column, unit_of_time
 from twin.frames import Array
 from twin.machine import Axis, Chain, make_chain, tip
 from twin.record import Instrument, IntArray, Run, Setup, Touches
@@ -23,6 +25,9 @@ from twin.record import Instrument, IntArray, Run, Setup, Touches
 ARM = 100.0
 """Distance (mm) from a rotary axis at which its angle is counted as a distance along the motion:
 any will do, since the angle is what was measured."""
+
+ALL_BUT = 0.1
+"""Slope over the targets, off from 1 by less, of positions: no axis is wrong by a tenth."""
 
 ENOUGH_CYCLES = 4
 """Cycles from which one can be held out: of fewer it would be more than a quarter of the test."""
@@ -33,7 +38,8 @@ _DEVIATION = re.compile(r"dev|error|abweich|fehler|\bx_?ij\b", re.IGNORECASE)
 _CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
 _DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
 _UP = re.compile(r"up|↑|\+|pos|fwd|forward|vor", re.IGNORECASE)
-_DOWN = re.compile(r"down|dn|↓|-|−|neg|rev|reverse|back|rück|zurück", re.IGNORECASE)
+_DOWN = re.compile(r"down|dn|↓|-|−|neg|rev|back|rück|ruck|zur", re.IGNORECASE)
+_TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+")
 
 
@@ -48,6 +54,8 @@ class PositioningTest:
         cycle: Number of the cycle, (N,).
         direction: 1 where the target was reached with a growing reading, -1 else, 0 unknown.
         line: Line of the file, (N,).
+        time: Since the start of a log, (N,), s; zeros of a table.
+        temperature: By sensor, each (N,), degC; of a log.
     """
 
     axis: str
@@ -56,49 +64,65 @@ class PositioningTest:
     cycle: IntArray
     direction: IntArray
     line: IntArray
+    time: Array = field(default_factory=lambda: np.zeros(0))
+    temperature: Mapping[str, Array] = field(default_factory=dict)
 
 
-def read_positioning(sheet: Sheet, axis: str, unit: str | None = None) -> PositioningTest:
+def read_positioning(
+    sheet: Sheet, axis: str, unit: str | None = None, named: tuple[str, str] = ("", "")
+) -> PositioningTest:
     """A positioning test from a table.
 
     Two layouts are understood: a row a reading (columns target, cycle, direction, and deviation or
     actual position), and a row a target with a column a cycle and direction (`1 up`, `1 down`, or
-    the cycle in one header row and the direction in the next).
+    the cycle in one header row and the direction in the next). With a column of times the first is
+    a log: cycles are its strokes, directions those of its motion.
 
     Args:
         axis: Letter of the axis, which says whether it turns (A B C).
         unit: Of deviations whose column names none.
+        named: Names of the columns of targets and of actual positions, where the words of the
+            header do not tell, as in a log of two encoders; empty for those that do.
 
     Raises:
         BadFile: No column of targets or deviations, a unit that is not stated.
     """
     names = [bare(c) for c in sheet.columns]
     target = _only(names, _TARGET, without=(_ACTUAL, _DEVIATION))
+    target = sheet.column(named[0]) if named[0] else target
     if target is None:
-        raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", "a column of targets")
+        expected = "a column of targets, or its name by --target (and --actual)"
+        raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
     base = ANGLES if axis in "ABC" else MM
     factor = base[_unit(sheet, target, base, "deg" if axis in "ABC" else "mm")]
     at = sheet.numbers(target) * factor
     values, actual = _only(names, _DEVIATION), _only(names, _ACTUAL)
+    if named[1]:
+        values, actual = None, sheet.column(named[1])
     if values is None and actual is None:
         return _wide(sheet, axis, target, at, unit, base)
     cycle, direction = _only(names, _CYCLE), _only(names, _DIRECTION)
+    clock = _only(names, _TIME)
     if values is not None:
         deviation = sheet.numbers(values) * base[_unit(sheet, values, base, unit)]
     else:
         assert actual is not None
         deviation = sheet.numbers(actual) * base[_unit(sheet, actual, base, unit)] - at
     n = len(sheet)
+    time, sign, stroke = np.zeros(n), np.zeros(n, dtype=np.int64), np.ones(n, dtype=np.int64)
+    if clock is not None:
+        time = sheet.numbers(clock) * unit_of_time(sheet.columns[clock])
+        sign, stroke = strokes(at)
     return _present(
         PositioningTest(
             axis=axis,
             target=at,
             deviation=deviation,
-            cycle=_whole(sheet, cycle) if cycle is not None else np.ones(n, dtype=np.int64),
-            direction=_signs(sheet, direction)
-            if direction is not None
-            else np.zeros(n, dtype=np.int64),
+            cycle=_whole(sheet, cycle) if cycle is not None else stroke,
+            direction=_signs(sheet, direction) if direction is not None else sign,
             line=np.array(sheet.lines),
+            time=time,
+            temperature=temperatures(sheet) if clock is not None else {},
         )
     )
 
@@ -114,14 +138,38 @@ def _wide(
             continue
         rest = bare(name).replace(number.group(0), "", 1)
         sign = 1 if _UP.search(rest) else -1 if _DOWN.search(rest) else 0
-        values = sheet.numbers(i) * base[_unit(sheet, i, base, unit)]
+        values = _deviations(sheet, i, target, at, unit, base)
         whole = np.ones(len(sheet), dtype=np.int64)
         parts.append((at, values, int(number.group(0)) * whole, sign * whole, sheet.lines))
     if not parts:
         expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
         raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    return _present(PositioningTest(axis, *columns))
+    return _present(
+        PositioningTest(axis, columns[0], columns[1], columns[2], columns[3], columns[4])
+    )
+
+
+def _deviations(
+    sheet: Sheet, column: int, target: int, at: Array, unit: str | None, base: dict[str, float]
+) -> Array:
+    """Deviations of one column, which may hold actual positions: those grow as the targets do."""
+    known = unit_of_column(sheet.columns[column]) or unit
+    if known is None and _is_position(sheet.numbers(column), sheet.numbers(target)):
+        known = unit_of_column(sheet.columns[target]) or ("mm" if base is MM else "deg")
+    if known is None or known not in base:
+        known = _unit(sheet, column, base, unit)
+    values = sheet.numbers(column) * base[known]
+    return values - at if _is_position(values, at) else values
+
+
+def _is_position(values: Array, at: Array) -> bool:
+    """Whether values are positions: they grow as the targets do, as no deviation does."""
+    rows = np.isfinite(values) & np.isfinite(at)
+    if rows.sum() < 2 or not np.ptp(at[rows]) > 0.0:
+        return False
+    slope = np.polyfit(at[rows] - at[rows].mean(), values[rows], 1)[0]
+    return abs(float(slope) - 1.0) < ALL_BUT
 
 
 def _present(test: PositioningTest) -> PositioningTest:
@@ -134,6 +182,8 @@ def _present(test: PositioningTest) -> PositioningTest:
         cycle=test.cycle[rows],
         direction=test.direction[rows],
         line=test.line[rows],
+        time=test.time[rows] if len(test.time) else np.zeros(int(rows.sum())),
+        temperature={name: values[rows] for name, values in test.temperature.items()},
     )
 
 
@@ -217,13 +267,15 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
     ahead[:, i] += step
     behind[:, i] -= step
     motion = (tip(chain, ahead, length) - tip(chain, behind, length)) / (2.0 * step)
-    speed = np.linalg.norm(motion, axis=1)  # 1 on a linear axis, the arm on a rotary one
+    # 1 on a linear axis, the arm on a rotary one, to what the difference leaves of it
+    speed = np.round(np.linalg.norm(motion, axis=1), 8)
     approach = np.zeros(q.shape)
     approach[:, i] = test.direction
     # what repeats at the targets is what the test is for: held out are cycles, if it has some
     cycles = np.unique(test.cycle, return_inverse=True)[1].reshape(-1)
     targets = np.unique(np.round(test.target, 9), return_inverse=True)[1].reshape(-1)
-    held_out = cycles if cycles.max(initial=0) + 1 >= ENOUGH_CYCLES else targets
+    is_log = bool(np.any(test.time))  # which hardly ever reads the same twice
+    held_out = cycles if is_log or cycles.max(initial=0) + 1 >= ENOUGH_CYCLES else targets
     touches = Touches(
         chain=chain,
         q=q,
@@ -233,11 +285,12 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         normal=motion / speed[:, None],
         setups=(Setup("a"),),
         setup=np.zeros(n, dtype=np.int64),
-        time=np.zeros(n),
+        time=test.time if len(test.time) else np.zeros(n),
         approach=approach,
+        temperature=test.temperature,
         feature=np.array([f"cycle{c}" for c in test.cycle]),
         pose=held_out.astype(np.int64),
-        instrument=Instrument.LASER,
+        instrument=Instrument.ENCODER if is_log else Instrument.LASER,
     )
     # one line of the file may hold many readings: the rows of the run are what messages name
     return Run(touches, -test.deviation * speed, np.asarray(u * speed), repeat=test.cycle)

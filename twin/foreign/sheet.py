@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.errors import BadFile
-from twin.files import read_text
+from twin.files import read_any_text
 from twin.frames import Array
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
@@ -24,15 +24,20 @@ WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _SEPARATORS = (";", "\t", ",", "|")
 """In the order in which they are tried: a comma last, because it may be a decimal mark."""
 
+MOSTLY = 0.6
+"""Share of rows with a number from which a column is one of numbers."""
+
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?\Z")
 _DECIMAL_POINT = re.compile(r"[+-]?\d+\.\d*([eE][+-]?\d+)?\Z")
-_UNIT = re.compile(r"\s*[\[(]\s*([^\])]+?)\s*[\])]\s*\Z|_([A-Za-zµμ]+)\Z")
+_UNIT = re.compile(r"\s*[\[(]\s*([^\])]+?)\s*[\])]\s*\Z|[_\s/]+([A-Za-zµμ°]+)\Z")
 
 MM = {"mm": 1.0, "µm": 1e-3, "um": 1e-3, "micron": 1e-3, "nm": 1e-6, "m": 1e3, "in": 25.4}
 """Units of length in files of others, mm."""
 ANGLES = {"deg": math.pi / 180.0, "°": math.pi / 180.0, "rad": 1.0, "mrad": 1e-3, "µrad": 1e-6,
           "urad": 1e-6, "arcsec": math.pi / 648000.0, '"': math.pi / 648000.0}  # fmt: skip
 """Units of angles in files of others, rad."""
+SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
+"""Units of time in files of others, s."""
 
 
 @dataclass(frozen=True)
@@ -101,22 +106,39 @@ def bare(column: str) -> str:
     """Name of a column without the unit behind it.
 
     Example:
-        >>> bare("Deviation [µm]"), bare("x_mm"), bare("Soll X (mm)")
-        ('Deviation', 'x', 'Soll X')
+        >>> bare("Deviation [µm]"), bare("x_mm"), bare("Soll X (mm)"), bare("1 up µm")
+        ('Deviation', 'x', 'Soll X', '1 up')
     """
     return _UNIT.sub("", column).strip() if unit_of_column(column) else column.strip()
 
 
+def is_unit(cell: str | float) -> bool:
+    """Whether a cell of a header holds a unit of length or angle alone, `[mm]`, `µm`."""
+    word = cell.strip("[]() ").replace("μ", "µ") if isinstance(cell, str) else ""
+    return word in MM or word in ANGLES
+
+
 def unit_of_column(column: str) -> str | None:
-    """Unit behind the name of a column, None where none that is known stands there.
+    """Unit of length or angle behind the name of a column, None where none stands there.
 
     Example:
         >>> unit_of_column("Deviation [µm]"), unit_of_column("x_mm"), unit_of_column("point_name")
         ('µm', 'mm', None)
     """
     match = _UNIT.search(column)
-    unit = (match.group(1) or match.group(2)).replace("μ", "µ") if match else ""
+    unit = (match.group(1) or match.group(2) or "").replace("μ", "µ") if match else ""
     return unit if unit in MM or unit in ANGLES else None
+
+
+def unit_of_time(column: str) -> float:
+    """One unit of a column of times in s; 1 where none stands there.
+
+    Example:
+        >>> unit_of_time("time [min]"), unit_of_time("t_ms"), unit_of_time("time")
+        (60.0, 0.001, 1.0)
+    """
+    match = _UNIT.search(column)
+    return SECONDS.get((match.group(1) or match.group(2) or "") if match else "", 1.0)
 
 
 def read_sheet(path: str | Path, name: str | None = None) -> Sheet:
@@ -169,7 +191,7 @@ def _cell(value: object) -> str | float:
 
 def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
     """Rows of a text file, its numbers read."""
-    text = read_text(path)
+    text = read_any_text(path)
     counts = {s: _typical(text, s) for s in _SEPARATORS}
     separator = next((s for s in _SEPARATORS if counts[s] >= 1), ",")
     reader = csv.reader(io.StringIO(text), delimiter=separator)
@@ -214,9 +236,8 @@ def _table(path: Path, rows: Sequence[tuple[int, Sequence[str | float]]]) -> She
     if not above:
         raise BadFile(path, f"line {rows[first][0]}", "numbers", "a line of column names above")
     width = max(len(row) for _, row in rows[first:])
-    header = _header([list(rows[i][1]) for i in above[-2:]], width)
-    data = [(line, row) for line, row in rows[first:] if _is_data(row)]
-    others = [line for line, row in rows[first:] if not _is_data(row)]
+    header = _header([list(rows[i][1]) for i in above[-3:]], width)
+    data, others = _data_rows(rows[above[-1] + 1 :])
     title = [" ".join(str(c) for c in row if c != "") for _, row in rows[: above[-1]]]
     return Sheet(
         path=path,
@@ -226,6 +247,44 @@ def _table(path: Path, rows: Sequence[tuple[int, Sequence[str | float]]]) -> She
         title=tuple(title),
         left_out=tuple(others),
     )
+
+
+def _data_rows(
+    rows: Sequence[tuple[int, Sequence[str | float]]],
+) -> tuple[list[tuple[int, list[str | float]]], list[int]]:
+    """Rows of numbers with their lines, and the lines of all others.
+
+    A word alone in a line names the rows below it that have no word of their own in its column.
+    """
+    data, others = [], []
+    heading: tuple[int, str] | None = None
+    for line, row in rows:
+        filled = [(i, c) for i, c in enumerate(row) if c != ""]
+        if _is_data(row):
+            cells = list(row)
+            if heading is not None and heading[0] < len(cells) and cells[heading[0]] == "":
+                cells[heading[0]] = heading[1]
+            data.append((line, cells))
+        elif len(filled) == 1 and isinstance(filled[0][1], str):
+            heading = (filled[0][0], filled[0][1])
+        else:
+            others.append(line)
+    return _without_footers(data, others)
+
+
+def _without_footers(
+    data: list[tuple[int, list[str | float]]], others: list[int]
+) -> tuple[list[tuple[int, list[str | float]]], list[int]]:
+    """Rows without those of means and limits, which have a word in the first column of numbers."""
+    width = max((len(row) for _, row in data), default=0)
+    for i in range(width):
+        words = [len(row) > i and isinstance(row[i], str) and row[i] != "" for _, row in data]
+        numbers = sum(len(row) > i and isinstance(row[i], float) for _, row in data)
+        if numbers > MOSTLY * len(data):
+            others = sorted([*others, *(ln for (ln, _), w in zip(data, words, strict=True) if w)])
+            data = [pair for pair, w in zip(data, words, strict=True) if not w]
+            break
+    return data, others
 
 
 def _begins_table(rows: Sequence[tuple[int, Sequence[str | float]]], i: int) -> bool:
@@ -246,18 +305,23 @@ def _is_data(row: Sequence[str | float]) -> bool:
 
 
 def _header(rows: list[list[str | float]], width: int) -> tuple[str, ...]:
-    """Names of the columns: the last row of names, with the row above where names stand twice.
+    """Names of the columns: the last row of names, with the rows above where names stand twice.
 
-    A number in the upper row counts for the columns up to the next, as in merged cells.
+    A cell in an upper row counts for the columns up to the next, as in merged cells. A row of units
+    alone is put behind the names above it.
     """
     names = [[f"{c:g}" if isinstance(c, float) else c for c in row] for row in rows]
-    names = [row + [""] * (width - len(row)) for row in names]
-    last = names[-1]
+    names = [row[:width] + [""] * (width - len(row)) for row in names]
+    last = names.pop()
+    if names and all(is_unit(n) for n in last if n):
+        last = [
+            f"{a} [{b.strip('[]() ')}]" if b else a for a, b in zip(names.pop(), last, strict=True)
+        ]
     filled = [n for n in last if n]
-    if len(names) == 1 or len(set(filled)) == len(filled):
+    if not names or len(set(filled)) == len(filled):
         return tuple(last)
     carried, upper = "", []
-    for name in names[0]:
+    for name in names[-1]:
         carried = name or carried
         upper.append(carried)
     return tuple(f"{a} {b}".strip() for a, b in zip(upper, last, strict=True))

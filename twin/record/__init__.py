@@ -4,7 +4,7 @@
 units. A new quantity that is recorded at every touch becomes a field of it; `Run` adds deviations.
 """
 
-from twin.record.alignment import Moved, aligned
+from twin.record.alignment import Moved, aligned, rigid_motion
 from twin.record.copies import without_copies
 from twin.record.instrument import Instrument
 from twin.record.run import Run
@@ -32,5 +32,6 @@ __all__ = [
     "computed_deviation",
     "joined",
     "linear_approach",
+    "rigid_motion",
     "without_copies",
 ]

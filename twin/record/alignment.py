@@ -68,10 +68,10 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
         if rows.sum() < FEWEST:
             continue
         a, b, stated = centre[rows], reached[rows], setup.T_table_artefact
-        T = _rigid(a, b, stated)
+        T = rigid_motion(a, b, stated)
         far = np.linalg.norm(apply(T, a) - b, axis=1)
         near = far <= SLIP * np.median(far)  # a slip of the pen must not turn the standard
-        T = _rigid(a[near], b[near], stated)
+        T = rigid_motion(a[near], b[near], stated)
         middle = centre[rows].mean(axis=0)
         change = apply(T, middle) - apply(setup.T_table_artefact, middle)
         R = T[:3, :3] @ setup.T_table_artefact[:3, :3].T
@@ -86,7 +86,7 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     return replace(run, touches=touches, deviation=computed_deviation(touches)), tuple(moved)
 
 
-def _rigid(a: Array, b: Array, stated: Array) -> Array:
+def rigid_motion(a: Array, b: Array, stated: Array) -> Array:
     """Pose that takes points a to points b best; what they do not tell stays as stated, (4, 4)."""
     middle_a, middle_b = a.mean(axis=0), b.mean(axis=0)
     told = (a - middle_a) @ stated[:3, :3].T

@@ -1,0 +1,143 @@
+"""Everything solid round the probe as convex bodies: the standard, the table, clamps, fixtures."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.body import FreeformPatch, Plate, Standard
+from artefact.reach import Workshop, table_face
+from probe_paths.plan.separation import CORNERS, Hulls
+from twin.frames import Array, apply, pose, turn
+from twin.record import IntArray, Labels
+
+_CELL = (
+    4.0  # mm of a face that one prism is the lid of: its corners are 0.2 mm off at a radius of 12
+)
+_FINE = 4  # places a side in a cell where the face is held against its corners
+_OVER = 0.02  # mm: what a face of 12 mm radius may rise above these places in between
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Convex bodies, each within the outline of its owner.
+
+    Attributes:
+        hulls: One of every owner that holds all of it, table frame.
+        name: Of the owners, (B,).
+        on: Axis that carries each, empty for the table, (B,).
+        parts: What an owner really consists of, by its row; it is its hull where none is listed.
+    """
+
+    hulls: Hulls
+    name: Labels
+    on: Labels
+    parts: dict[int, Hulls]
+
+    def rows_of(self, feature: str) -> IntArray:
+        """Bodies that somebody means to touch who touches a feature: its own, and its stem."""
+        own = {feature, f"{feature} stem", *(["BASE"] if feature == "DATUM_A" else [])}
+        return np.flatnonzero(np.isin(self.name, list(own)))
+
+
+def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Workshop) -> Bodies:
+    """Bodies of a standard where it stands, and of what stands round it."""
+    lots: list[tuple[str, str, Hulls]] = []
+    base, plate = standard.base, standard.base.body
+    lots.append(("BASE", "", _plate(plate, np.eye(4))))
+    if standard.core is not None:
+        core, low = standard.core, 0.5 * base.thickness
+        ends = np.array([[0.0, 0.0, low], [0.0, 0.0, core.height]])
+        lots.append(("CORE", "", _hull(ends, [core.low_radius, core.high_radius])))
+    for s in standard.spheres:
+        ends = np.array([[*s.centre[:2], s.foot], s.centre])
+        lots.append((s.name, "", _hull(s.centre[None], [0.0], s.radius)))
+        lots.append((f"{s.name} stem", "", _hull(ends, [s.foot_radius, s.stem_radius])))
+    parts = {}
+    for patch in standard.patches:
+        column = standard.columns[patch.name]
+        box = Plate(patch.half_size, 0.0, -patch.depth, column.top)
+        parts[len(lots)] = _moved(_prisms(patch), T_table_artefact)
+        lots.append((patch.name, "", _plate(box, patch.T_artefact_patch)))
+    lots = [(name, on, _moved(hull, T_table_artefact)) for name, on, hull in lots]
+    T_table_face = table_face(T_table_artefact)
+    for solid in workshop.solids:
+        hull = _plate(solid.plate, T_table_face @ solid.T_face_solid)
+        lots.append((solid.name, solid.on, hull))
+    return Bodies(
+        hulls=_joined([hull for _, _, hull in lots]),
+        name=np.array([name for name, _, _ in lots]),
+        on=np.array([on for _, on, _ in lots]),
+        parts=parts,
+    )
+
+
+def _hull(corners: Array, discs: list[float], ball: float = 0.0) -> Hulls:
+    """One upright body; corners that it does not have are repeated."""
+    some = np.minimum(np.arange(CORNERS), len(corners) - 1)
+    return Hulls(
+        corner=corners[some][None],
+        disc=np.array(discs)[some][None],
+        up=np.array([[0.0, 0.0, 1.0]]),
+        ball=np.array([ball]),
+    )
+
+
+def _plate(plate: Plate, T: Array) -> Hulls:
+    """A plate with rounded corners, moved."""
+    a, b = (half - plate.corner_radius for half in plate.half_size)
+    corners = [[x, y, z] for x in (-a, a) for y in (-b, b) for z in (plate.low, plate.high)]
+    return _moved(_hull(np.array(corners), [plate.corner_radius] * CORNERS), T)
+
+
+def _prisms(patch: FreeformPatch) -> Hulls:
+    """A column cut under its face: a box up to its lowest place, and prisms from there upwards."""
+    sides = [2 * max(int(np.ceil(half / _CELL)), 1) for half in patch.half_size]
+    u, v = (
+        np.linspace(-half, half, n * _FINE + 1)
+        for half, n in zip(patch.half_size, sides, strict=True)
+    )
+    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
+    height = patch.height(uv.reshape(-1, 2)).reshape(uv.shape[:2])
+    floor = float(height.min()) - 1.0
+    cells = [
+        _cell(_FINE * i, _FINE * j, uv, height, floor)
+        for i in range(sides[0])
+        for j in range(sides[1])
+    ]
+    below = Plate(patch.half_size, 0.0, -patch.depth, floor)
+    return _moved(_joined([_plate(below, np.eye(4)), *cells]), patch.T_artefact_patch)
+
+
+def _cell(i: int, j: int, uv: Array, height: Array, floor: float) -> Hulls:
+    """The prism under one cell of a face, whose corners are raised until it holds the face."""
+    mine = np.s_[i : i + _FINE + 1, j : j + _FINE + 1]
+    lid, share = height[mine], np.linspace(0.0, 1.0, _FINE + 1)
+    s, t = share[:, None], share[None]
+    corners = lid[np.ix_([0, -1], [0, -1])]
+    flat = (
+        corners[0, 0] * (1 - s) * (1 - t)
+        + corners[1, 0] * s * (1 - t)
+        + corners[0, 1] * (1 - s) * t
+        + corners[1, 1] * s * t
+    )
+    top = corners + float((lid - flat).max()) + _OVER
+    outline = uv[mine][np.ix_([0, -1], [0, -1])].reshape(-1, 2)
+    low = np.column_stack([outline, np.full(4, floor)])
+    high = np.column_stack([outline, top.reshape(-1)])
+    return _hull(np.concatenate([low, high]), [0.0] * CORNERS)
+
+
+def _joined(lots: list[Hulls]) -> Hulls:
+    return Hulls(
+        corner=np.concatenate([hulls.corner for hulls in lots]),
+        disc=np.concatenate([hulls.disc for hulls in lots]),
+        up=np.concatenate([hulls.up for hulls in lots]),
+        ball=np.concatenate([hulls.ball for hulls in lots]),
+    )
+
+
+def _moved(hulls: Hulls, T: Array) -> Hulls:
+    R = pose(T[:3, :3])
+    return Hulls(
+        corner=apply(T, hulls.corner), disc=hulls.disc, up=turn(R, hulls.up), ball=hulls.ball
+    )

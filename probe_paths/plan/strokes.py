@@ -1,0 +1,64 @@
+"""Touches as moves: in, beyond where the surface is expected, and up again when nothing was met."""
+
+from enum import StrEnum
+
+import numpy as np
+
+from probe_paths.plan.clearance import ToolClearance
+from twin.frames import Array
+from twin.record import Labels
+
+
+class Stage(StrEnum):
+    """Part of a touch in which the tool may come too near to something."""
+
+    WAY_IN = "on its way in"
+    TOUCH = "at the touch"
+    OVER_TRAVEL = "where it goes on if the surface is not met"
+    RETRACT = "on its way up after a miss"
+
+
+def stroke_gaps(
+    clearance: ToolClearance,
+    start: Array,
+    direction: Array,
+    back: Array,
+    distance: Array,
+    feature: Labels,
+    enough: float,
+) -> dict[Stage, tuple[Array, Labels]]:
+    """Smallest gaps in the parts of N touches, with what is nearest.
+
+    To the expected contact the tool above its ball keeps clear of everything, and the ball of all
+    but the touched feature. Beyond it, and on the way up after a miss, both keep clear of all but
+    the feature, and but the core: faces are the ends of columns that come out of it.
+
+    Args:
+        clearance: Tool and bodies.
+        start: Readings at the start, (N, A).
+        direction: Of the motion in readings, unit vectors, (N, A).
+        back: To the expected contact, (N,), mm.
+        distance: To where the probe gives up, (N,), mm.
+        feature: That is touched, (N,).
+        enough: A gap that is larger need not be known better than that, mm.
+    """
+    bodies = clearance.bodies
+    own = np.zeros((len(start), len(bodies.name)), dtype=bool)
+    for name in dict.fromkeys(feature.tolist()):
+        own[np.ix_(np.flatnonzero(feature == name), bodies.rows_of(name))] = True
+    core = np.broadcast_to(bodies.name == "CORE", own.shape)
+    contact = start + back[:, None] * direction
+    end = start + distance[:, None] * direction
+    above = end.copy()
+    z = clearance.chain.axis_index("Z")
+    above[:, z] = np.maximum(end[:, z], clearance.chain.link("Z").range[1])
+    tool = clearance.swept_gap(start, contact, with_ball=False, enough=enough)
+    ball = clearance.swept_gap(start, contact, with_tool=False, spared=own & ~core, enough=enough)
+    beyond = clearance.swept_gap(start, end, spared=own | core, enough=enough)
+    up = clearance.swept_gap(end, above, spared=own | core, enough=enough)
+    return {
+        Stage.TOUCH: tool,
+        Stage.WAY_IN: ball,
+        Stage.OVER_TRAVEL: beyond,
+        Stage.RETRACT: up,
+    }

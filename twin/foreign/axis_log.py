@@ -1,0 +1,43 @@
+"""Logs of one axis: strokes and directions out of its readings, temperatures beside them."""
+
+import re
+
+import numpy as np
+
+from twin.foreign.sheet import Sheet
+from twin.frames import Array
+from twin.record import IntArray
+
+_DEGREES = re.compile(r"[\[(_\s]*(°C|degC|deg C)[\])]?\s*\Z")
+
+
+def strokes(at: Array) -> tuple[IntArray, IntArray]:
+    """Sign of the last motion at every row of a log, and the number of its stroke, (N,) each.
+
+    A reading that has not changed belongs to the stroke that brought it there; before the first
+    motion the sign is 0.
+
+    Args:
+        at: Readings in the order in which they were taken, (N,).
+
+    Example:
+        >>> strokes(np.array([0.0, 1.0, 1.0, 2.0, 1.0]))
+        (array([ 0,  1,  1,  1, -1]), array([1, 1, 1, 1, 2]))
+    """
+    step = np.sign(np.diff(at, prepend=at[:1]))
+    last = np.maximum.accumulate(np.where(step != 0.0, np.arange(len(at)), 0))
+    sign = step[last].astype(np.int64)
+    turned = np.zeros(len(at), dtype=bool)
+    turned[1:] = sign[1:] * sign[:-1] < 0
+    return sign, 1 + np.cumsum(turned)
+
+
+def temperatures(sheet: Sheet) -> dict[str, Array]:
+    """Columns of temperatures by the name of the sensor, each (N,), degC."""
+    out = {}
+    for i, column in enumerate(sheet.columns):
+        match = _DEGREES.search(column)
+        if match:
+            name = re.sub(r"\W+", "_", column[: match.start()]).strip("_") or f"column{i + 1}"
+            out[name.removeprefix("T_")] = sheet.numbers(i)
+    return out

@@ -1,0 +1,270 @@
+"""Serial arms under a tracker: joint readings with the place at which a reflector really was.
+
+The tracker says where the reflector is, the readings where a controller that believes in the
+nominal arm takes it to be; the run has the difference along x, y and z of the tracker. Where the
+tracker stands, and where on the arm the reflector sits unless that is stated, is solved for first,
+at any size.
+"""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from twin.errors import BadFile, DesignError
+from twin.foreign.axis_log import temperatures
+from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column, unit_of_time
+from twin.frames import Array, apply, inverse, pose, rotation
+from twin.machine import Axis, Chain, make_chain, table_to_tool
+from twin.record import (
+    Instrument,
+    Run,
+    Setup,
+    Touches,
+    computed_deviation,
+    rigid_motion,
+)
+
+_JOINT = re.compile(
+    r"(?:\A|[^a-z])(?:j|joint|axis|achse|gelenk|q|theta|a)[\s_.]*(\d)", re.IGNORECASE
+)
+_LETTER = re.compile(r"(?<![a-z])([xyz])(?![a-z])", re.IGNORECASE)
+_MEASURED = re.compile(r"meas|act|ist\b|track|refl|laser", re.IGNORECASE)
+_TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
+_DH = {"a": r"\Aa\b", "alpha": r"alpha|α", "d": r"\Ad\b", "theta": r"theta|offset|θ"}
+
+ROUNDS = 50
+"""Most steps of Gauss and Newton towards tracker and reflector; five are usual."""
+
+SETTLED = 1e-9
+"""Step (mm, rad) below which they have arrived."""
+
+FEWEST = 6
+"""Poses for the nine unknown numbers of tracker and reflector, three equations each, with some
+over."""
+
+
+def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tuple[Chain, Array]:
+    """An arm from a table of Denavit and Hartenberg's parameters, a row a joint.
+
+    The machine frame has the directions of the base and its origin at the flange with every joint
+    at zero; the table frame is the base. An axis gets the letter of the direction that its line is
+    nearest to, and that line as its direction.
+
+    Args:
+        sheet: Columns a and d in mm, alpha and theta (its offset at reading zero) in degrees,
+            unless their names say other units.
+        readings: Of the joints, (N, J), rad; travels are theirs.
+        is_modified: Whether a joint turns about z of its own frame (Craig), and not about that of
+            the frame before it.
+
+    Returns:
+        The arm, and the rotation R (3, 3) that takes flange to tool coordinates.
+
+    Raises:
+        BadFile: A column that is not there, or as many rows as there are no joints.
+
+    Reference:
+        Denavit and Hartenberg 1955; Craig, Introduction to Robotics (modified parameters).
+    """
+    a, alpha, d, theta = (_dh_column(sheet, name) for name in _DH)
+    if len(a) != readings.shape[1]:
+        found = f"{len(a)} rows for {readings.shape[1]} columns of joints"
+        raise BadFile(sheet.path, "table", found, "a row a joint")
+    T, origins, lines = np.eye(4), [], []
+    ex, ez = np.eye(3)[0], np.eye(3)[2]
+    for i in range(len(a)):
+        across = pose(rotation(alpha[i] * ex), a[i] * ex)
+        along = pose(rotation(theta[i] * ez), d[i] * ez)
+        T = T @ across if is_modified else T
+        origins.append(T[:3, 3])
+        lines.append(T[:3, 2])
+        T = T @ along if is_modified else T @ along @ across
+    flange = T[:3, 3]
+    names = _names(lines)
+    axes = {
+        name: Axis(
+            range=_travel(readings[:, i]),
+            point=_triple(origins[i] - flange),
+            direction=_triple(lines[i]),
+        )
+        for i, name in enumerate(names)
+    }
+    chain = make_chain("arm", f"[w f {' '.join(names)} t]", axes, _triple(-flange))
+    return chain, T[:3, :3]
+
+
+def _dh_column(sheet: Sheet, name: str) -> Array:
+    """One parameter of every joint, mm or rad."""
+    is_angle = name in ("alpha", "theta")
+    for i, column in enumerate(sheet.columns):
+        if re.search(_DH[name], bare(column), re.IGNORECASE):
+            units = ANGLES if is_angle else MM
+            unit = unit_of_column(column) or ("deg" if is_angle else "mm")
+            return sheet.numbers(i) * units.get(unit, 1.0)
+    raise BadFile(
+        sheet.path,
+        "header",
+        f"columns {', '.join(map(repr, sheet.columns))}",
+        f"a column {name} among a, alpha, d, theta",
+    )
+
+
+def _names(lines: Sequence[Array]) -> list[str]:
+    """Letters of axes about some lines, numbered where one comes again."""
+    out: list[str] = []
+    for line in lines:
+        letter = "ABC"[int(np.argmax(np.abs(line)))]
+        count = sum(name[0] == letter for name in out)
+        out.append(f"{letter}{count}" if count else letter)
+    return out
+
+
+def _travel(q: Array) -> tuple[float, float]:
+    low, high = float(q.min()), float(q.max())
+    return (low, high) if high > low else (low - 1.0, high + 1.0)
+
+
+def _triple(v: Array) -> tuple[float, float, float]:
+    x, y, z = (float(c) for c in np.round(v, 12) + 0.0)
+    return x, y, z
+
+
+def joint_readings(sheet: Sheet, axes: Sequence[str] = ()) -> tuple[Array, tuple[str, ...]]:
+    """Columns of joints in the order of their numbers (`j1`, `joint 2`, `theta3`), (N, J), rad.
+
+    Degrees where the name of a column has no unit; mm of a joint that slides.
+
+    Args:
+        axes: Names of the axes of the arm; columns named so are taken, if all are there.
+
+    Returns:
+        The readings, and the names of their columns.
+
+    Raises:
+        BadFile: No such columns, or a number twice or left out.
+    """
+    names = [bare(c).upper() for c in sheet.columns]
+    found: dict[int, int] = {}
+    if axes and all(axis in names for axis in axes):
+        found = {k: names.index(axis) for k, axis in enumerate(axes)}
+    for i, column in enumerate(() if found else sheet.columns):
+        match = _JOINT.search(column)
+        if match and found.setdefault(int(match.group(1)), i) != i:
+            twice = f"{sheet.columns[found[int(match.group(1))]]!r} and {column!r}"
+            raise BadFile(sheet.path, "header", twice, "every joint once")
+    numbers = sorted(found)
+    if not numbers or numbers != list(range(numbers[0], numbers[0] + len(numbers))):
+        listed = ", ".join(map(repr, sheet.columns))
+        raise BadFile(sheet.path, "header", f"columns {listed}", "columns j1, j2, j3 ... of joints")
+    units = {**ANGLES, **MM}
+    columns = [found[k] for k in numbers]
+    q = [sheet.numbers(i) * units[unit_of_column(sheet.columns[i]) or "deg"] for i in columns]
+    return np.stack(q, axis=1), tuple(sheet.columns[i] for i in columns)
+
+
+def reflector_places(sheet: Sheet) -> Array:
+    """Where a reflector was measured, (N, 3), mm; mm where the name of a column has no unit.
+
+    Raises:
+        BadFile: No columns x, y, z, or several of one letter of which none says that it was
+            measured.
+    """
+    columns = []
+    for letter in "xyz":
+        named = [
+            i
+            for i, c in enumerate(sheet.columns)
+            if (m := _LETTER.search(bare(c).replace("_", " "))) and m.group(1).lower() == letter
+        ]
+        measured = [i for i in named if _MEASURED.search(sheet.columns[i])]
+        chosen = measured if len(named) > 1 else named
+        if len(chosen) != 1:
+            found = ", ".join(repr(sheet.columns[i]) for i in named) or "no such column"
+            raise BadFile(sheet.path, "header", found, f"one column of measured {letter}")
+        columns.append(chosen[0])
+    units = [MM.get(unit_of_column(sheet.columns[i]) or "mm", 1.0) for i in columns]
+    return np.stack([sheet.numbers(i) * u for i, u in zip(columns, units, strict=True)], axis=1)
+
+
+def tracker_run(
+    sheet: Sheet, chain: Chain, q: Array, u: float, reflector: Array | None = None
+) -> Run:
+    """Run of an arm under a tracker: three rows a pose, along x, y and z of the tracker.
+
+    Args:
+        sheet: With columns x, y, z, and times and temperatures if it has them.
+        chain: The arm.
+        q: Readings in the order of its axes, (N, A), mm and rad.
+        u: Standard uncertainty of one coordinate, mm.
+        reflector: In the tool frame, (3,), mm; None finds it.
+
+    Returns:
+        The run; its set-up is the tracker's frame, `touches.target` has the reflector.
+
+    Raises:
+        DesignError: Too few poses, or readings of other joints than the arm has.
+    """
+    if q.shape[1] != len(chain.programmed_axes) or len(chain.axes) != len(chain.programmed_axes):
+        raise DesignError(
+            f"{sheet.path}: {q.shape[1]} columns of joints, expected "
+            f"{len(chain.programmed_axes)}: {', '.join(chain.programmed_axes)}"
+        )
+    place = reflector_places(sheet)
+    clock = next((i for i, c in enumerate(sheet.columns) if _TIME.search(c)), None)
+    time = np.zeros(len(q))
+    if clock is not None:
+        time = sheet.numbers(clock) * unit_of_time(sheet.columns[clock])
+    there = np.isfinite(place).all(axis=1) & np.isfinite(q).all(axis=1)
+    if there.sum() < FEWEST:
+        raise DesignError(f"{sheet.path}: {int(there.sum())} poses, expected {FEWEST} at least")
+    T_table_tool = table_to_tool(chain, q[there])
+    T_table_tracker, target = _placed(T_table_tool, place[there], reflector)
+    rows = np.repeat(np.flatnonzero(there), 3)
+    n = len(rows)
+    touches = Touches(
+        chain=chain,
+        q=q[rows],
+        length=np.full(n, -target[2]),
+        offset=np.tile(target[:2], (n, 1)),
+        radius=np.zeros(n),
+        point=place[rows],
+        normal=np.tile(np.eye(3), (n // 3, 1)),
+        setups=(Setup("tracker", T_table_tracker),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=time[rows],
+        approach=np.zeros((n, len(chain.axes))),
+        temperature={name: values[rows] for name, values in temperatures(sheet).items()},
+        feature=np.full(n, "reflector"),
+        pose=np.repeat(np.arange(n // 3), 3),
+        instrument=Instrument.TRACKER,
+    )
+    lines = np.array(sheet.lines)[rows]
+    return Run(touches, computed_deviation(touches), np.full(n, u), line=lines)
+
+
+def _placed(T_table_tool: Array, place: Array, reflector: Array | None) -> tuple[Array, Array]:
+    """Pose of the tracker's frame in the table, (4, 4), and the reflector in the tool frame, (3,).
+
+    ``R (p + R_i v) + t = x`` with (R, t) what takes the table to the tracker and v the reflector,
+    by Gauss and Newton from the tracker that fits the flange.
+    """
+    v = np.zeros(3) if reflector is None else reflector
+    T = rigid_motion(apply(T_table_tool, np.broadcast_to(v, place.shape)), place, np.eye(4))
+    for _ in range(ROUNDS):
+        at = apply(T, apply(T_table_tool, np.broadcast_to(v, place.shape)))
+        left = (place - at).reshape(-1)
+        arm = at - T[:3, 3]
+        J = np.zeros((len(place), 3, 9))
+        J[:, :, :3] = np.cross(np.eye(3), arm[:, None, :]).transpose(0, 2, 1)
+        J[:, :, 3:6] = np.eye(3)
+        J[:, :, 6:] = T[:3, :3] @ T_table_tool[:, :3, :3]
+        free = 9 if reflector is None else 6
+        step = np.zeros(9)
+        step[:free] = np.linalg.lstsq(J.reshape(-1, 9)[:, :free], left, rcond=None)[0]
+        R = rotation(step[:3]) @ T[:3, :3]
+        T = pose(R, T[:3, 3] + step[3:6])
+        v = v + step[6:]
+        if np.abs(step).max() < SETTLED:
+            break
+    return inverse(T), v
