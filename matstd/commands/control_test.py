@@ -42,8 +42,8 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say
     from matstd.virtual_machine import virtual_machine
     from probe_paths.campaign import SMALLEST_U, check_moves, evaluate
-    from probe_paths.control import read_log, read_program
-    from probe_paths.emit import make_programs
+    from probe_paths.control import MAX_FEED, read_log, read_program
+    from probe_paths.emit import Feeds, make_programs
     from probe_paths.language import read_dialect
     from probe_paths.linuxcnc import (
         TwinContact,
@@ -68,7 +68,9 @@ def run(args: argparse.Namespace) -> int:
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     machine = virtual_machine(args, design / "machine.toml", for_errors, dialect)
     given = [read_program(path, chain) for path in _programs(design)]
-    made = make_programs(shortened(given, standard, chain, args.touches), dialect)
+    # feeds near nothing that is measured: as high as a program may state them
+    feeds = Feeds(approach=MAX_FEED, turning=MAX_FEED)
+    made = make_programs(shortened(given, standard, chain, args.touches), dialect, feeds)
     programs = [read_program(path, chain) for path in made.write(out)]
     for program in programs:
         check_moves(program, standard, chain)
@@ -104,7 +106,6 @@ def run(args: argparse.Namespace) -> int:
         say(f"- planted: {text}")
     for remark in run.remarks:
         say(f"- {remark}")
-    say(f"- next: matstd diagnose {out / 'run.csv'}")
     return 0
 
 
