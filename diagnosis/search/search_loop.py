@@ -66,9 +66,9 @@ SCREENINGS = 3
 STRETCHES = 5
 """Stretches of time that are left out to weigh patterns against named effects."""
 
-BETTER = 0.8
-"""Share of the held-out error of patterns that named effects must reach to stay beside them: an
-effect that only imitates an unknown law is rarely much better than a pattern."""
+BETTER = 0.97
+"""Share of the held-out error of named effects that patterns without a name must reach to push one
+of them out: as far as both predict alike, the name stays."""
 
 FREEDOM = 3.0
 """Factor on the prior of a found effect in its last fit: being found tells more of its size than
@@ -283,7 +283,7 @@ def _with_structure(
 
 
 def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
-    """Whether patterns without a name pushed out named effects that predict better than they do.
+    """Whether patterns without a name pushed out named effects and predict no better for it.
 
     They are judged by long stretches of time left out: between neighbours a pattern of time always
     runs well.
@@ -291,7 +291,7 @@ def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
     kept = {m.effect.name for m in after.members}
     if all(m.effect.name in kept for m in before.members):
         return False
-    return _by_stretches(before.effects) < BETTER * _by_stretches(after.effects)
+    return _by_stretches(after.effects) > BETTER * _by_stretches(before.effects)
 
 
 def _by_stretches(effects: EffectSet) -> float:
@@ -320,7 +320,7 @@ def _searched(
         start = [search.member(nothing, v) for v in ranked if search.name_of(v) in found]
         search, chosen = regridded(search, search.run(start))
         further = library.shortlist(_scaled(chosen), chosen.effects)
-        if set(further) <= set(shortlist) or _found_again(chosen, found):
+        if joined_shortlists(shortlist, further) == dict(shortlist) or _found_again(chosen, found):
             break
         shortlist = joined_shortlists(shortlist, further)
         found = [m.effect.name for m in chosen.members]
