@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.virtual_machine import add_planted, checked_noise
+from matstd.commands.simulate import add_planted, checked_noise, virtual_machine
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from probe_paths.linuxcnc import Session
+    from probe_paths.emit import ProgramSet
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,78 +33,44 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the programs, keep the log whatever happens, evaluate it where all touches were made."""
-    import shutil
     from pathlib import Path
 
     import numpy as np
 
     from artefact.body import read_standard
     from matstd.console import say
-    from matstd.virtual_machine import virtual_machine
-    from probe_paths.campaign import SMALLEST_U, check_moves, evaluate
-    from probe_paths.control import MAX_FEED, read_log, read_program
-    from probe_paths.emit import Feeds, make_programs
     from probe_paths.language import read_dialect
-    from probe_paths.linuxcnc import (
-        TwinContact,
-        installed,
-        latch_u,
-        machine_files,
-        machine_folder,
-        run_on_linuxcnc,
-        shortened,
-    )
-    from twin.errors import DesignError
-    from twin.files import read_machine, write_run
-    from twin.units import UM
+    from probe_paths.linuxcnc import installed, rehearse
+    from twin.files import write_run
+    from twin.units import MINUTE, UM
 
     checked_noise(args)
     user = installed(args.user)
-    out = _output_folder(args)
     design = Path(args.design)
-    chain = read_machine(design / "machine.toml")
     standard = read_standard(design / "standard.toml")
-    dialect = read_dialect("linuxcnc")
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
+    dialect = read_dialect("linuxcnc")
     machine = virtual_machine(args, design / "machine.toml", for_errors, dialect)
-    given = [read_program(path, chain) for path in _programs(design)]
-    # feeds near nothing that is measured: as high as a program may state them
-    feeds = Feeds(approach=MAX_FEED, turning=MAX_FEED)
-    made = make_programs(shortened(given, standard, chain, args.touches), dialect, feeds)
-    programs = [read_program(path, chain) for path in made.write(out)]
-    for program in programs:
-        check_moves(program, standard, chain)
-    contact = TwinContact(programs, standard, machine, for_noise)
-    folder = machine_folder(user)
-    try:
-        socket = folder / "probe"
-        files = machine_files(chain, programs[0].heading.probe, dialect, str(socket))
+    files, out = _programs(design), _output_folder(args)
+
+    def told(made: ProgramSet) -> None:
         touches = sum(program.touches for program in made.programs)
-        say(f"{touches} touches on LinuxCNC, about {made.duration / 60.0:.0f} min")
-        session = run_on_linuxcnc(made.programs, files, contact, socket, user)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-    paths = _kept(session, out)
-    if session.outcome:
-        raise DesignError(f"{session.outcome}; what was logged is kept in {out}")
-    contact.check_in_time()
-    parts = [part for path in paths for part in read_log(path, chain.rotary_axes)]
-    slow = programs[0].touches[0].slow_feed
-    u = float(np.hypot(max(machine.noise, SMALLEST_U), latch_u(slow)))
-    run = evaluate(parts, standard, chain, u, dialect)
-    write_run(out / "run.csv", run, _seen_from(design / "machine.toml", out))
-    latch = contact.latched(parts)
+        say(f"{touches} touches on LinuxCNC, about {made.duration / MINUTE:.0f} min")
+
+    made = rehearse(files, standard, machine, for_noise, out, args.touches, user, told)
+    write_run(out / "run.csv", made.run, _seen_from(design / "machine.toml", out))
     say(
-        f"{out / 'run.csv'}: {len(run)} touches from LinuxCNC's own log, "
-        f"u = {u / UM:.3f} µm with the latch"
+        f"{out / 'run.csv'}: {len(made.run)} touches from LinuxCNC's own log, "
+        f"u = {made.u / UM:.3f} µm with the latch"
     )
+    low, mean, high = (f(made.latched) / UM for f in (np.min, np.mean, np.max))
     say(
-        f"- latched {latch.min() / UM:.3f} to {latch.max() / UM:.3f} µm beyond the twin's contact, "
-        f"mean {latch.mean() / UM:.3f}; modelled 0 to {slow * 1e-3 / UM:.3f} µm"
+        f"- latched {low:.3f} to {high:.3f} µm beyond the twin's contact, mean {mean:.3f}; "
+        f"modelled 0 to {made.modelled / UM:.3f} µm"
     )
     for text in args.add:
         say(f"- planted: {text}")
-    for remark in run.remarks:
+    for remark in made.run.remarks:
         say(f"- {remark}")
     return 0
 
@@ -121,6 +87,8 @@ def _output_folder(args: argparse.Namespace) -> Path:
     if out.is_dir() and any(out.iterdir()) and not args.force:
         raise DesignError(f"{out}: already exists; choose another folder or give --force")
     out.mkdir(parents=True, exist_ok=True)
+    for old in [*out.glob("*.TXT"), out / "run.csv"]:  # of an earlier run, which this one replaces
+        old.unlink(missing_ok=True)
     return out
 
 
@@ -133,15 +101,6 @@ def _programs(design: Path) -> list[Path]:
     if not found:
         raise BadFile(folder, "folder", "no program", "the folder that `matstd design` made")
     return sorted(found, key=lambda p: (len(p.name), p.name))
-
-
-def _kept(session: Session, out: Path) -> list[Path]:
-    """Logs, and what LinuxCNC said, beside the programs."""
-    from twin.files import write_whole
-
-    for name, text in {**session.logs, "linuxcnc.txt": session.said}.items():
-        write_whole(out / name, text)
-    return [out / name for name in session.logs]
 
 
 def _seen_from(file: Path, folder: Path) -> str:

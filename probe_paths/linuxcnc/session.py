@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TextIO
 
 from probe_paths.emit import Program
-from probe_paths.linuxcnc.machine_files import HEADLESS, PROBER, PROGRAMS, SAID
+from probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, PROBER, PROGRAMS, SAID
 from probe_paths.linuxcnc.twin_contact import TwinContact
 from twin.errors import DesignError
 
@@ -25,7 +25,6 @@ NEEDED = ("linuxcnc", "halcmd", "halrun")
 LOCK = Path("/tmp/linuxcnc.lock")
 """LinuxCNC's own: one runs on a computer at a time."""
 
-_BESIDE = Path(__file__).parent / "beside"
 _TROUBLE = re.compile(r"error|failed|exited|abort|killed", re.IGNORECASE)
 
 _SHUTDOWN = 30.0
@@ -141,7 +140,7 @@ def _write(
     for name, text in written.items():
         (folder / name).write_text(text)
     for name in (PROBER, HEADLESS):
-        shutil.copyfile(_BESIDE / name, folder / name)
+        shutil.copyfile(BESIDE / name, folder / name)
         (folder / name).chmod(0o755)
     owner = folder.stat()
     for path in folder.iterdir():
@@ -193,7 +192,7 @@ def _watched(process: subprocess.Popen[bytes], contact: TwinContact, longest: fl
         if contact.failure:
             return contact.failure
         if time.monotonic() > end:
-            return f"LinuxCNC was ended after {longest / 60.0:.0f} min"
+            return "LinuxCNC took more than three times as long as planned and was ended"
         time.sleep(0.1)
     return ""
 

@@ -19,9 +19,9 @@ from probe_paths.emit.program import make_programs
 from probe_paths.language.dialect_file import read_dialect
 from probe_paths.linuxcnc import session as session_module
 from probe_paths.linuxcnc.latch import latch_error, latch_u
-from probe_paths.linuxcnc.machine_files import machine_files
+from probe_paths.linuxcnc.machine_config import machine_files
+from probe_paths.linuxcnc.replanned import shortened
 from probe_paths.linuxcnc.session import _answer, _listening, installed, run_on_linuxcnc
-from probe_paths.linuxcnc.shortened import shortened
 from probe_paths.linuxcnc.twin_contact import TwinContact
 from probe_paths.plan.probe import Probe
 from twin.effects.backlash import Backlash
