@@ -104,7 +104,9 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
     good = (met.meeting == Meeting.SURFACE) & (met.feature == feature)
     for i in np.flatnonzero(~good)[:1]:
         found = f"a ball that {met.meeting[i]} {met.feature[i]}".rstrip()
-        raise BadFile(program.path, f"line {line[i]}", found, f"touch {touches[i].number} on {feature[i]}")
+        raise BadFile(
+            program.path, f"line {line[i]}", found, f"touch {touches[i].number} on {feature[i]}"
+        )
     looks = stroke_gaps(clearance, start, direction, back, distance, feature, SMALLEST_GAP)
     for stage, (gap, nearest) in looks.items():
         _refuse(program, line, gap, np.array([f"{name} {stage}" for name in nearest]))
