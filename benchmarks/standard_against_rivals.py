@@ -1,46 +1,58 @@
-"""The finished standard against other artefacts, ten seeds, 300 touches of 1 µm, without CAD.
+"""The finished standard against other artefacts under equal rules: ten seeds, without CAD.
 
-`OMP_NUM_THREADS=1 python benchmarks/standard_against_rivals.py [-n SEEDS]`, half a minute a seed.
-For the example project: what each artefact leaves of the tool point, root mean square and 95 % of
-the poses, over the volume that the standard fills and over the user's workspace, under equal rules.
+    OMP_NUM_THREADS=1 python benchmarks/standard_against_rivals.py [-n SEEDS] [--touches N]
+        [--machines hsm600u machines/trunnion ...] [--jobs J]
+
+For every example project: what each artefact leaves of the tool point, root mean square and 95 % of
+the poses, over the volume that the standard fills and over the user's workspace, with 300 touches.
+Half a minute to a minute of processor time a seed and machine; `--jobs` are processes.
 """
 
 import argparse
 import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from functools import partial
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
 from artefact.brief import read_project
 from artefact.compare import Rival
-from artefact.layout import Blank, Fittings
-from artefact.place import PlacementOptions, design_standard
-from artefact.reach import ProbeReach
+from artefact.place import design_standard
 from artefact.worth import TouchOptions
-from probe_paths.plan import Probe
+from matstd.from_project import blank, placement_options, probe_reach
 from sensitivity.first_order import Workspace
 from twin.units import UM
 
-PROJECT = Path(__file__).parents[1] / "examples" / "hsm600u.toml"
-TOUCHES = 300
+EXAMPLES = Path(__file__).parents[1] / "examples"
+MACHINES = (
+    "hsm600u",
+    "machines/head-table",
+    "machines/trunnion",
+    "machines/vertical",
+    "machines/four-axis",
+)
+HEAD = "      volume: rms, P95   workspace: rms, P95   known   shown"
 IDEAL = "ideal scatter, chosen by D"
 
 
-def rivals_of(seed: int) -> tuple[Rival, ...]:
-    """The standard of one seed first, then what it is compared with."""
-    project = read_project(PROJECT)
-    probe = Probe(project.probe_radius, project.probe_length)
+def rivals_of(job: tuple[str, int], touches: int) -> tuple[tuple[Rival, ...], float]:
+    """Of a machine and a seed: the standard first, then its rivals; processor seconds."""
+    name, seed = job
+    start = time.process_time()
+    project = read_project(EXAMPLES / f"{name}.toml")
     placement = design_standard(
-        ProbeReach(project.chain, project.setup, probe.shape, probe.length),
-        Blank(fittings=Fittings(sphere_heights=(60.0, 95.0, 130.0))),
+        probe_reach(project),
+        blank(project),
         Workspace(project.chain, project.workspace, project.probe_length),
         np.random.default_rng(seed),
         project.population,
-        PlacementOptions(
-            patches=project.standard.patches, noise=1.0 * UM, choice=TouchOptions(touches=TOUCHES)
-        ),
+        replace(placement_options(project), choice=TouchOptions(touches=touches)),
     )
-    return placement.rivals
+    return placement.rivals, time.process_time() - start
 
 
 def line(name: str, of: list[Rival]) -> str:
@@ -54,45 +66,49 @@ def line(name: str, of: list[Rival]) -> str:
     return f"{name:28s} {figures}   {mean['estimable']:5.1f}   {100 * shown:5.1f} %"
 
 
-def main() -> list[tuple[float, float, float]]:
-    """Print the table; return (against spheres, against scatter, visible share) of every seed."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def against(of: Sequence[Rival], seed: int, seconds: float) -> float:
+    """Print one seed; return by how much more the standard leaves than the best spheres do."""
+    own, by_name = of[0], {r.name: r for r in of}
+    placed = [r for r in of[1:] if r.body is not None and not r.body.patches]
+    best = {"spheres": min(placed, key=lambda r: r.rms_user), "D-scatter": by_name.get(IDEAL)}
+    words = [
+        f"{100 * (own.rms / r.rms - 1.0):+5.1f} % and "
+        f"{100 * (own.rms_user / r.rms_user - 1.0):+5.1f} % against {what}"
+        for what, r in best.items()
+        if r is not None
+    ]
+    print(
+        f"seed {seed}: volume and workspace {', '.join(words)} ({best['spheres'].name}); "
+        f"shows {own.visible} of {own.could_be_visible}; {seconds:.0f} s CPU",
+        flush=True,
+    )
+    return own.rms_user / best["spheres"].rms_user - 1.0
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-n", type=int, default=10, help="number of seeds, from 600")
-    count = parser.parse_args().n
-    found, shares = [], []
-    for seed in range(600, 600 + count):
-        start = time.process_time()
-        of = rivals_of(seed)
-        found.append(of)
-        own, by_name = of[0], {r.name: r for r in of}
-        ideal = by_name[IDEAL]
-        placed = [r for r in of[1:] if r.body is not None and not r.body.patches]
-        spheres = min(placed, key=lambda r: r.rms_user)
-        ratios = [
-            own.rms / spheres.rms - 1.0,
-            own.rms_user / spheres.rms_user - 1.0,
-            own.rms / ideal.rms - 1.0,
-            own.rms_user / ideal.rms_user - 1.0,
-        ]
-        shares.append((ratios[1], max(ratios[2:]), own.visible / own.could_be_visible))
-        words = "  ".join(f"{100 * r:+5.1f} %" for r in ratios)
-        print(
-            f"seed {seed}: against {spheres.name} and D-scatter, volume and workspace: {words}; "
-            f"shows {own.visible} of {own.could_be_visible}; "
-            f"{time.process_time() - start:.0f} s CPU",
-            flush=True,
-        )
-    print(
-        f"\nmeans of {count} seeds, µm      volume: rms, P95   workspace: rms, P95   known   shown"
-    )
-    for i, rival in enumerate(found[0]):
-        print(line("this standard" if i == 0 else rival.name, [of[i] for of in found]))
-    worst = (max(s[0] for s in shares), max(s[1] for s in shares), min(s[2] for s in shares))
-    print(
-        f"worst seed: {100 * worst[0]:+.1f} % against spheres (workspace), "
-        f"{100 * worst[1]:+.1f} % against D-scatter, {100 * worst[2]:.1f} % of effects shown"
-    )
-    return shares
+    parser.add_argument("--touches", type=int, default=300)
+    parser.add_argument("--machines", nargs="+", default=["hsm600u"], help=", ".join(MACHINES))
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
+    args = parser.parse_args()
+    seeds = range(600, 600 + args.n)
+    with ProcessPoolExecutor(args.jobs) as pool:
+        results = pool.map(partial(rivals_of, touches=args.touches), product(args.machines, seeds))
+        for machine in args.machines:
+            print(f"\n{machine}, {args.touches} touches")
+            found, more = [], []
+            for seed in seeds:
+                of, seconds = next(results)
+                found.append({r.name if i else "this standard": r for i, r in enumerate(of)})
+                more.append(against(of, seed, seconds))
+            print(f"means of {args.n} seeds, µm{HEAD}")
+            for name in found[0]:
+                print(line(name, [of[name] for of in found if name in of]))
+            print(
+                f"over the workspace against the best spheres: {100 * np.mean(more):+.1f} % on the "
+                f"mean, {100 * max(more):+.1f} % at worst"
+            )
 
 
 if __name__ == "__main__":

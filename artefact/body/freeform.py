@@ -177,9 +177,18 @@ class FreeformPatch:
         # A ball whose line passes outside the bounding sphere of the face meets no node.
         near = np.flatnonzero(np.isfinite(sphere_entry(centre, start, d, reach + radius)))
         # Steep faces leave gaps between nodes: a node counts when the ball nearly touches it.
-        fat = np.hypot(radius, 2.0 * _GRID_PITCH)
-        for some in np.array_split(near, len(near) * len(nodes) * 3 // _BLOCK + 1):
-            entry = sphere_entry(nodes, start[some, None], d[some, None], fat)
+        fat, offset = np.hypot(radius, 2.0 * _GRID_PITCH), nodes - centre
+        for some in np.array_split(near, len(near) * len(nodes) // _BLOCK + 1):
+            to_centre = np.einsum("ni,ni->n", centre - start[some], d[some])
+            foot = start[some] + to_centre[:, None] * d[some] - centre
+            # from the foot of the centre on the ball's line numbers are small enough for squares
+            along = d[some] @ offset.T
+            across2 = np.einsum("ni,ni->n", foot, foot)[:, None] - 2.0 * foot @ offset.T
+            across2 += np.einsum("ki,ki->k", offset, offset) - along**2
+            along += to_centre[:, None]
+            half_chord = np.sqrt(np.maximum(fat**2 - across2, 0.0))
+            met = (across2 <= fat**2) & (along + half_chord >= 0.0)
+            entry = np.where(met, along - half_chord, np.inf)
             best[some] = np.argmin(entry, axis=1)
             travel[some] = np.take_along_axis(entry, best[some, None], axis=1)[:, 0]
         return Hit(uv[best], travel + fat - radius)

@@ -79,37 +79,33 @@ def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndar
     """
     count = len(knots) - degree - 1
     span = np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1)
-    ladder = [np.ones((len(x), 1))]
+    near = knots[span + np.arange(1 - degree, degree + 1)[:, None]]  # (2 degree, N)
+    # points in rows of memory: half the time of points in columns
+    ladder = [np.ones((1, len(x)))]
     for d in range(1, degree + 1):
-        ladder.append(_raised(knots, span, x, ladder[-1], d))
+        left, right = near[degree - d : degree], near[degree : degree + d]
+        share = ladder[-1] / (right - left)
+        ladder.append(_beside((right - x) * share, (x - left) * share))
     if orders == 1:
-        return span - degree, ladder[degree][None]
-    first = _derivative(knots, span, ladder[degree - 1], degree)
-    second = _derivative(
-        knots, span, _derivative(knots, span, ladder[degree - 2], degree - 1), degree
-    )
-    return span - degree, np.stack([ladder[degree], first, second])
+        return span - degree, ladder[degree].T[None]
+    first = _derivative(near, ladder[degree - 1])
+    second = _derivative(near, _derivative(near, ladder[degree - 2]))
+    return span - degree, np.stack([ladder[degree].T, first.T, second.T])
 
 
-def _raised(knots: Array, span: np.ndarray, x: Array, lower: Array, d: int) -> Array:
-    """Basis values of degree d, (N, d + 1), from those of degree d - 1, (N, d)."""
-    values = np.zeros((len(x), d + 1))
-    for r in range(d):
-        left, right = knots[span - d + 1 + r], knots[span + 1 + r]
-        share = lower[:, r] / (right - left)
-        values[:, r] += (right - x) * share
-        values[:, r + 1] += (x - left) * share
+def _beside(low: Array, high: Array) -> Array:
+    """What each of d splines gives to its lower and to its upper neighbour, (d + 1, N)."""
+    values = np.zeros((len(low) + 1, low.shape[1]))
+    values[:-1] += low
+    values[1:] += high
     return values
 
 
-def _derivative(knots: Array, span: np.ndarray, lower: Array, d: int) -> Array:
-    """Derivatives of degree d, (N, d + 1), from values or derivatives of degree d - 1."""
-    values = np.zeros((len(span), d + 1))
-    for r in range(d):
-        share = d * lower[:, r] / (knots[span + 1 + r] - knots[span - d + 1 + r])
-        values[:, r] -= share
-        values[:, r + 1] += share
-    return values
+def _derivative(near: Array, lower: Array) -> Array:
+    """Derivatives of degree d, (d + 1, N), from values or derivatives of degree d - 1, (d, N)."""
+    d, middle = len(lower), len(near) // 2
+    share = d * lower / (near[middle : middle + d] - near[middle - d : middle])
+    return _beside(-share, share)
 
 
 @dataclass(frozen=True, eq=False)

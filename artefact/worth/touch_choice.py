@@ -189,7 +189,8 @@ def some_touches(
     tried = tried[criterion.reach.is_reachable(tried)]
     tried = tried[rng.permutation(len(tried))]
     found: list[Requests] = []
-    for rows in blocks(len(tried), _DRAWN):
+    lot = min(_DRAWN, int(2.0 * _CHOICE * options.touches))  # about half of those drawn can be made
+    for rows in blocks(len(tried), lot):
         found.append(tried[rows][criterion.reach.is_clear(standard, tried[rows])])
         if sum(map(len, found)) >= _CHOICE * options.touches:
             break

@@ -316,7 +316,8 @@ def ladder(geometry: Fit, effects: Fit | None = None) -> tuple[LadderStep, ...]:
         effects: With further effects; None where there are none.
     """
     alone = fit_run(geometry.run, Model(geometry.model.chain, ()), gross=geometry.gross)
-    fits = [(Rung.SETUP, alone), (Rung.GEOMETRY, geometry)]
+    fits = [(Rung.SETUP, alone)]
+    fits += [(Rung.GEOMETRY, geometry)] if geometry.model.effects else []
     if changed_since(geometry.model):
         common = Model(geometry.model.chain, standing(geometry.model))
         own = slice(len(common.parameters))

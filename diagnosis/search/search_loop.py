@@ -25,6 +25,7 @@ from diagnosis.evidence import (
     ScaledEffect,
     Signatures,
     period_of,
+    projected,
     quiet,
     scanned_grids,
     signatures,
@@ -66,9 +67,9 @@ SCREENINGS = 3
 STRETCHES = 5
 """Stretches of time that are left out to weigh patterns against named effects."""
 
-BETTER = 0.8
-"""Share of the held-out error of patterns that named effects must reach to stay beside them: an
-effect that only imitates an unknown law is rarely much better than a pattern."""
+BETTER = 0.97
+"""Share of the held-out error of named effects that patterns without a name, or tables, must reach
+to push one of them out: as far as both predict alike, the name stays."""
 
 FREEDOM = 3.0
 """Factor on the prior of a found effect in its last fit: being found tells more of its size than
@@ -179,15 +180,41 @@ def search_until_stable(
     candidates: Sequence[Effect],
     progress: Progress = quiet,
 ) -> SearchState:
-    """Search, and again with further periods of what repeats where structure is left.
+    """Search among laws, then with tables, which say where an axis is wrong and not why.
 
-    A screw and its encoder repeat with two periods. A second one is offered only beside a first,
-    and only where something is left.
+    A table is followed only where it predicts plainly better than what the laws came to: it can
+    imitate any of them.
 
     Args:
         added: Effects that the user added.
         candidates: Effects that may be found.
         progress: Told of every stage.
+    """
+    laws = [e for e in candidates if not getattr(e, "is_table", False)]
+    state = _with_further_periods(task, added, laws, progress)
+    if len(laws) == len(candidates):
+        return state
+    other = _with_further_periods(task, added, candidates, progress)
+    return other if _held_out(other) < BETTER * _held_out(state) else state
+
+
+def _held_out(state: SearchState) -> float:
+    """Error of poses left out by what was found, without patterns that have no name, mm."""
+    complement = state.library.complement
+    effects = EffectSet(complement, projected(complement, state.effects))
+    return float(np.sqrt(np.mean((effects.held_out.error * complement.u) ** 2)))
+
+
+def _with_further_periods(
+    task: DiagnosisTask,
+    added: Sequence[ScaledEffect],
+    candidates: Sequence[Effect],
+    progress: Progress,
+) -> SearchState:
+    """Search, and again with further periods of what repeats where structure is left.
+
+    A screw and its encoder repeat with two periods. A second one is offered only beside a first,
+    and only where something is left.
     """
     offered = list(candidates)
     state = _until_gross_errors_stay(task, added, offered, progress)
@@ -283,7 +310,7 @@ def _with_structure(
 
 
 def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
-    """Whether patterns without a name pushed out named effects that predict better than they do.
+    """Whether patterns without a name pushed out named effects and predict no better for it.
 
     They are judged by long stretches of time left out: between neighbours a pattern of time always
     runs well.
@@ -291,7 +318,7 @@ def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
     kept = {m.effect.name for m in after.members}
     if all(m.effect.name in kept for m in before.members):
         return False
-    return _by_stretches(before.effects) < BETTER * _by_stretches(after.effects)
+    return _by_stretches(after.effects) > BETTER * _by_stretches(before.effects)
 
 
 def _by_stretches(effects: EffectSet) -> float:
@@ -320,7 +347,7 @@ def _searched(
         start = [search.member(nothing, v) for v in ranked if search.name_of(v) in found]
         search, chosen = regridded(search, search.run(start))
         further = library.shortlist(_scaled(chosen), chosen.effects)
-        if set(further) <= set(shortlist) or _found_again(chosen, found):
+        if joined_shortlists(shortlist, further) == dict(shortlist) or _found_again(chosen, found):
             break
         shortlist = joined_shortlists(shortlist, further)
         found = [m.effect.name for m in chosen.members]

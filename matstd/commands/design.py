@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
 
 REFUSED = "reach-refused.png"

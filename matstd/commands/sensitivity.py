@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
 
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")

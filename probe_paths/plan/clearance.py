@@ -102,10 +102,12 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
         shift = np.einsum("vi,vi->v", up, T_table_still[:, :3, 3])
         most = (along @ solid.points[mine].T + solid.radii[mine]).max(axis=1)
         highest = np.maximum(highest, most + shift)
-    outline = turn(table_to_tool(chain, q)[:, None], probe.outline())  # (V, M, 3)
-    below = np.einsum("vmi,vi->vm", outline, up).min(axis=1)
+    T_table_tool = table_to_tool(chain, q)
+    up_in_tool = np.einsum("vji,vj->vi", T_table_tool[:, :3, :3], up)
+    below = (up_in_tool @ probe.outline().T).min(axis=1)
     below = np.minimum(below, -probe.radius)
-    level: Array = highest - below - np.einsum("vi,vi->v", up, tip(chain, q, probe.length))
+    gauge_to_ball = np.array([0.0, 0.0, -probe.length])
+    level: Array = highest - below - np.einsum("vi,vi->v", up, apply(T_table_tool, gauge_to_ball))
     return level
 
 

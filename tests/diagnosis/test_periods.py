@@ -10,6 +10,7 @@ import pytest
 
 from diagnosis.answer import Verdict, diagnose
 from diagnosis.answer.alike import even_step
+from diagnosis.fit.describe import Role
 from twin.effects.periodic import scanned_periods
 from twin.frames import Array
 from twin.machine import Axis, make_chain
@@ -85,6 +86,52 @@ def test_a_fine_log_of_many_rows_shows_two_periods() -> None:
     periods = [e.tuning["period"] for e in found.found if isinstance(e, Tunable)]
     assert sorted(periods) == pytest.approx([0.25, 2.0], rel=1e-4)
     assert found.fit.rms < 0.055 * UM
+
+
+def evenly_timed(run: Run, step: float = 0.1) -> Run:
+    """The same, read while the axis moved evenly: a sine over X is a wave in time as well."""
+    times = step * np.arange(len(run))
+    return replace(run, touches=replace(run.touches, time=times))
+
+
+@pytest.mark.parametrize("times", [30.0, 100.0])
+def test_a_large_sine_keeps_its_name_beside_a_wave_in_time(times: float) -> None:
+    rng = np.random.default_rng(6)
+    x = np.linspace(0.0, 400.0, 1500)
+    error = times * UM * np.sin(2.0 * np.pi * x / 10.0 + 1.0)
+    found = diagnose(evenly_timed(run_of(x, -error + rng.normal(0.0, UM, len(x)), UM)))
+    assert found.verdict is Verdict.MISSING
+    (effect,) = found.found
+    assert isinstance(effect, Tunable)
+    assert effect.tuning["period"] == pytest.approx(10.0, rel=1e-3)
+    assert found.fit.rms == pytest.approx(UM, rel=0.06)
+
+
+def test_a_small_sine_is_found_beside_a_large_one_in_a_long_log() -> None:
+    """Six thousand rows are screened: the second period stands only in the second screening."""
+    rng = np.random.default_rng(99)
+    x = np.linspace(0.0, 300.0, 6000)
+    error = 5.0 * np.sin(2.0 * np.pi * x / 20.0 + 0.3) + 0.4 * np.sin(2.0 * np.pi * x / 0.8)
+    run = run_of(x, -error * UM + rng.normal(0.0, 0.1 * UM, len(x)), 0.1 * UM)
+    found = diagnose(evenly_timed(run, 0.05))
+    assert found.verdict is Verdict.MISSING
+    periods = [e.tuning["period"] for e in found.found if isinstance(e, Tunable)]
+    assert sorted(periods) == pytest.approx([0.8, 20.0], rel=1e-4)
+
+
+def test_effects_of_a_log_do_not_cancel_one_another() -> None:
+    """Reading and time run together: growth and polynomials would cancel, thousands of µm each."""
+    rng = np.random.default_rng(0)
+    x = np.linspace(0.0, 400.0, 3000)
+    u = x / 200.0 - 1.0
+    error = 2.0 * (8.0 * u**4 - 8.0 * u**2 + 1.0) + 0.5 * np.cos(7.0 * np.arccos(u))
+    run = run_of(x, -error * UM + rng.normal(0.0, 0.1 * UM, len(x)), 0.1 * UM)
+    found = diagnose(evenly_timed(run))
+    for step in found.steps[1:]:
+        size = next(r for r in step.reported if r.role is Role.SIZE)
+        assert size.u is not None
+        assert abs(size.value) < 10.0
+        assert size.u < 1.0
 
 
 def test_even_targets_tell_every_period_that_looks_alike() -> None:

@@ -20,11 +20,11 @@ from twin.units import UM, URAD
 NEXT_TO_NONE = "0.01"
 """Noise of a simulation, µm: without any, repeated touches would count as copied rows."""
 
-WANTED = "touches = 240                  # 100 to 2000\nposes = 30 "
+WANTED = "touches = 120                  # 100 to 2000\nposes = 10 "
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def small_project(folder: Path, machines: int = 1, seed: int = 600) -> Path:
+def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: int = 10) -> Path:
     """The example project with fewer poses, draws and touches."""
     (folder / "machine.toml").write_text((EXAMPLES / "hsm600u-machine.toml").read_text())
     text = (EXAMPLES / "hsm600u.toml").read_text()
@@ -33,9 +33,9 @@ def small_project(folder: Path, machines: int = 1, seed: int = 600) -> Path:
         ("poses = 2000", "poses = 300"),
         ("draws = 2000", "draws = 300"),
         ("patches = 10", "patches = 8"),
-        ("touches = 480", "touches = 240"),
+        ("touches = 480", f"touches = {touches}"),
+        ("poses = 30 ", f"poses = {poses} "),
         ("machines = 3", f"machines = {machines}"),
-        ("seed = 600", f"seed = {seed}"),
     ):
         assert old in text
         text = text.replace(old, new)
@@ -141,8 +141,8 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("drawn_machines = 0", "drawn_machines = -1", "standard.drawn_machines"),
         ("worst_share = 1.0", "worst_share = 0.0", "standard.worst_share"),
         ("worst_share = 1.0", "worst_share = 0.25", "drawn_machines = 0"),
-        ("poses = 30 ", "poses = 4 ", "standard.poses"),
-        ("touches = 240", "touches = 50", "standard.touches"),
+        ("poses = 10 ", "poses = 4 ", "standard.poses"),
+        ("touches = 120", "touches = 50", "standard.touches"),
         (WANTED, "touches = 100\nposes = 60 ", "found 60 with touches = 100"),
         ("base_mm = [280.0, 280.0]", "base_mm = [360.0, 280.0]", "no larger than the table, 320"),
         ("base_mm = [280.0, 280.0]", "base_mm = [90.0, 280.0]", "160 mm or more"),
@@ -168,13 +168,19 @@ def test_bad_project(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("relation", ["groups", "correlation"])
-def test_what_the_example_only_mentions_is_accepted(tmp_path: Path, relation: str) -> None:
-    """Every commented key, but for groups and correlations, of which there may be one."""
+@pytest.mark.parametrize(
+    ("relation", "shape"),
+    [("groups", "stylus|body"), ("correlation", "model"), ("groups", "stack")],
+)
+def test_what_the_example_only_mentions_is_accepted(
+    tmp_path: Path, relation: str, shape: str
+) -> None:
+    """Every commented key, but of groups and correlations, and of probe shapes, one alone."""
     path = small_project(tmp_path)
     text = path.read_text().replace("draws = 300", "draws = 20480")
     other = {"groups": r"\[errors.correlation", "correlation": r"\[\[errors.groups"}[relation]
     text = re.sub(rf"(?m)^# {other}.*\n(# .*\n)*?(?=# \[|\n)", "", text)
+    text = re.sub(rf"(?m)^# (?!{shape})(stylus|body|model|stack)\w* = .*\n", "", text)
     path.write_text(re.sub(r"(?m)^# (?=\[|\w+ = )", "", text))
     project = read_project(path)
     assert (project.digits, project.tolerance) == (1, pytest.approx(0.1))
@@ -218,10 +224,10 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert placement_options(read_project(path)) == PlacementOptions(
-        name="FFS-600U", serial="001", patches=8, choice=TouchOptions(touches=240)
+        name="FFS-600U", serial="001", patches=8, choice=TouchOptions(touches=120, poses=10)
     )
     plain = re.sub(
-        r"(?m)^(criterion|potential|drawn_machines|worst_share|poses = 30).*\n", "", text
+        r"(?m)^(criterion|potential|drawn_machines|worst_share|poses = 10).*\n", "", text
     )
     assert "potential" not in re.sub("#.*", "", plain)
     path.write_text(plain)
@@ -230,9 +236,9 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
         wanted = text.replace('criterion = "I"', f'criterion = "{criterion}"')
         for key, value in (("drawn_machines", "8"), ("worst_share", "0.5"), ("potential", "0.1")):
             wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
-        path.write_text(wanted.replace("poses = 30 ", "poses = 12 "))
+        path.write_text(wanted.replace("poses = 10 ", "poses = 12 "))
         options = placement_options(read_project(path))
-        assert options.choice == TouchOptions(touches=240, poses=12)
+        assert options.choice == TouchOptions(touches=120, poses=12)
         assert options.criterion == CriterionOptions(criterion, 0.1, 8, 0.5)
 
 
@@ -251,7 +257,8 @@ def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:
 def test_tenfold_for_every_seed_tried(tmp_path: Path) -> None:
     """The proof of the main job on ten random machines, probed by one design."""
     out = tmp_path / "out"
-    assert main(["design", str(small_project(tmp_path, machines=10)), "-o", str(out)]) == 0
+    project = small_project(tmp_path, machines=10, touches=240, poses=30)
+    assert main(["design", str(project), "-o", str(out)]) == 0
     proof = json.loads((out / "identification.json").read_text())["volumetric_error"]
     assert len(proof) == 10
     assert min(machine["times_smaller"] for machine in proof) > 10.0

@@ -8,6 +8,7 @@ import pytest
 
 from artefact.body.limits import check
 from artefact.brief.project_file import Project, read_project
+from artefact.compare import placed_spheres
 from matstd import design
 from matstd.from_project import blank, placement_options, probe_reach
 from matstd.reach import PICTURE, check_reach
@@ -53,6 +54,7 @@ def test_a_design_for_every_kind_of_machine(
     assert project.chain.notation == MACHINES[name]
     fewer = replace(placement_options(project), sites=60)
     monkeypatch.setattr(design, "placement_options", lambda _: fewer)
+    monkeypatch.setattr(placed_spheres, "_CANDIDATES", 60)
     rng_place, rng_proof = np.random.default_rng(project.seed).spawn(2)
     poses = check_reach(project, tmp_path)
     assert (tmp_path / PICTURE).stat().st_size > 0

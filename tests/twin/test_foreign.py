@@ -7,6 +7,8 @@ import numpy as np
 import openpyxl
 import pytest
 
+from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.fit.describe import Role
 from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from twin.errors import BadFile
@@ -16,6 +18,7 @@ from twin.foreign.positioning import one_axis_machine, positioning_run, read_pos
 from twin.foreign.serial_arm import arm_from_dh
 from twin.foreign.sheet import bare, read_sheet, unit_of_column
 from twin.library.ordinary import ordinary_model
+from twin.record.copies import without_copies
 from twin.record.touches import at_poses
 from twin.units import DEG, UM, URAD
 
@@ -103,6 +106,35 @@ def test_an_axis_that_goes_too_far_has_a_growing_positioning_error(tmp_path):
     run = positioning_run(test, one_axis_machine("X", test.target), 0.1 * UM)
     ends = fitted_tip(run, np.array([[0.0], [100.0]]))
     assert ends[1, 0] - ends[0, 0] == pytest.approx(10.0, abs=0.2)
+
+
+def test_an_axis_that_moves_from_cycle_to_cycle(tmp_path):
+    """No times stand in a positioning test; 0.9 µm more in every cycle are found as such."""
+    rng = np.random.default_rng(7)
+    targets = np.sort(rng.uniform(0.0, 500.0, 15)).round(3)
+    rows = [
+        f"{t},{j},{s:+d},{0.004 * t + 0.9 * j + 0.75 * s + 0.3 * rng.standard_normal():.3f}"
+        for j in range(1, 6)
+        for s in (1, -1)
+        for t in targets[::s]
+    ]
+    text = "target [mm],cycle,direction,deviation [um]\n" + "\n".join(rows) + "\n"
+    test = read_positioning(read_sheet(saved(tmp_path, text)), "X")
+    result = diagnose(positioning_run(test, one_axis_machine("X", test.target), 0.3 * UM))
+    steps = [s for s in result.steps if s.effect is not None]
+    told = {s.effect.name: next(r for r in s.reported if r.role is Role.SIZE) for s in steps}
+    assert set(told) == {"follows(EXX,cycle_1)", "backlash(X)"}
+    for name, true in (("follows(EXX,cycle_1)", 0.9), ("backlash(X)", 1.5)):
+        assert abs(told[name].value) == pytest.approx(true, abs=4.0 * told[name].u)
+
+
+def test_equal_readings_of_two_cycles_are_no_copies(tmp_path):
+    """An instrument that reads whole micrometres reads the same one in many cycles."""
+    rows = [f"{t},{j},+,{round(0.02 * t)}" for j in range(1, 6) for t in range(0, 200, 10)]
+    text = "target [mm],cycle,direction,deviation [um]\n" + "\n".join(rows) + "\n"
+    test = read_positioning(read_sheet(saved(tmp_path, text)), "X")
+    run = positioning_run(test, one_axis_machine("X", test.target), 0.5 * UM)
+    assert len(without_copies(run)) == 100
 
 
 def test_a_rotary_axis_that_turns_too_far(tmp_path):

@@ -135,11 +135,11 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
             at[p, i], off[p, i] = nominal[k], measured[k] - nominal[k]
     first = [next(iter(point.values())) for point in points]
     return PointList(
-        at,
-        off,
-        np.array([label[k] for k in first]),
-        np.array([setup[k] for k in first]),
-        np.array([sheet.lines[k] for k in first]),
+        nominal=at,
+        deviation=off,
+        feature=np.array([label[k] for k in first]),
+        setup=np.array([setup[k] for k in first]),
+        line=np.array([sheet.lines[k] for k in first]),
     )
 
 

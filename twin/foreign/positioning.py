@@ -146,7 +146,14 @@ def _wide(
         raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     return _present(
-        PositioningTest(axis, columns[0], columns[1], columns[2], columns[3], columns[4])
+        PositioningTest(
+            axis=axis,
+            target=columns[0],
+            deviation=columns[1],
+            cycle=columns[2],
+            direction=columns[3],
+            line=columns[4],
+        )
     )
 
 
@@ -290,6 +297,8 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         temperature=test.temperature,
         feature=np.array([f"cycle{c}" for c in test.cycle]),
         pose=held_out.astype(np.int64),
+        # a test without times, and yet what warms up moves from cycle to cycle
+        value={"cycle_1": test.cycle.astype(float)} if not is_log and cycles.max() > 1 else {},
         instrument=Instrument.ENCODER if is_log else Instrument.LASER,
     )
     # one line of the file may hold many readings: the rows of the run are what messages name

@@ -56,7 +56,9 @@ def _copies(run: Run, with_time: bool) -> BoolArray:
     t = run.touches
     recorded = [*t.temperature.values(), *t.value.values()]
     recorded += [v for v in (t.spindle_rpm, t.force) if v is not None]
-    key = [t.q, t.point, t.normal, t.setup, t.approach, *recorded, run.deviation]
+    labels = [np.unique(t.feature, return_inverse=True)[1].reshape(-1), t.pose, t.setup]
+    labels += [run.repeat] if run.repeat is not None else []
+    key = [t.q, t.point, t.normal, t.approach, *labels, *recorded, run.deviation]
     return _later(np.column_stack([*key, t.time] if with_time else key))
 
 
