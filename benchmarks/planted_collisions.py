@@ -25,9 +25,8 @@ from scipy.spatial.transform import Rotation
 
 from artefact.body import Standard
 from artefact.reach import Solid, Workshop, round_table
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.control import Move, ProbeStep, ReadProgram
-from probe_paths.control.interpreter import interpret
+from probe_paths.campaign import check_moves
+from probe_paths.control import Move, ProbeStep, ReadProgram, interpret
 from probe_paths.emit import make_programs
 from probe_paths.plan import SMALLEST_GAP, PlanOptions, Probe, plan_touches
 from twin.errors import BadFile

@@ -5,6 +5,7 @@ Out: a `Run`. `simulate` checks every move for collisions before it runs the pro
 never learns what the virtual machine knew. `orders` and `probing_time` say what a plan costs.
 """
 
+from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_points import foot_points
 from probe_paths.campaign.contact_solver import FIRST_MORNING, VirtualMachine
 from probe_paths.campaign.disturbances import effects_over_record
@@ -19,6 +20,7 @@ __all__ = [
     "Order",
     "Ordering",
     "VirtualMachine",
+    "check_moves",
     "effects_over_record",
     "evaluate",
     "foot_points",

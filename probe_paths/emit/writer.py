@@ -19,7 +19,6 @@ from probe_paths.language import (
     Touch,
     interlocks,
     parse_mask,
-    signed,
 )
 from probe_paths.plan import (
     LINEAR,
@@ -101,7 +100,7 @@ class Writer:
     def _remarks(self, rows: IntArray, duration: float) -> list[str]:
         """What the operator must know, and what a reader of the text must."""
         k, probe = self.language, self.plan.probe
-        table = f"L{signed(probe.tool_length)} R{signed(probe.radius)}"
+        table = f"L{probe.tool_length:+.4f} R{probe.radius:+.4f}"
         used = dict.fromkeys(self.plan.feature[rows].tolist())
         features = sorted(used, key=self.number.__getitem__)
         return [

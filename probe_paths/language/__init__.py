@@ -16,7 +16,7 @@ from probe_paths.language.dialect import (
     Q,
 )
 from probe_paths.language.dialect_file import read_dialect
-from probe_paths.language.interlocks import Interlock, interlocks
+from probe_paths.language.interlock import Interlock, interlocks
 from probe_paths.language.language import Datum, Says, Touch
 from probe_paths.language.languages import LANGUAGES, language_of, read_blocks
 from probe_paths.language.masks import (
@@ -27,7 +27,7 @@ from probe_paths.language.masks import (
     parse_mask,
     shared_masks,
 )
-from probe_paths.language.text import MAX_LINE, checked_name, signed
+from probe_paths.language.text import MAX_LINE, checked_name
 
 __all__ = [
     "FREE",
@@ -55,5 +55,4 @@ __all__ = [
     "read_blocks",
     "read_dialect",
     "shared_masks",
-    "signed",
 ]

@@ -46,24 +46,19 @@ class Interlock(NamedTuple):
 
 def interlocks(language: Language, frame: ProgramFrame) -> list[Interlock]:
     """Tests of a program, in their order."""
-    probe = frame.probe
-    top = frame.chain.link("Z").range[1]
-    tests = [
-        Interlock(
-            Label.OTHER_PROBE, "length of the tool", None, None, probe.tool_length, LENGTH_LIMIT
-        ),
-        Interlock(
-            Label.RADIUS, "radius of the ball", Datum.RADIUS, None, probe.radius, RADIUS_LIMIT
-        ),
-        Interlock(Label.ROTATION, "basic rotation", Datum.ROTATION, None, 0.0, ANGLE_LIMIT),
-        Interlock(Label.TOP, "upper end of Z", Datum.TOP, None, top, TOP_LIMIT),
+    probe, chain = frame.probe, frame.chain
+    rows: list[tuple[Label, str, Datum | None, Datum | None, float, float]] = [
+        (Label.OTHER_PROBE, "length of the tool", None, None, probe.tool_length, LENGTH_LIMIT),
+        (Label.RADIUS, "radius of the ball", Datum.RADIUS, None, probe.radius, RADIUS_LIMIT),
+        (Label.ROTATION, "basic rotation", Datum.ROTATION, None, 0.0, ANGLE_LIMIT),
+        (Label.TOP, "upper end of Z", Datum.TOP, None, chain.link("Z").range[1], TOP_LIMIT),
     ]
     for letter, label in zip(LINEAR, (Label.PRESET_X, Label.PRESET_Y, Label.PRESET_Z), strict=True):
-        planned = -frame.coordinate(letter, 0.0)
-        work, what = Datum(f"preset {letter}"), f"preset in {letter}"
-        tests.append(Interlock(label, what, Datum(letter), work, planned, PRESET_LIMIT))
-    for letter, label in zip(frame.chain.rotary_axes, (Label.ZERO_1, Label.ZERO_2), strict=False):
-        work, what = Datum(f"preset {letter}"), f"zero of {letter}"
-        tests.append(Interlock(label, what, Datum(letter), work, 0.0, ANGLE_LIMIT))
+        work, planned = Datum(f"preset {letter}"), -frame.coordinate(letter, 0.0)
+        rows.append((label, f"preset in {letter}", Datum(letter), work, planned, PRESET_LIMIT))
+    for letter, label in zip(chain.rotary_axes, (Label.ZERO_1, Label.ZERO_2), strict=False):
+        work = Datum(f"preset {letter}")
+        rows.append((label, f"zero of {letter}", Datum(letter), work, 0.0, ANGLE_LIMIT))
+    tests = [Interlock(*row) for row in rows]
     known = {None, *language.SYSTEM}
     return [test for test in tests if test.datum in known and test.work in known]
