@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from twin.machine import Chain
+
 WIDE = 120
 """Letters of a line where neither a terminal nor COLUMNS says how wide it is."""
 
@@ -22,3 +24,9 @@ def console() -> "Console":
 def say(text: str, style: str | None = None) -> None:
     """One line as it is: a terminal breaks it where it likes, a file keeps it whole."""
     console().print(text, markup=False, style=style, soft_wrap=True)
+
+
+def say_assumed(chain: "Chain") -> None:
+    """What the machine file leaves open, and what is taken instead."""
+    for remark in chain.remarks:
+        say(f"- {remark}")

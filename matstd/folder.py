@@ -9,7 +9,10 @@ from pathlib import Path
 
 from matstd.lock import is_abandoned, locked
 from twin.errors import DesignError
-from twin.files import NOT_WRITABLE, UNFINISHED
+from twin.files import NOT_WRITABLE
+
+WORKING: set[Path] = set()
+"""Folders in which this process works; whoever ends it at once removes them."""
 
 
 @contextmanager
@@ -40,7 +43,7 @@ def results_folder(
         raise DesignError(f"{out}: already exists; choose another folder or give --force")
     _remove_abandoned(out)
     place = out.parent / f".{out.name}-{secrets.token_hex(4)}"
-    UNFINISHED.add(place)
+    WORKING.add(place)
     try:  # from before the folder is made: an interrupt can come at any moment
         work = place / "results"
         work.mkdir(parents=True)
@@ -53,7 +56,7 @@ def results_folder(
         raise DesignError(f"{out}: cannot be written ({error.strerror or error})") from error
     finally:
         shutil.rmtree(place, ignore_errors=True)
-        UNFINISHED.discard(place)
+        WORKING.discard(place)
 
 
 def _move(work: Path, out: Path, ours: Sequence[str]) -> None:

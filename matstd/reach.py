@@ -87,16 +87,16 @@ def check_reach(project: Project, folder: Path) -> Array:
     """
     wanted, rotary = probe_reach(project), _rotary(project)
     poses = poses_within(project.chain, rotary, placement_options(project).choice.poses)
-    to_rise, retract = _to_rise(project, wanted, poses)
-    good = to_rise <= retract
-    tried = reach_of(
-        wanted,
-        *places_on(blank(project)),
-        spread_poses(poses[good] if good.any() else poses, _POSES),
-    )
+    places, enough = places_on(blank(project)), _enough(project)
+    tried = reach_of(wanted, *places, spread_poses(poses, _POSES))
+    rises = np.ones(len(poses), dtype=bool)
+    if tried.places >= enough:  # else nobody asks whether Z rises above what is not reached
+        to_rise, retract = _to_rise(project, wanted, poses)
+        rises = to_rise <= retract
+        if rises.any():
+            tried = reach_of(wanted, *places, spread_poses(poses[rises], _POSES))
     save(draw_reach(tried, wanted.chain, blank(project)), folder / PICTURE)
-    enough = _enough(project)
-    if not good.any():
+    if not rises.any():
         against = (
             f"Z would have to rise to {np.ceil(to_rise.min()):.0f} mm for the probe to clear "
             f"standard and table while they turn, it retracts to {retract:.0f} mm"
@@ -112,7 +112,7 @@ def check_reach(project: Project, folder: Path) -> Array:
             f"{' and '.join(_asked(m, v) for m, v in asked)}"
         )
     else:
-        return poses[good]
+        return poses[rises]
     found = [wish.words for wish in _nearest(project, wanted, rotary, tried)]
     nearest = f"{' or '.join(found)} would do" if found else f"no other {_TRIED} alone would do"
     raise NotReachable(f"{project.path}: {against}; {nearest}")
@@ -156,11 +156,14 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
     )
     solid = solid_hull(least, wanted.setup, wanted.workshop)
     tool = probe(project).at_length(wanted.length)
-    path = np.tile(home_readings(chain), (2 * len(poses) + 1, 1))
-    path[1::2] = poses
-    turning = swing_height(chain, path, solid, tool)[::2] + 0.5 * options.clearance
-    standing = top_height(chain, poses, solid, tool) + options.clearance
-    return np.maximum(turning, standing), chain.link("Z").range[1] - options.retract
+    retract = chain.link("Z").range[1] - options.retract
+    to_rise = top_height(chain, poses, solid, tool) + options.clearance
+    turns = np.flatnonzero(to_rise <= retract)  # the way to the others is of no use
+    home = home_readings(chain)
+    ways = [swing_height(chain, np.stack([home, poses[i]]), solid, tool)[0] for i in turns]
+    turning = np.array(ways) + 0.5 * options.clearance
+    to_rise[turns] = np.maximum(to_rise[turns], turning)
+    return to_rise, retract
 
 
 def _fits(project: Project, wish: Wish) -> bool:

@@ -8,6 +8,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
@@ -104,14 +105,18 @@ def leave() -> NoReturn:
     Python would first take down everything it holds, which takes longer than all the rest.
     """
     _LAST_WORDS.acquire()  # never given back: of two threads that leave, one speaks
-    files = sys.modules.get("twin.files")  # an import could wait for the one that was interrupted
-    for begun in tuple(getattr(files, "UNFINISHED", ())):
-        if begun.is_dir():
-            shutil.rmtree(begun, ignore_errors=True)
-        else:
-            begun.unlink(missing_ok=True)
+    # no import, which could wait for the one that was interrupted
+    for folder in _begun("matstd.folder", "WORKING"):
+        shutil.rmtree(folder, ignore_errors=True)
+    for file in _begun("twin.files.whole", "UNFINISHED"):
+        file.unlink(missing_ok=True)
     command = next((f" {word}" for word in sys.argv[1:] if not word.startswith("-")), "")
     cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # bars of progress hide it
     text = f"{cursor}matstd{command}: stopped, and nothing half-written is left"
     print(text, file=sys.stderr, flush=True)
     os._exit(STOPPED)
+
+
+def _begun(module: str, name: str) -> tuple[Path, ...]:
+    """What a module has begun; nothing if it was never imported."""
+    return tuple(getattr(sys.modules.get(module), name, ()))

@@ -5,12 +5,18 @@ field of one of the tables, and a check beside it if it can contradict another.
 """
 
 from artefact.brief.project_file import Project, read_project
-from artefact.brief.standard_tables import BASE_THICKNESS, CORNER_RADIUS, StandardTable
+from artefact.brief.standard_tables import (
+    BASE_THICKNESS,
+    CORNER_RADIUS,
+    FEWEST_PATCHES,
+    StandardTable,
+)
 from artefact.brief.workshop_tables import BodyTable, probe_models
 
 __all__ = [
     "BASE_THICKNESS",
     "CORNER_RADIUS",
+    "FEWEST_PATCHES",
     "BodyTable",
     "Project",
     "StandardTable",

@@ -19,6 +19,9 @@ CORNER_RADIUS = 25.0
 """Of that plate, mm."""
 
 
+FEWEST_PATCHES = 8
+
+
 class StandardTable(Table):
     """`[standard]`: what shall be made."""
 
@@ -29,7 +32,7 @@ class StandardTable(Table):
     material: str = "X40Cr14 (1.2083), hardened"
     density_kg_m3: float = Field(default=7800.0, gt=0.0)
     expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
-    patches: int = Field(default=10, ge=8, le=16)
+    patches: int = Field(default=10, ge=FEWEST_PATCHES, le=16)
     touches: int = Field(default=480, ge=100, le=2000)
     poses: int = Field(default=30, ge=8, le=100)
     criterion: Literal["I", "G", "D", "A", "E"] = "I"

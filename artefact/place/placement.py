@@ -219,11 +219,13 @@ def _standard(
         f"between them the ball of radius {limits.ball_radius:g} mm has to pass with a gap of "
         f"{limits.gap:g} mm"
     )
+    binding: list[str] = []
     for _ in range(_REBUILDS):
         chosen = best_groups(criterion.objective, W, group, options.patches, take, apart=fits)
         if len(chosen) < options.patches:
             raise NotBuildable(
-                f"only {len(chosen)} of {options.patches} patches fit on the blank; {refused}"
+                f"only {len(chosen)} of {options.patches} patches fit on the blank; {refused}",
+                fitting=len(chosen),
             )
         order = sorted(chosen, key=lambda k: (-sites[k].height, sites[k].azimuth))
         try:
@@ -237,10 +239,12 @@ def _standard(
         broken = [c for c in constraints(standard, blank.limits) if c.slack < 0.0]
         if not broken:
             return standard
-        refused = str(broken[0])
+        refused, binding = str(broken[0]), [c.name for c in broken]
         for constraint in broken:
             _blame(fits, constraint.features, order, chosen)
-    raise NotBuildable(f"no choice of {options.patches} patches meets every limit; {refused}")
+    raise NotBuildable(
+        f"no choice of {options.patches} patches meets every limit; {refused}", binding=binding
+    )
 
 
 def _face_touches(name: str, site: Site, base: Base, poses: Array) -> Requests:

@@ -80,7 +80,11 @@ def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:
         travel = chain.link(name).range
         limits.append((max(low, travel[0] + _OVERSHOOT), min(high, travel[1] - _OVERSHOOT)))
         if limits[-1][0] > limits[-1][1]:
-            raise NotReachable(f"the limits of {name} leave no room to approach a reading")
+            raise NotReachable(
+                f"readings of {name} from {low / DEG:g} to {high / DEG:g} leave no room: they are "
+                f"approached from both sides, {_OVERSHOOT / DEG:g} degrees away, within the travel "
+                f"from {travel[0] / DEG:g} to {travel[1] / DEG:g}"
+            )
     if not limits:
         return np.zeros((1, 0))
     total = 6 * wanted

@@ -202,7 +202,8 @@ def compare(
         structure=found,
         where=regions(fit),
         geometry=learnt_geometry(fit, estimates),
-        faults=description_faults(fit, progress),
+        # a machine that is no longer its model's is no mistake in the description
+        faults=description_faults(fit if estimates is None else fit_run(run, model), progress),
         remarks=remarks(fit),
         learnt=None if learnt is None else learnt.again(run, model),
     )

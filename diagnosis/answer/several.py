@@ -5,14 +5,14 @@ are known, a run that shows no change since the last one shares its geometry wit
 the diagnosis is made anew: with fewer numbers to learn, what is common is known better.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.answer.trend import Trend, run_errors
 from diagnosis.answer.verdict import Diagnosis
-from diagnosis.fit import Fit, fit_run
+from diagnosis.fit import Fit, Prior, fit_run
 from diagnosis.geometry import (
     GeometryRow,
     changed_runs,
@@ -20,7 +20,9 @@ from diagnosis.geometry import (
     geometry_rows,
     with_changes,
 )
-from diagnosis.search import DiagnosisTask
+from diagnosis.regression import CLEARLY
+from diagnosis.search import FREEDOM, DiagnosisTask
+from twin.model import Model
 
 
 def settled(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]) -> Diagnosis:
@@ -34,7 +36,7 @@ def settled(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]
     fitted = [int(i) for i in np.unique(touches.run[task.run.split != "test"])]
     possible = [0] * task.is_known + fitted[1:]
     free = diagnosed(_with(task, possible))
-    shown = [*_since_model(free.geometry.rows), *changed_runs(free.fit)]
+    shown = _shown(task, free, possible)
     result = free if shown == possible else diagnosed(_with(task, shown))
     if len(touches.runs) == 1:
         return result
@@ -49,6 +51,37 @@ def _with(task: DiagnosisTask, since: Sequence[int]) -> DiagnosisTask:
         return task
     model = changing(task.model, task.run.touches, since)
     return replace(task, model=model, prior=with_changes(task.prior, model))
+
+
+def _shown(task: DiagnosisTask, free: Diagnosis, possible: Sequence[int]) -> list[int]:
+    """Runs from which on the geometry is another: a quantity says so, or all of them together."""
+    shown = {*_since_model(free.geometry.rows), *changed_runs(free.fit)}
+    for run in (i for i in possible if i not in shown):
+        without, beside = (_fit(task, free, since) for since in (shown, {*shown, run}))
+        # an earlier fit that has to be believed less is one of another state of the machine
+        is_contradicted = run == 0 and without.widened > 1.0
+        if is_contradicted or _evidence(beside) > _evidence(without) + CLEARLY:
+            shown.add(run)
+    return sorted(shown)
+
+
+def _fit(task: DiagnosisTask, free: Diagnosis, since: Iterable[int]) -> Fit:
+    """The runs beside the effects that were found, with changes of the geometry since some."""
+    changes = _with(task, sorted(since))
+    model = Model(task.model.chain, (*changes.model.effects, *free.found))
+    prior = changes.prior.joined(Prior.of_effects(free.found).widened(FREEDOM))
+    return fit_run(task.run, model, prior, gross=free.fit.gross, memory=free.fit.memory)
+
+
+def _evidence(fit: Fit) -> float:
+    """Log evidence of a fit up to a constant, ``-n log s - log det R - objective / 2``.
+
+    With s the size of the noise: what a geometry that may change explains, less what so many free
+    numbers explain by chance.
+    """
+    spread = float(np.log(np.abs(np.diag(fit.solution.R))).sum())
+    size = int(fit.used.sum()) * float(np.log(fit.noise.factor))
+    return -size - spread - 0.5 * fit.solution.objective
 
 
 def _since_model(rows: Sequence[GeometryRow]) -> list[int]:

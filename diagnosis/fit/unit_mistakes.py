@@ -63,8 +63,10 @@ def unit_mistake(fit: Fit) -> UnitMistake | None:
     """What looks like another unit than the column says; None for an honest run.
 
     Judged by two yardsticks, since either alone misleads: a very good machine has small deviations,
-    and an uncertainty may be stated wrongly.
+    and an uncertainty may be stated wrongly. A model without a machine in it expects nothing.
     """
+    if not fit.model.effects:
+        return None
     measured, expected, stated = _typical_sizes(fit)
     what = _mistaken(fit, measured, expected, stated)
     if what is None:

@@ -25,6 +25,7 @@ from diagnosis.evidence import (
     ScaledEffect,
     Signatures,
     period_of,
+    projected,
     quiet,
     scanned_grids,
     signatures,
@@ -67,8 +68,8 @@ STRETCHES = 5
 """Stretches of time that are left out to weigh patterns against named effects."""
 
 BETTER = 0.97
-"""Share of the held-out error of named effects that patterns without a name must reach to push one
-of them out: as far as both predict alike, the name stays."""
+"""Share of the held-out error of named effects that patterns without a name, or tables, must reach
+to push one of them out: as far as both predict alike, the name stays."""
 
 FREEDOM = 3.0
 """Factor on the prior of a found effect in its last fit: being found tells more of its size than
@@ -179,15 +180,41 @@ def search_until_stable(
     candidates: Sequence[Effect],
     progress: Progress = quiet,
 ) -> SearchState:
-    """Search, and again with further periods of what repeats where structure is left.
+    """Search among laws, then with tables, which say where an axis is wrong and not why.
 
-    A screw and its encoder repeat with two periods. A second one is offered only beside a first,
-    and only where something is left.
+    A table is followed only where it predicts plainly better than what the laws came to: it can
+    imitate any of them.
 
     Args:
         added: Effects that the user added.
         candidates: Effects that may be found.
         progress: Told of every stage.
+    """
+    laws = [e for e in candidates if not getattr(e, "is_table", False)]
+    state = _with_further_periods(task, added, laws, progress)
+    if len(laws) == len(candidates):
+        return state
+    other = _with_further_periods(task, added, candidates, progress)
+    return other if _held_out(other) < BETTER * _held_out(state) else state
+
+
+def _held_out(state: SearchState) -> float:
+    """Error of poses left out by what was found, without patterns that have no name, mm."""
+    complement = state.library.complement
+    effects = EffectSet(complement, projected(complement, state.effects))
+    return float(np.sqrt(np.mean((effects.held_out.error * complement.u) ** 2)))
+
+
+def _with_further_periods(
+    task: DiagnosisTask,
+    added: Sequence[ScaledEffect],
+    candidates: Sequence[Effect],
+    progress: Progress,
+) -> SearchState:
+    """Search, and again with further periods of what repeats where structure is left.
+
+    A screw and its encoder repeat with two periods. A second one is offered only beside a first,
+    and only where something is left.
     """
     offered = list(candidates)
     state = _until_gross_errors_stay(task, added, offered, progress)

@@ -31,7 +31,7 @@ def write(folder: Path = HERE) -> None:
     spindle = warm_up("EZZ", 25.0)
     spindle.amplitude = GROWTH
     rng = np.random.default_rng(SEED)
-    texts = simulated_runs(rng, MACHINE, list(RUNS.values()), [spindle], POSES)
+    texts = simulated_runs(rng, MACHINE, list(RUNS.values()), [spindle], POSES, same_standard=True)
     (folder / "machine.toml").write_text(MACHINES[MACHINE], encoding="utf-8")
     for name, text in zip(RUNS, texts, strict=True):
         (folder / f"{name}.csv").write_text(text, encoding="utf-8")

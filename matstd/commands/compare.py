@@ -6,7 +6,16 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import (
+    REPORT_FILES,
+    add_pdf,
+    add_pitch,
+    add_start,
+    asked_printer,
+    first_model,
+    model_file,
+    print_report,
+)
 
 if TYPE_CHECKING:
     from diagnosis.answer import Comparison
@@ -19,11 +28,8 @@ OURS = ("pictures/*.png", *REPORT_FILES)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
-    parser.add_argument(
-        "--model",
-        metavar="MODEL.toml",
-        help="predict with this one; without it the ordinary geometric model is fitted to the run",
-    )
+    add_start(parser, "predict with it; without one the ordinary geometric model is fitted")
+    add_pitch(parser)
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
     )
@@ -40,16 +46,16 @@ def run(args: argparse.Namespace) -> int:
     from diagnosis.answer import compare
     from diagnosis.files import write_comparison, write_residuals
     from matstd.folder import results_folder
-    from matstd.inputs import read_inputs
+    from matstd.inputs import read_inputs, with_pitches
     from matstd.progress import stages
     from report.words import remark_sentence, structure_words
-    from twin.library import ordinary_model
     from twin.record import without_copies
 
     run, saved = read_inputs(
-        [args.run_file], args.model, args.effects, "so the agreement is optimistic"
+        [args.run_file], model_file(args), args.effects, "so the agreement is optimistic"
     )
-    model = saved.model if saved else ordinary_model(run.touches.chain)
+    run = with_pitches(run, args.pitch)
+    model = saved.model if saved else first_model(args, run.touches.chain)
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         found = compare(
@@ -81,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
 def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
-    from report.geometry import fault_sentences, ladder_sentence, noted_lines
+    from report.geometry import console_lines
     from report.numbers import signed
     from report.words import (
         comparison_sentence,
@@ -101,10 +107,8 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
-    for sentence in fault_sentences(found.faults):
-        say(f"- {sentence}", style="bold")
-    for line in (ladder_sentence(found.geometry), *noted_lines(found.geometry)):
-        say(f"- {line}")
+    for line, is_first in console_lines(found.run.touches, found.geometry, found.faults):
+        say(f"- {line}", style="bold" if is_first else None)
     for remark in found.remarks:
         say(f"- {remark_sentence(remark)}")
     first = "" if args.no_report else "report.html, "

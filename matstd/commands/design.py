@@ -1,16 +1,35 @@
 """`matstd design`: the main job, from a project file to a folder that proves itself."""
 
+from __future__ import annotations
+
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
+
+if TYPE_CHECKING:
+    from artefact.brief import Project
+    from twin.errors import DesignError
 
 REFUSED = "reach-refused.png"
 """Picture of what the machine reaches, all that a refused run leaves in its folder."""
+
+_KEYS = {
+    "smallest concave radius": "limits.min_concave_radius_mm (smaller)",
+    "slope": "limits.max_slope_deg (larger)",
+    "height": "blank.height_mm (larger)",
+    "room for the ball before": "limits.gap_mm or probe.radius_mm (smaller)",
+    "distance of the stem from": "limits.gap_mm (smaller)",
+    "mass": "limits.max_mass_kg (larger)",
+}
+"""What may be changed where a constraint binds."""
+
+_ALWAYS = "blank.base_mm and blank.height_mm (larger)"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from artefact.brief import read_project
-    from matstd.console import say
+    from matstd.console import say, say_assumed
     from matstd.folder import results_folder
     from matstd.from_project import dialect
     from matstd.workers import connected
@@ -41,9 +60,10 @@ def run(args: argparse.Namespace) -> int:
         own = str(Path(args.control).resolve())
         project = replace(project, control=own if own.endswith(".toml") else args.control)
     dialect(project)  # a control that nobody knows is refused before any work
+    say_assumed(project.chain)
     with (
         results_folder(args.output, args.force, REPORT_FILES, [REFUSED]) as folder,
-        _pictured(folder, args.output),
+        refusals(project, folder, args.output),
     ):
         from matstd.design import design
         from matstd.progress import stages
@@ -69,17 +89,42 @@ def run(args: argparse.Namespace) -> int:
 
 
 @contextmanager
-def _pictured(folder: Path, out: str) -> Iterator[None]:
-    """Keep the picture of what is reached where reach is what stopped the run, and say where."""
+def refusals(project: Project, folder: Path, out: str) -> Iterator[None]:
+    """Make whatever stops a design one line that helps.
+
+    Args:
+        project: What is designed.
+        folder: In which it is; the picture of what is reached lies there.
+        out: Where the picture goes if reach is what stops it.
+    """
     from matstd.reach import PICTURE
-    from twin.errors import NotReachable
+    from twin.errors import NotBuildable, NotReachable
 
     try:
         yield
+    except NotBuildable as error:
+        raise NotBuildable(f"{project.path}: {error}; change {_to_change(error)}") from error
     except NotReachable as error:
-        picture = Path(out) / REFUSED
+        told = str(error)
+        if not told.startswith(str(project.path)):
+            told = f"{project.path}: {told}; change setup, probe.length_mm or workspace"
         if not (folder / PICTURE).exists():
-            raise
+            raise NotReachable(told) from error
+        picture = Path(out) / REFUSED
         picture.parent.mkdir(exist_ok=True)
         (folder / PICTURE).replace(picture)
-        raise NotReachable(f"{error}; {picture} shows what is reached") from error
+        raise NotReachable(f"{told}; {picture} shows what is reached") from error
+
+
+def _to_change(error: DesignError) -> str:
+    """Keys of the project file, the likeliest first."""
+    from artefact.brief import FEWEST_PATCHES
+
+    fitting, binding = error.facts.get("fitting"), error.facts.get("binding")
+    keys = []
+    if isinstance(fitting, int):
+        if fitting >= FEWEST_PATCHES:
+            keys.append(f"standard.patches (to {fitting})")
+        keys.append(_KEYS["room for the ball before"])
+    keys += [_KEYS.get(name, _ALWAYS) for name in binding] if isinstance(binding, list) else []
+    return " or ".join(dict.fromkeys([*keys, _ALWAYS]))

@@ -6,7 +6,16 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import (
+    REPORT_FILES,
+    add_pdf,
+    add_pitch,
+    add_start,
+    asked_printer,
+    first_model,
+    model_file,
+    print_report,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,12 +42,6 @@ LISTS = (
     ("--add", "EFFECT", "add these effects to the model"),
     ("--only", "KIND", "look for effects of these kinds alone, or of these names"),
     ("--without", "KIND", "do not look for effects of these kinds, or of these names"),
-    (
-        "--pitch",
-        "AXIS=MM",
-        "pitch of the screw or scale of an axis: errors that repeat are looked for at it and at "
-        "its whole fractions, and it is preferred among periods that look alike",
-    ),
 )
 """Options with one or more words, which may be given more than once."""
 
@@ -51,11 +54,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="measurements; several runs of one machine (days, set-ups, standards) in their order",
     )
-    parser.add_argument(
-        "--model",
-        metavar="MODEL.toml",
-        help="starting model; without it the ordinary geometric one",
-    )
+    add_start(parser, "begin with it; without one begin with the ordinary geometric model")
+    add_pitch(parser)
     for option, word, meaning in LISTS:
         parser.add_argument(
             option, metavar=word, action="extend", nargs="+", default=[], help=meaning
@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.progress import stages
 
     same = "so that its estimates are made anew: no touch counts twice"
-    run, saved = read_inputs(args.run_files, args.model, args.effects, same, args.hold_out)
+    run, saved = read_inputs(args.run_files, model_file(args), args.effects, same, args.hold_out)
     run = with_pitches(run, args.pitch)
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
@@ -115,9 +115,8 @@ def _diagnosed(
 
     from diagnosis.answer import diagnose
     from matstd.inputs import candidates, is_learnt_from, named_effects
-    from twin.library import ordinary_model
 
-    start = saved.model if saved else ordinary_model(run.touches.chain)
+    start = saved.model if saved else first_model(args, run.touches.chain)
     known = saved.estimates if saved and not is_learnt_from(saved, run) else None
     added = named_effects(args.add, start.effects, run)
     found = candidates(args.only, args.without, run)
@@ -154,7 +153,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
 
     from matstd.console import console, say
     from report.effects import plan_words, rival_words
-    from report.geometry import fault_sentences, ladder_sentence, noted_lines, trend_lines
+    from report.geometry import console_lines
     from report.words import remark_sentence, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
@@ -168,13 +167,9 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     for step in result.steps:
         if step.effect is not None and (rivals := rival_words(step)):
             say(f"- {rivals}")
-    for sentence in fault_sentences(result.faults):
-        say(f"- {sentence}", style="bold")
-    for line in trend_lines(result.trend):
-        say(f"- {line}", style="bold")
-    noted = () if result.trend else noted_lines(result.geometry)
-    for line in (ladder_sentence(result.geometry), *noted):
-        say(f"- {line}")
+    known = result.run.touches, result.geometry, result.faults, result.trend
+    for line, is_first in console_lines(*known):
+        say(f"- {line}", style="bold" if is_first else None)
     for remark in result.remarks:
         say(f"- {remark_sentence(remark)}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:

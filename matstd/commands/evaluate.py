@@ -38,7 +38,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from artefact.body import read_standard
-    from matstd.console import say
+    from matstd.console import say, say_assumed
     from probe_paths.campaign import evaluate
     from probe_paths.control import read_log
     from probe_paths.language import Dialect
@@ -62,6 +62,7 @@ def run(args: argparse.Namespace) -> int:
         f"{args.output}: {len(measured)} touches at {len(np.unique(measured.touches.pose))} table "
         f"poses, deviations {rms:.3f} µm rms after the set-up was fitted"
     )
+    say_assumed(chain)
     for remark in measured.remarks:
         say(f"- {remark}")
     for part in parts:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.report_options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
 
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
@@ -53,6 +53,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _table(args: argparse.Namespace) -> int:
     """One column a parameter: µm/µm, or µm/µrad for an angular one."""
+    from matstd.console import say_assumed
     from matstd.progress import stages, table_blocks
     from sensitivity.first_order import sensitivity
     from twin.files import read_machine, read_poses, refuse_to_overwrite, write_whole
@@ -69,16 +70,19 @@ def _table(args: argparse.Namespace) -> int:
             lines += [",".join(f"{v:.9g}" for v in row) for row in rows]
         write_whole(args.output, "\n".join(lines) + "\n")
     print(f"{args.output}: {len(q)} poses, {len(chain.symbols)} parameters")
+    say_assumed(chain)
     return 0
 
 
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
     from artefact.brief import read_project
+    from matstd.console import say_assumed
     from matstd.folder import results_folder
     from matstd.workers import connected
 
     project, printed_by = read_project(args.source, _settings(args)), asked_printer(args)
+    say_assumed(project.chain)
     with results_folder(args.output, args.force, REPORT_FILES) as folder:
         from matstd.progress import stages
         from matstd.study_run import study_project

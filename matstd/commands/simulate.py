@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from artefact.body import read_standard
-    from matstd.console import say
+    from matstd.console import say, say_assumed
     from matstd.progress import stages
     from probe_paths.campaign import simulate
     from probe_paths.control import stated_probe
@@ -111,6 +111,7 @@ def run(args: argparse.Namespace) -> int:
     )
     for text in args.add:
         say(f"- planted: {text}")
+    say_assumed(run.touches.chain)
     for remark in run.remarks:
         say(f"- {remark}")
     return 0

@@ -16,6 +16,7 @@ def run(args: argparse.Namespace) -> int:
     """Write dx_um, dy_um, dz_um in the table frame, actual minus nominal."""
     import numpy as np
 
+    from matstd.console import say_assumed
     from matstd.progress import stages, table_blocks
     from twin.files import read_errors, read_machine, read_poses, refuse_to_overwrite, write_whole
     from twin.model import Model
@@ -40,4 +41,5 @@ def run(args: argparse.Namespace) -> int:
         write_whole(args.output, "\n".join(lines) + "\n")
     size = np.linalg.norm(deviation, axis=1)
     print(f"{args.output}: {len(q)} poses, mean {size.mean():.3f} µm, worst {size.max():.3f} µm")
+    say_assumed(chain)
     return 0

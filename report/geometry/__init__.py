@@ -1,30 +1,29 @@
 """The machine's geometry and mistakes in its description, in words.
 
-In: a `LearntGeometry`, `DescriptionFault`s. Out: lines of a table and for the console, numbers to
-copy into a machine file, a sentence for each mistake.
+In: a `LearntGeometry`, `DescriptionFault`s, a `Trend`. Out: lines of a table and for the console,
+numbers to copy into a machine file, a sentence for each mistake and for what changed between runs.
 """
 
+from report.geometry.console_words import console_lines
+from report.geometry.copied_numbers import copy_lines
 from report.geometry.fault_words import fault_sentences
 from report.geometry.geometry_words import (
     correction_line,
     geometry_lines,
-    ladder_sentence,
-    noted_lines,
     quantity_name,
     shown_unit,
     sized,
 )
-from report.geometry.trend_words import change_sentences, trend_lines
+from report.geometry.trend_words import change_sentences
 
 __all__ = [
     "change_sentences",
+    "console_lines",
+    "copy_lines",
     "correction_line",
     "fault_sentences",
     "geometry_lines",
-    "ladder_sentence",
-    "noted_lines",
     "quantity_name",
     "shown_unit",
     "sized",
-    "trend_lines",
 ]

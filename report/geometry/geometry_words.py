@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from diagnosis.geometry import Correction, Estimate, GeometryRow, LearntGeometry, Quantity
+from diagnosis.geometry import Correction, Estimate, GeometryRow, LearntGeometry, Quantity, Rung
 from report.numbers import digits, with_uncertainty
 from report.words import microns
 from twin.units import UM, URAD
@@ -140,7 +140,16 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
         for ln in lines
     ]
     more = len(noted) - len(lines)
-    return [*told, f"and {more} more in the table"] if more > 0 else told
+    told += [f"and {more} more in the table"] if more > 0 else []
+    if any(step.rung is Rung.MODEL for step in geometry.ladder) and not any(
+        r.has_changed for r in noted
+    ):
+        told.insert(
+            0,
+            "the geometry is no longer that of the model, though no quantity by itself changed "
+            "beyond chance",
+        )
+    return told
 
 
 def ladder_sentence(geometry: LearntGeometry) -> str:
@@ -160,4 +169,6 @@ def correction_line(correction: Correction) -> str:
     was = ", ".join(f"{v:g}" for v in correction.stated)
     unit, factor = ("µrad", URAD) if key == "direction" else ("µm", UM)
     u = ", ".join("-" if v is None else digits(v / factor, 2) for v in correction.u)
+    if len(correction.found) == 1:
+        return f"{correction.key} = {numbers}  # was {was}, ± {u} {unit}"
     return f"[{table}] {key} = [{numbers}]  # was [{was}], ± [{u}] {unit}"

@@ -39,7 +39,8 @@ def draw_rotary(study: Study) -> Figure:
     symbols = _moving(study, points[-1])
     drawn = figure(2.4 * (1 + bool(symbols)))
     grid = drawn.subplots(1 + bool(symbols), _SHOWN, squeeze=False)
-    span = (min(np.nanmin(v) for v in p95), max(np.nanmax(v) for v in p95))
+    together = np.concatenate([v.ravel() for v in p95])  # one point may be beyond every travel
+    span = (float(np.nanmin(together)), float(np.nanmax(together)))
     for axes, point, values in zip(grid[0], points, p95, strict=True):
         mesh = _map(axes, study, point, values, span)
         at = ", ".join(f"{name} {reading:.0f}" for name, reading in point.linear.items())

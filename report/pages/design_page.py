@@ -64,7 +64,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         plan=design.plan,
         programs=design.programs,
         pictures=pictures,
-        remarks=remarks,
+        remarks=[*design.project.chain.remarks, *remarks],
         placeholders=(folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER"),
         curves_caption=_draw_curves(design, folder),
         **study_content(design.study, maps),

@@ -56,7 +56,7 @@ def write_study_page(
         folder / "report.html",
         "sensitivity.html",
         folder=folder,
-        remarks=remarks,
+        remarks=[*study.chain.remarks, *remarks],
         source=project,
         **study_content(study, shown),
     )

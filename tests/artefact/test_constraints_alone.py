@@ -255,5 +255,5 @@ def test_a_workspace_out_of_reach_is_refused(chain):
         Workspace(chain, {**LIMITS_OF_USER, "X": (500.0, 600.0)}, 160.0)
     narrow = Workspace(chain, {**LIMITS_OF_USER, "B": (-109.0 * DEG, -108.0 * DEG)}, 160.0)
     reach = ProbeReach(chain, Setup("a"), PROBE, 160.0)
-    with pytest.raises(NotReachable, match="the limits of B leave no room to approach a reading"):
+    with pytest.raises(NotReachable, match="leave no room: they are approached"):
         design_standard(reach, Blank(), narrow, np.random.default_rng(1), options=OPTIONS)

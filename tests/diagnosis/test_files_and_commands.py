@@ -271,7 +271,7 @@ def test_auto_finds_puts_in_and_goes_on_from_its_own_model(folder, tmp_path, cap
     run, out, again = str(folder / "run.csv"), tmp_path / "out", tmp_path / "again"
     assert main(["diagnose", run, "--auto", "-o", str(out), "--no-report"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "The model lacks one effect: backlash(Y) (amplitude " in printed
+    assert "The model lacks one effect: reversal of Y (amplitude " in printed
     told = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert [s["effect"] for s in told["steps"]] == [None, "backlash(Y)"]
     model = out / "model.toml"

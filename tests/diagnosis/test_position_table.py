@@ -51,7 +51,7 @@ AXES = {
     "too long": (lambda x: 0.02 * x, lambda x: 0.0 * x, []),
     "reversal": (lambda x: 0.01 * x, lambda x: 4.0 + 0.0 * x, ["backlash(X)"]),
     "pitch": (pitch, lambda x: 0.0 * x, ["periodic(EXX)"]),
-    "quartic": (quartic, lambda x: 0.0 * x, ["geometric(EXX,4)"]),
+    "quartic": (quartic, lambda x: 0.0 * x, ["geometric(EXX,3-4)"]),
     "worn place": (bump, lambda x: 0.0 * x, ["position-table(EXX)"]),
     "glued scale": (errors_of_plates, lambda x: 2.0, ["backlash(X)", "position-table(EXX)"]),
     "uneven reversal": (lambda x: 0.0 * x, uneven_reversal, ["position-table(EXX,directions)"]),

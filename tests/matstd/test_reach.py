@@ -11,10 +11,10 @@ from artefact.reach.face_of_table import table_face
 from artefact.reach.touchable import Requests
 from artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
-from matstd.commands.design import REFUSED
+from matstd.commands.design import REFUSED, refusals
 from matstd.from_project import blank, probe_reach
 from matstd.reach import check_reach
-from twin.errors import NotReachable
+from twin.errors import NotBuildable, NotReachable
 from twin.frames import fixed_xyz, pose
 from twin.units import DEG
 
@@ -109,11 +109,44 @@ def test_a_refused_command_leaves_its_picture_alone(
     path, out = changed(tmp_path, "gantry", far, {}), tmp_path / "out"
     for _ in range(2):  # its own picture does not stand in the way of the next run
         assert main(["design", str(path), "-o", str(out)]) == 2
-        told = capsys.readouterr().err
-        assert told.count("\n") == 1
+        # beside lines of progress, which a slow machine is told
+        (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
         assert f"{out / REFUSED} shows what is reached" in told
         assert [p.name for p in out.iterdir()] == [REFUSED]
         assert (out / REFUSED).read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("facts", "change"),
+    [
+        ({"fitting": 9}, "standard.patches (to 9) or limits.gap_mm or probe.radius_mm (smaller)"),
+        ({"fitting": 5}, "limits.gap_mm or probe.radius_mm (smaller) or blank.base_mm and"),
+        (
+            {"binding": ["mass"]},
+            "limits.max_mass_kg (larger) or blank.base_mm and blank.height_mm (larger)",
+        ),
+    ],
+)
+def test_what_cannot_be_built_says_which_keys_to_change(tmp_path, facts, change) -> None:
+    project = read_project(MACHINES / "vertical.toml")
+    with (
+        pytest.raises(NotBuildable) as caught,
+        refusals(project, tmp_path, str(tmp_path / "out")),
+    ):
+        raise NotBuildable("what binds", **facts)
+    assert str(caught.value).startswith(f"{project.path}: what binds; change {change}")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_rotary_range_at_the_end_of_its_travel_is_refused_with_its_numbers(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = changed(tmp_path, "trunnion", {r"^A = .*": "A = [29.0, 29.5]"}, {})
+    assert main(["design", str(path), "-o", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert "readings of A from 29 to" in told
+    assert "6 degrees away, within the travel" in told
+    assert told.startswith(f"matstd design: {path}: ")
 
 
 def test_limits_bar_what_they_say() -> None:

@@ -143,6 +143,11 @@ def random_setups(rng, label):
     for _ in range(count - 1):
         place = np.array([*rng.uniform(-spread, spread, 2), rng.uniform(0.0, lift)])
         stated.append((np.round(place, 6), float(np.radians(np.round(rng.uniform(0, 360), 6)))))
+    return stated, placed(rng, stated)
+
+
+def placed(rng, stated):
+    """Where a standard really stands that was put on the table by hand, (4, 4) each."""
     actual = []
     for origin, angle in stated:
         a, b, c = rng.normal(0.0, 20.0e-6, 3)
@@ -151,7 +156,7 @@ def random_setups(rng, label):
         u, _, vt = np.linalg.svd(small[:3, :3])
         small[:3, :3] = u @ vt
         actual.append(pose_about_z(origin, angle) @ small)
-    return stated, actual
+    return actual
 
 
 def random_poses(rng, label, setups, each=10):

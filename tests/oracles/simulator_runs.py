@@ -1,11 +1,12 @@
 """Several runs of one machine, exactly simulated: what it is stays, or changes as it is told to."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from simulator import probe, run_text
 from simulator_case import read_back
-from simulator_experiment import MACHINES, STATED_NOISE, constant, random_experiment
+from simulator_experiment import MACHINES, STATED_NOISE, constant, placed, random_experiment
 
 
 def simulated_runs(
@@ -14,8 +15,9 @@ def simulated_runs(
     changes: Sequence[Mapping[str, float]],
     hidden: Sequence = (),
     poses: int = 10,
+    same_standard: bool = False,
 ) -> list[str]:
-    """Texts of run files of one machine, each with a standard and set-ups of its own.
+    """Texts of run files of one machine.
 
     Args:
         rng: Source of all that is random.
@@ -23,11 +25,16 @@ def simulated_runs(
         changes: For every run, by how much errors differ from those of the machine, mm or rad.
         hidden: Effects with their amplitudes, in every run.
         poses: Table poses of every set-up.
+        same_standard: Whether one standard is put where it was and probed by the same program;
+            otherwise every run has a standard, set-ups and a program of its own.
     """
-    errors, out = None, []
-    for changed in changes:
-        e = random_experiment(rng, label, poses)
-        errors = e.errors if errors is None else errors
+    e = random_experiment(rng, label, poses)
+    errors, out = e.errors, []
+    for i, changed in enumerate(changes):
+        if i and same_standard:
+            e = replace(e, actual=placed(rng, e.stated))
+        elif i:
+            e = random_experiment(rng, label, poses)
         e.errors = dict(errors)
         for name, size in changed.items():
             e.errors[name] = _sum(errors.get(name, constant(0.0)), constant(size))

@@ -73,6 +73,7 @@ class PositionTable:
 
     kind = "position-table"
     is_told_whole = True
+    is_table = True
 
     @property
     def name(self) -> str:

@@ -20,7 +20,6 @@ from twin.files.toml import (
 )
 from twin.files.whole import (
     NOT_WRITABLE,
-    UNFINISHED,
     refuse_own_input,
     refuse_to_overwrite,
     write_whole,
@@ -29,7 +28,6 @@ from twin.files.whole import (
 
 __all__ = [
     "NOT_WRITABLE",
-    "UNFINISHED",
     "MachineTables",
     "Pair",
     "SensorRecord",

@@ -212,14 +212,6 @@ def approach(table: CsvTable, chain: Chain, q: Array, normal_table: Array) -> Ar
     return out
 
 
-def assumed_point(axis: str) -> str:
-    """Remark on a rotary axis whose place the machine file leaves open."""
-    return (
-        f"axis {axis} has no point in the machine file: it is taken to turn about a line through "
-        "the origin of the machine"
-    )
-
-
 def uncertainties(table: CsvTable, common: float | None) -> Array:
     """Standard uncertainty of every row, (N,), mm: its own, else the head's (µm)."""
     if common is None and "u_um" not in table:

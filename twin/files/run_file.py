@@ -97,7 +97,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     _check_columns(table, chain)
     if not len(table):
         raise BadFile(path, "table", "no rows", "a row a touch")
-    remarks = [columns.assumed_point(axis) for axis in chain.assumed_points]
+    remarks = list(chain.remarks)
     stated = _assemble(table, chain, head, remarks)
     run = stated
     moved: tuple[Moved, ...] = ()

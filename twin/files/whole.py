@@ -24,7 +24,7 @@ NOT_WRITABLE = (
 """What a user can put right when a file cannot be written: a full disk, no right to write."""
 
 UNFINISHED: set[Path] = set()
-"""Files and folders that this process has begun; whoever ends it at once removes them."""
+"""Files that this process has begun; whoever ends it at once removes them."""
 
 
 @contextmanager

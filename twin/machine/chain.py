@@ -108,6 +108,15 @@ class Chain:
     table_origin: Array = field(default_factory=lambda: np.zeros(3))
     assumed_points: tuple[str, ...] = ()
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What the machine file leaves open, and what is taken instead, one line each."""
+        return tuple(
+            f"axis {axis} has no point in the machine file: it is taken to turn about a line "
+            "through the origin of the machine"
+            for axis in self.assumed_points
+        )
+
     @cached_property
     def axes(self) -> tuple[str, ...]:
         """Names of the moving links in chain order, spindle included: the columns of readings."""

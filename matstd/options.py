@@ -1,0 +1,107 @@
+"""Options that several commands share: `--start`, `--model`, `--pitch`, `--pdf`."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from twin.errors import DesignError
+
+if TYPE_CHECKING:
+    from report.pages import Printer
+    from twin.machine import Chain
+    from twin.model import Model
+
+SETUP, GEOMETRY = "setup", "geometry"
+"""Words of `--start`."""
+
+REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
+"""Results that not every run of such a command leaves."""
+
+
+def add_pdf(parser: argparse.ArgumentParser) -> None:
+    """The argument `--pdf`."""
+    parser.add_argument(
+        "--pdf",
+        action="store_true",
+        default=None,
+        help="print the report into report.pdf too (by WeasyPrint or a browser of this machine)",
+    )
+
+
+def asked_printer(args: argparse.Namespace) -> Printer | None:
+    """What prints the page, looked for before the work begins; None where no PDF is wanted.
+
+    Raises:
+        MissingLibrary: It is wanted, and nothing here can print.
+    """
+    if not args.pdf:
+        return None
+    from report.pages import printer
+
+    return printer()
+
+
+def print_report(folder: Path, printed_by: Printer | None) -> None:
+    """Print the page of a folder, if anything shall."""
+    if printed_by is not None:
+        from report.pages import write_pdf
+
+        write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
+
+
+def add_start(parser: argparse.ArgumentParser, without: str) -> None:
+    """The options --model and --start.
+
+    Args:
+        parser: Of the command.
+        without: What it does without a model, for the help.
+    """
+    parser.add_argument("--model", metavar="MODEL.toml", help=f"of an earlier run; {without}")
+    parser.add_argument(
+        "--start",
+        metavar="WHAT",
+        help=f"starting model: {SETUP} (where the standard stands, no more), {GEOMETRY} (the "
+        "ordinary model, as without this option), or MODEL.toml (as --model)",
+    )
+
+
+def add_pitch(parser: argparse.ArgumentParser) -> None:
+    """The option --pitch."""
+    parser.add_argument(
+        "--pitch",
+        metavar="AXIS=MM",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="pitch of the screw or scale of an axis: errors that repeat are looked for at it and "
+        "at its whole fractions, and it is preferred among periods that look alike",
+    )
+
+
+def model_file(args: argparse.Namespace) -> str | None:
+    """The model file that is named, None for none.
+
+    Raises:
+        DesignError: A model by both options, or a word that is none of theirs.
+    """
+    start: str | None = args.start
+    if start is None or (start == GEOMETRY and args.model is None):
+        return args.model
+    if args.model is not None:
+        raise DesignError(f"--start {start}: beside --model {args.model}, expected one of the two")
+    if start == SETUP:
+        return None
+    if not start.endswith(".toml"):
+        expected = f"expected {SETUP}, {GEOMETRY} or a model file (.toml)"
+        raise DesignError(f"--start {start}: {expected}")
+    return start
+
+
+def first_model(args: argparse.Namespace, chain: Chain) -> Model:
+    """The starting model where no model file is named."""
+    from twin.library import ordinary_model
+    from twin.model import Model
+
+    return Model(chain, ()) if args.start == SETUP else ordinary_model(chain)

@@ -1,0 +1,33 @@
+"""What the console tells of geometry, mistakes and changes, line by line."""
+
+from collections.abc import Sequence
+
+from diagnosis.answer import Trend
+from diagnosis.faults import DescriptionFault
+from diagnosis.geometry import LearntGeometry
+from report.geometry.copied_numbers import copy_lines
+from report.geometry.fault_words import fault_sentences
+from report.geometry.geometry_words import ladder_sentence, noted_lines
+from report.geometry.trend_words import trend_lines
+from twin.record import Touches
+
+
+def console_lines(
+    touches: Touches,
+    geometry: LearntGeometry,
+    faults: Sequence[DescriptionFault],
+    trend: Trend | None = None,
+) -> list[tuple[str, bool]]:
+    """Lines, each with whether a reader should see it first.
+
+    Args:
+        touches: Of the run.
+        geometry: What was learnt of it.
+        faults: Mistakes in its description.
+        trend: What changed between several runs; it stands for what is noted of the geometry.
+    """
+    first = [(text, True) for text in fault_sentences(faults)]
+    first += [(text, False) for text in copy_lines(touches, geometry, faults)]
+    first += [(text, True) for text in trend_lines(trend)]
+    noted = noted_lines(geometry) if trend is None else []
+    return first + [(text, False) for text in (ladder_sentence(geometry), *noted)]
