@@ -12,6 +12,7 @@ COMMANDS = {
     "volumetric": "exact deviation of the tool point in the table frame, one row per pose",
     "sensitivity": "sensitivity of the tool point to every error parameter at every pose",
     "simulate": "run an emitted probing program on the machine's twin and write a run file",
+    "control-test": "emitted programs on an installed LinuxCNC, the exact twin as its machine",
     "evaluate": "logs of our probing programs from the control, made a run file",
     "import": "tables of instruments, CMMs and spreadsheets made a run file",
     "compare": "measurements against the model: where it fails",
@@ -95,7 +96,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     for name, line in COMMANDS.items():
         command = commands.add_parser(name, help=line, description=line[0].upper() + line[1:] + ".")
         if name == called:
-            module = importlib.import_module(f"matstd.commands.{name}")
+            module = importlib.import_module(f"matstd.commands.{name.replace('-', '_')}")
             module.add_arguments(command)
             command.set_defaults(run=module.run)
     return parser

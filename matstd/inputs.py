@@ -10,7 +10,7 @@ from diagnosis.choice import offered
 from diagnosis.faults import faults_of_refused
 from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
-from report.geometry import fault_sentences
+from report.geometry import copy_lines, fault_sentences
 from twin.errors import BadFile, DesignError, NotEnoughData
 from twin.files import read_run
 from twin.library import (
@@ -131,10 +131,11 @@ def _read(run_file: str) -> Run:
         return read_run(run_file)
     except BadFile as refusal:
         run = refusal.facts.get("run")
-        sentences = fault_sentences(faults_of_refused(run)) if isinstance(run, Run) else []
-        if not sentences:
+        faults = faults_of_refused(run) if isinstance(run, Run) else ()
+        if not isinstance(run, Run) or not faults:
             raise
-        raise DesignError("; ".join([str(refusal), *sentences])) from refusal
+        told = [*fault_sentences(faults), *copy_lines(run.touches, None, faults)]
+        raise DesignError("; ".join([str(refusal), *told])) from refusal
 
 
 def is_learnt_from(saved: SavedModel, run: Run) -> bool:

@@ -295,7 +295,7 @@ def test_every_command_has_its_file() -> None:
     from matstd.cli import COMMANDS
 
     for name in COMMANDS:
-        assert (ROOT / "matstd" / "commands" / f"{name}.py").exists(), name
+        assert (ROOT / "matstd" / "commands" / f"{name.replace('-', '_')}.py").exists(), name
 
 
 MAX_PLACES = 4

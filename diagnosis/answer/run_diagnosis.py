@@ -37,7 +37,7 @@ from diagnosis.evidence import (
     quiet,
 )
 from diagnosis.faults import description_faults
-from diagnosis.fit import Fit, Prior
+from diagnosis.fit import Fit, Prior, prior_for
 from diagnosis.geometry import learnt_geometry
 from diagnosis.regression import GrossErrors
 from diagnosis.remarks import Remark, SearchEnded, remarks
@@ -94,7 +94,7 @@ def diagnose(
     """
     run = without_copies(run)
     start = model or ordinary_model(run.touches.chain)
-    belief = prior or Prior.of_effects(start.effects)
+    belief = prior_for(run, start) if prior is None else prior
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
     return settled(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
 

@@ -7,7 +7,7 @@ combinations the run determines; `reported` gives parameters as a user reads the
 
 from diagnosis.fit.describe import Reported, Role, file_unit, inner_unit, reported
 from diagnosis.fit.estimability import Estimable, estimable
-from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run
+from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run, prior_for
 from diagnosis.fit.inner import continuous_inner, shifted, spacing
 from diagnosis.fit.learnt_fit import Learnt
 from diagnosis.fit.prior import Prior
@@ -29,6 +29,7 @@ __all__ = [
     "file_unit",
     "fit_run",
     "inner_unit",
+    "prior_for",
     "reported",
     "shifted",
     "spacing",

@@ -70,7 +70,8 @@ class Estimable:
     def found(self) -> Identifiability:
         """Rank, condition and gauge freedoms of the touches in use, without any prior."""
         fit = self.fit
-        return identifiability(self.rows, fit.prior.sd, fit.names, fit.parameters, fit.model.chain)
+        expected, chain = fit.prior.expected, fit.model.chain
+        return identifiability(self.rows, expected, fit.names, fit.parameters, chain)
 
     @property
     def freedoms(self) -> tuple[Freedom, ...]:
@@ -85,9 +86,10 @@ def estimable(fit: Fit) -> Estimable:
     freed of what a set-up can imitate.
 
     Args:
-        fit: Any fit; its rows in use count, and of its prior the standard deviations.
+        fit: Its rows in use count, and the standard deviations expected of the class of machine.
     """
-    W = columns(fit.effects, fit.run.touches)[fit.used] * fit.prior.sd / fit.u[fit.used, None]
+    W = columns(fit.effects, fit.run.touches)[fit.used] * fit.prior.expected
+    W /= fit.u[fit.used, None]
     return Estimable(
         fit=fit,
         rows=W,
@@ -110,7 +112,7 @@ def _combinations(fit: Fit, W: Array) -> tuple[Combination, ...]:
             weights=c.weights,
             importance=c.importance,
         )
-        for c in combinations(W, fit.prior.sd, units, free)
+        for c in combinations(W, fit.prior.expected, units, free)
     )
 
 

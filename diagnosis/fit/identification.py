@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from diagnosis.fit.inner import Tangent, tangents
 from diagnosis.fit.prior import Prior
+from diagnosis.fit.suited_prior import narrowed, widened_by, widening
 from diagnosis.regression import (
     BoolArray,
     GrossErrors,
@@ -29,10 +30,6 @@ from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Effect, Model, Parameter, columns
 from twin.record import Run
-
-PRIOR_EXCEEDED = 2.0
-"""Mean squared parameter over its prior variance from which the machine is called worse than its
-stated distributions, and the prior is widened."""
 
 PASSES = 5
 SETTLED = 0.005
@@ -292,7 +289,8 @@ def fit_run(
     prior; the second weights with what was found, and more follow while the gross errors change.
 
     Args:
-        prior: Of the model's parameters; None for what its effects state.
+        prior: Of the model's parameters; None for what its effects state, less where the run says
+            that the machine is better (`prior_for`).
         free_inner: Linear parameters of the model, at which tangents of its inner parameters are
             added to the fit; None leaves the inner parameters where they are.
         gross: Gross errors found before, to keep; None looks for them, as if noise were white.
@@ -309,7 +307,7 @@ def fit_run(
             f"{int(train.sum())} touches, expected at least {MIN_TOUCHES}: fewer cannot even place "
             "the standard; add touches"
         )
-    machine = prior or Prior.of_effects(model.effects)
+    machine = prior_for(run, model, gross, memory) if prior is None else prior
     setups = setup_errors(run.touches)
     moved = () if free_inner is None else tuple(tangents(model, run.touches, free_inner))
     A = columns((*model.effects, *setups, *moved), run.touches) / run.u[:, None]
@@ -324,7 +322,8 @@ def fit_run(
     if beside is not None:
         factor, widened = beside.noise.factor, beside.widened
     for remaining in reversed(range(PASSES if beside is None else 1)):
-        belief = Prior(machine.mean, machine.root * _widening(model, widened)).joined(free)
+        root = machine.root * widening(model.effects, widened)
+        belief = Prior(machine.mean, root, machine.narrowed).joined(free)
         whole = factor * weight
         X, rest = A @ belief.root / whole, (y - A @ belief.mean) / whole
         solution, found = _solved(X, rest, train, gross)
@@ -332,7 +331,9 @@ def fit_run(
         better = noise_factor(chi2, solution.dof)
         if abs(better / factor - 1.0) < SETTLED or not remaining:
             break
-        factor, widened = better, max(widened, _widened(solution, len(machine)) * widened)
+        factor = better
+        if machine.narrowed is None:  # else the run chose its size already
+            widened = max(widened, widened_by(solution, len(machine)) * widened)
     used = train & ~found.rows
     noise = noise_of(run, solution, (rest - X @ solution.phi) * whole, used, factor)
     return Fit(
@@ -350,6 +351,20 @@ def fit_run(
         widened=widened,
         memory=memory,
     )
+
+
+def prior_for(
+    run: Run, model: Model, gross: GrossErrors | None = None, memory: Memory | None = None
+) -> Prior:
+    """What the effects of a model state, less where a run says that its machine is better.
+
+    Arguments and errors as of `fit_run`.
+    """
+    stated = Prior.of_effects(model.effects)
+    fit = fit_run(run, model, stated, gross=gross, memory=memory)
+    if fit.widened > 1.0 or not len(stated):
+        return stated
+    return narrowed(stated, model.effects, fit.X[fit.used], fit.y[fit.used])
 
 
 def row_weight(memory: Memory | None) -> float:
@@ -380,17 +395,3 @@ def _solved(
         return find_gross(X, y, train)
     used = train & ~gross.rows
     return solve(X[used], y[used]), gross
-
-
-def _widening(model: Model, factor: float) -> Array:
-    """Factor on the prior of every parameter, (P, 1): none where its size was chosen already."""
-    shrunk = [getattr(e, "is_shrunk", False) for e in model.effects]
-    each = np.repeat(shrunk, [len(e.parameters) for e in model.effects])
-    return np.where(each, 1.0, factor)[:, None]
-
-
-def _widened(solution: Solution, machine: int) -> float:
-    """How much wider the prior of the machine must be for its own parameters to be likely."""
-    decided = 1.0 - (solution.root[:machine] ** 2).sum(axis=1)
-    ratio = float(solution.phi[:machine] @ solution.phi[:machine]) / max(float(decided.sum()), 1.0)
-    return float(np.sqrt(ratio)) if ratio > PRIOR_EXCEEDED else 1.0

@@ -17,10 +17,13 @@ class Prior:
     Attributes:
         mean: Shape (P,), base units.
         root: Shape (P, P), any root of the covariance: ``covariance = root root^T``.
+        narrowed: Factor on what is expected of the class of machine, in `root` already, (P,); None
+            where there is none.
     """
 
     mean: Array
     root: Array
+    narrowed: Array | None = None
 
     @classmethod
     def of_effects(cls, effects: Sequence[Effect]) -> "Prior":
@@ -44,11 +47,24 @@ class Prior:
         """Standard deviation of every parameter, (P,)."""
         return np.sqrt(np.einsum("pk,pk->p", self.root, self.root))
 
+    @property
+    def factor(self) -> Array:
+        """On what is expected of the class of machine, (P,)."""
+        return np.ones(len(self)) if self.narrowed is None else self.narrowed
+
+    @property
+    def expected(self) -> Array:
+        """Standard deviations as the class of machine has them, (P,)."""
+        return self.sd / self.factor
+
     def widened(self, factor: float) -> "Prior":
         """The same belief, held with less confidence."""
-        return Prior(self.mean, factor * self.root)
+        return Prior(self.mean, factor * self.root, self.narrowed)
 
     def joined(self, other: "Prior") -> "Prior":
         """Both sets of parameters, independent of one another."""
         root = block_diag(self.root, other.root)
-        return Prior(np.concatenate([self.mean, other.mean]), root)
+        narrowed = None
+        if self.narrowed is not None or other.narrowed is not None:
+            narrowed = np.concatenate([self.factor, other.factor])
+        return Prior(np.concatenate([self.mean, other.mean]), root, narrowed)

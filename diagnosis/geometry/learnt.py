@@ -267,7 +267,7 @@ def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | Non
         unit=one.unit,
         estimate=values[-1],
         lever=one.lever,
-        expected=sd / max(fit.widened, 1.0),
+        expected=_expected(fit, one.weights),
         is_determined=is_known[-1],
         shared_with=() if is_known[-1] else _shared_with(fit, every[-1]),
         before=earlier,
@@ -275,6 +275,12 @@ def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | Non
         course=course if steps else (),
         steps=tuple(steps),
     )
+
+
+def _expected(fit: Fit, weights: Array) -> float:
+    """Standard deviation before the run, as the class of the machine has it."""
+    root = fit.prior.root[: len(weights), : len(weights)]
+    return float(np.linalg.norm((weights / fit.prior.factor[: len(weights)]) @ root)) / fit.widened
 
 
 def _of(fit: Fit, weights: Array) -> Estimate:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import numpy as np
 
     from probe_paths.campaign import VirtualMachine
+    from probe_paths.language import Dialect
     from twin.files import SensorRecord
 
 
@@ -19,43 +21,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="what is probed")
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
-    errors = parser.add_mutually_exclusive_group()
-    errors.add_argument("--errors", metavar="ERRORS.toml", help="the machine's errors")
-    errors.add_argument(
-        "--random-errors", action="store_true", help="errors drawn from the default distributions"
-    )
-    parser.add_argument(
-        "--noise-um", type=float, default=1.0, help="standard deviation of one touch (1.0)"
-    )
-    parser.add_argument(
-        "--add",
-        metavar="EFFECT=SIZE",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="plant effects: 'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', "
-        "'drift=X=2um/h'; every size with its unit",
-    )
-    parser.add_argument(
-        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
-    )
+    add_planted(parser)
     parser.add_argument(
         "--sensors",
         metavar="SENSORS.csv",
         help="what temperatures and the spindle do, as `evaluate` takes it: columns clock "
         "(2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the run begins at its first row",
     )
-    parser.add_argument(
-        "--setup-error",
-        metavar="NAME=SIZE",
-        help="how the standard really stands, in its own frame: X=0.3mm,Y=-0.1mm,C=0.05deg",
-    )
-    parser.add_argument(
-        "--probe-error",
-        metavar="NAME=SIZE",
-        help="of the probe, true less calibrated: radius=1um,length=20um",
-    )
-    parser.add_argument("--seed", type=int, default=0, help="of noise and random errors (0)")
     parser.add_argument("--probe-length", type=float, help="mm; must be the program's")
     parser.add_argument("--probe-radius", type=float, help="mm; must be the program's")
     parser.add_argument(
@@ -72,7 +44,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the run file; a touch without contact stops the program and writes nothing."""
     import os
-    from pathlib import Path
 
     import numpy as np
 
@@ -81,20 +52,17 @@ def run(args: argparse.Namespace) -> int:
     from matstd.progress import stages
     from probe_paths.campaign import simulate
     from probe_paths.control import stated_probe
-    from twin.errors import DesignError
+    from probe_paths.language import read_dialect
     from twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
     from twin.units import UM
 
-    if not 0.0 <= args.noise_um < 1000.0 or args.seed < 0:
-        raise DesignError(
-            f"--noise-um {args.noise_um:g} --seed {args.seed}: "
-            "expected noise from 0 to 1000 µm and a seed from 0 up"
-        )
+    checked_noise(args)
     refuse_to_overwrite(args.output, args.force)
     standard = read_standard(args.standard)
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     record = read_sensors(args.sensors) if args.sensors else None
-    machine = _machine(args, record, for_errors)
+    dialect = read_dialect(args.control)
+    machine = virtual_machine(args, args.machine, for_errors, dialect, record)
     probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
     with stages() as show:
         campaign = simulate(args.programs, standard, machine, for_noise, probe, show)
@@ -117,16 +85,71 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _machine(
-    args: argparse.Namespace, record: SensorRecord | None, rng: np.random.Generator
-) -> VirtualMachine:
-    """The machine as it really is, with the effects that the user plants in it."""
-    from pathlib import Path
+def add_planted(parser: argparse.ArgumentParser) -> None:
+    """Errors, noise, effects, set-up and probe as they really are."""
+    errors = parser.add_mutually_exclusive_group()
+    errors.add_argument("--errors", metavar="ERRORS.toml", help="the machine's errors")
+    errors.add_argument(
+        "--random-errors", action="store_true", help="errors drawn from the default distributions"
+    )
+    parser.add_argument(
+        "--noise-um", type=float, default=1.0, help="standard deviation of one touch (1.0)"
+    )
+    parser.add_argument(
+        "--add",
+        metavar="EFFECT=SIZE",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="plant effects: 'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', "
+        "'drift=X=2um/h'; every size with its unit",
+    )
+    parser.add_argument(
+        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
+    )
+    parser.add_argument(
+        "--setup-error",
+        metavar="NAME=SIZE",
+        help="how the standard really stands, in its own frame: X=0.3mm,Y=-0.1mm,C=0.05deg",
+    )
+    parser.add_argument(
+        "--probe-error",
+        metavar="NAME=SIZE",
+        help="of the probe, true less calibrated: radius=1um,length=20um",
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of noise and random errors (0)")
 
+
+def checked_noise(args: argparse.Namespace) -> None:
+    """Refuse noise and seed that mean nothing; raises DesignError."""
+    from twin.errors import DesignError
+
+    if not 0.0 <= args.noise_um < 1000.0 or args.seed < 0:
+        raise DesignError(
+            f"--noise-um {args.noise_um:g} --seed {args.seed}: "
+            "expected noise from 0 to 1000 µm and a seed from 0 up"
+        )
+
+
+def virtual_machine(
+    args: argparse.Namespace,
+    machine_file: str | Path,
+    rng: np.random.Generator,
+    dialect: Dialect,
+    record: SensorRecord | None = None,
+) -> VirtualMachine:
+    """The machine as it really is, with the effects that the user plants in it.
+
+    Args:
+        args: With the options of `add_planted`.
+        machine_file: Its nominal kinematics.
+        rng: For random errors.
+        dialect: Of its control.
+        record: What drives effects, by the clock.
+    """
     import numpy as np
 
     from probe_paths.campaign import FIRST_MORNING, VirtualMachine, effects_over_record
-    from probe_paths.language import read_dialect
     from sensitivity.population import Population, drawn_errors
     from twin.files import read_errors, read_machine
     from twin.frames import fixed_xyz, pose
@@ -138,7 +161,7 @@ def _machine(
     )
     from twin.units import UM
 
-    chain = read_machine(args.machine)
+    chain = read_machine(machine_file)
     load_installed_effects()
     for path in args.effects:
         load_user_effects(Path(path))
@@ -163,5 +186,5 @@ def _machine(
         length_error=probe.get("length", 0.0),
         noise=args.noise_um * UM,
         begin=FIRST_MORNING if record is None else record.begin,
-        dialect=read_dialect(args.control),
+        dialect=dialect,
     )

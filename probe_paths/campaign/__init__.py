@@ -5,23 +5,28 @@ Out: a `Run`. `simulate` checks every move for collisions before it runs the pro
 never learns what the virtual machine knew. `orders` and `probing_time` say what a plan costs.
 """
 
+from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_points import foot_points
-from probe_paths.campaign.contact_solver import FIRST_MORNING, VirtualMachine
-from probe_paths.campaign.disturbances import effects_over_record
+from probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
+from probe_paths.campaign.disturbances import effects_over_record, in_campaign
 from probe_paths.campaign.duration import probing_time
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.order_study import Order, Ordering, orders
-from probe_paths.campaign.simulation import Campaign, simulate
+from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate
 
 __all__ = [
     "FIRST_MORNING",
+    "SMALLEST_U",
     "Campaign",
+    "ContactSolver",
     "Order",
     "Ordering",
     "VirtualMachine",
+    "check_moves",
     "effects_over_record",
     "evaluate",
     "foot_points",
+    "in_campaign",
     "orders",
     "probing_time",
     "simulate",

@@ -5,6 +5,7 @@ numbers to copy into a machine file, a sentence for each mistake and for what ch
 """
 
 from report.geometry.console_words import console_lines
+from report.geometry.copied_numbers import copy_lines
 from report.geometry.fault_words import fault_sentences
 from report.geometry.geometry_words import (
     correction_line,
@@ -18,6 +19,7 @@ from report.geometry.trend_words import change_sentences
 __all__ = [
     "change_sentences",
     "console_lines",
+    "copy_lines",
     "correction_line",
     "fault_sentences",
     "geometry_lines",

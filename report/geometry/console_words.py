@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from diagnosis.answer import Trend
 from diagnosis.faults import DescriptionFault
 from diagnosis.geometry import LearntGeometry
-from report.geometry.copy_lines import copy_lines
+from report.geometry.copied_numbers import copy_lines
 from report.geometry.fault_words import fault_sentences
 from report.geometry.geometry_words import ladder_sentence, noted_lines
 from report.geometry.trend_words import trend_lines

@@ -57,7 +57,7 @@ def brute_force(fit, rows):
     """Estimates and covariance in base units by normal equations over some rows."""
     A = columns(fit.effects, fit.run.touches)[rows]
     W = 1.0 / fit.u[rows]
-    sd = np.array([p.sd for e in fit.effects for p in e.parameters])
+    sd = np.array([p.sd for e in fit.effects for p in e.parameters]) * fit.prior.factor
     X = A * W[:, None] * sd
     covariance = np.linalg.inv(X.T @ X + np.eye(len(sd)))
     phi = covariance @ (X.T @ (fit.run.deviation[rows] * W))

@@ -11,6 +11,7 @@ import pytest
 from diagnosis.answer import Verdict, diagnose
 from diagnosis.answer.alike import even_step
 from diagnosis.fit.describe import Role
+from report.words.diagnosis_words import scanned_sentence
 from twin.effects.periodic import scanned_periods
 from twin.frames import Array
 from twin.machine import Axis, make_chain
@@ -117,6 +118,18 @@ def test_a_small_sine_is_found_beside_a_large_one_in_a_long_log() -> None:
     assert found.verdict is Verdict.MISSING
     periods = [e.tuning["period"] for e in found.found if isinstance(e, Tunable)]
     assert sorted(periods) == pytest.approx([0.8, 20.0], rel=1e-4)
+
+
+def test_what_was_scanned_is_told() -> None:
+    """Targets 6 mm apart over 295 mm: periods from 1 to 50 mm."""
+    found = diagnose(positioning(np.arange(5.0, 300.0, 6.0), 2.5, 0.0))
+    assert found.verdict is Verdict.NONE
+    (scan,) = next(d for d in found.detectable if d.effect.name == "periodic(EXX)").scanned
+    assert (scan.quantity, scan.unit, scan.high) == ("period", "mm", 50.0)
+    assert scan.low == pytest.approx(1.0, rel=0.01)
+    sentence = scanned_sentence(found.detectable)
+    assert "periods of 1.00 to 50.0 mm" in sentence
+    assert "this run says nothing" in sentence
 
 
 def test_effects_of_a_log_do_not_cancel_one_another() -> None:

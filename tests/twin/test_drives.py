@@ -206,3 +206,18 @@ def test_rows_that_differ_in_a_temperature_are_no_copies(touches) -> None:
     warmer = {k: np.r_[v, v + 0.25, v - 0.25] for k, v in touches.temperature.items()}
     honest = replace(pasted, touches=replace(moved, temperature=warmer))
     assert len(without_copies(honest)) == 3 * N
+
+
+def test_cycles_read_in_steps_are_no_copies_though_no_time_was_recorded(touches) -> None:
+    """Five cycles over 22 targets, noise 0.5 µm, read in 0.1 µm: chance alone repeats some."""
+    rng = np.random.default_rng(5)
+    t = replace(touches, q=np.linspace(0.0, 350.0, N)[:, None], time=np.zeros(N), temperature={})
+    cycles = replace(t, value={}, spindle_rpm=None)[np.tile(np.arange(22), 5)]
+    read = np.round(rng.normal(0.0, 0.5, len(cycles)), 1) * UM
+    run = Run(touches=cycles, deviation=read, u=np.full(len(cycles), 0.5 * UM))
+    assert len(np.unique(np.column_stack([cycles.q, read]), axis=0)) < len(run)
+    assert len(without_copies(run)) == len(run)
+    # read finely, what agrees to the last digit was copied
+    fine = rng.normal(0.0, 0.5, len(cycles)) * UM
+    fine[22:26] = fine[:4]
+    assert len(without_copies(replace(run, deviation=fine))) == len(run) - 4

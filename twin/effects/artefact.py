@@ -20,7 +20,7 @@ from twin.model import (
     sensor_record,
     sensors,
 )
-from twin.record import Touches
+from twin.record import Instrument, Touches
 from twin.units import T_REF, UM, URAD
 
 HOUR = 3600.0
@@ -169,6 +169,8 @@ def _propose_expansion(touches: Touches) -> Iterable[Effect]:
 
 
 def _propose_slip(touches: Touches) -> Iterable[Effect]:
+    if touches.instrument is Instrument.ENCODER:
+        return ()  # nothing stands on the table
     slip = ArtefactSlip()
     return (slip,) if len(slip.inner(touches)[0].grid) else ()
 

@@ -29,16 +29,18 @@ under itself more often than that."""
 def without_copies(run: Run) -> Run:
     """The run without copied rows, and a remark that says so; the run itself if there are none.
 
-    A row that stands twice, its time included, is a copy. So are rows that agree with earlier ones
-    in all columns but the time to the last digit, if most touches that are repeated do: the noise
-    of real ones differs, unless it is read too coarsely to show.
+    A row that stands twice, its time included, is a copy; where no time was recorded, only if more
+    rows do than the steps of the reading let agree by chance. So are rows that agree with earlier
+    ones in all columns but the time to the last digit, if most touches that are repeated do: the
+    noise of real ones differs, unless it is read too coarsely to show. Rows of another repetition
+    or feature are none.
 
     Example:
         A file that was pasted twice under itself counts once.
     """
     out, remarks = run, list(run.remarks)
     same = _copies(run, with_time=True)
-    if same.any():
+    if same.sum() > (0.0 if np.ptp(run.touches.time) > 0.0 else 3.0 * _by_chance(run)):
         out = out[~same]
         remarks.append(_words(run, same, "stand twice" if same.sum() > 1 else "stands twice"))
     again = _copies(out, with_time=False)
@@ -62,12 +64,31 @@ def _copies(run: Run, with_time: bool) -> BoolArray:
     return _later(np.column_stack([*key, t.time] if with_time else key))
 
 
-def _repeated(run: Run) -> int:
-    """Number of touches that were made before at nearly the same readings."""
+def _places(run: Run) -> NDArray[np.float64]:
+    """Equal rows for touches at one point with nearly the same readings, (N, K)."""
     t = run.touches
     scale = np.array([1.0 if link == "linear" else 1e-3 for link in _kinds(run)]) * SAME_PLACE
-    cells = np.round(t.q / scale)
-    return int(_later(np.column_stack([cells, np.round(t.point / NM), t.setup])).sum())
+    return np.column_stack([np.round(t.q / scale), np.round(t.point / NM), t.setup])
+
+
+def _repeated(run: Run) -> int:
+    """Number of touches that were made before at nearly the same readings."""
+    return int(_later(_places(run)).sum())
+
+
+def _by_chance(run: Run) -> float:
+    """Expected number of deviations that agree with an earlier one of the same touch.
+
+    Of m that fall evenly into n steps of the reading, ``m - n (1 - (1 - 1/n)^m)`` fall where one
+    is already; a normal spread of standard deviation u is as wide as ``2 sqrt(pi) u`` of even ones.
+    """
+    levels = np.unique(run.deviation)
+    if len(levels) < 2:
+        return 0.0  # steps of the reading do not show
+    step = float(np.diff(levels).min())
+    n = max(2.0 * np.sqrt(np.pi) * float(np.median(run.u)) / step, 1.0)
+    m = np.unique(_places(run), axis=0, return_counts=True)[1]
+    return float(np.sum(m - n * (1.0 - (1.0 - 1.0 / n) ** m)))
 
 
 def _coarse(run: Run) -> bool:

@@ -12,7 +12,7 @@ from twin.record import Touches
 
 
 def copy_lines(
-    touches: Touches, geometry: LearntGeometry, faults: Sequence[DescriptionFault]
+    touches: Touches, geometry: LearntGeometry | None, faults: Sequence[DescriptionFault]
 ) -> list[str]:
     """What would have to stand in the files: mistakes undone, and lines of axes far from theirs.
 
@@ -20,13 +20,19 @@ def copy_lines(
 
     Args:
         touches: Of the run, as it is described.
-        geometry: What was learnt of it.
+        geometry: What was learnt of it; None where it could not be fitted.
         faults: Mistakes that were named, each with those that look alike.
     """
     found = [c for f in faults for one in (f, *f.alike) for c in _undone(touches, one)]
+    if geometry is None:
+        return _told(found)
     keys = {c.key for c in found}
     far = {_key(row) for row in geometry.rows if row.is_beyond_expected}
     found += [c for c in geometry.corrections if c.key not in keys and c.key in far]
+    return _told(found)
+
+
+def _told(found: Sequence[Correction]) -> list[str]:
     return [f"to copy: {correction_line(c)}" for c in found]
 
 

@@ -1,0 +1,81 @@
+"""A design on LinuxCNC: every block through its interpreter, and touches that it really makes.
+
+    python benchmarks/control.py OUT [--touches 64] [--user NAME] [--add EFFECT=SIZE]
+
+OUT is a folder of `matstd design`. Without LinuxCNC it says so. The second part takes the time that
+the touches take; `--touches 0` leaves it out.
+"""
+
+import argparse
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from artefact.body import read_standard
+from matstd.cli import main as matstd
+from probe_paths.control import read_program
+from probe_paths.emit import Program, make_programs
+from probe_paths.language import read_dialect
+from probe_paths.linuxcnc import shortened
+from twin.files import read_machine
+
+
+def programs_of(design: Path) -> list[Program]:
+    """All programs of a design for LinuxCNC, planned again from their text."""
+    chain = read_machine(design / "machine.toml")
+    files = [p for p in (design / "programs").iterdir() if p.suffix in (".H", ".ngc")]
+    read = [read_program(p, chain) for p in sorted(files, key=lambda p: (len(p.name), p.name))]
+    plan = shortened(read, read_standard(design / "standard.toml"), chain)
+    return list(make_programs(plan, read_dialect("linuxcnc")).programs)
+
+
+def interpreted(program: Program, folder: Path) -> str:
+    """What `rs274` says of a program in which every touch is met."""
+    met = program.text.replace("[#5070 - 1]", "0").replace("#5070 GT 0", "1 GT 0")
+    (folder / "tool.tbl").write_text("T30 P30 Z163.0 D6.0\n")
+    (folder / "a.var").write_text("")
+    (folder / program.file).write_text(met)
+    command = ["rs274", "-t", "tool.tbl", "-v", "a.var", "-g", program.file]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return done.stdout
+
+
+def main() -> None:
+    """Blocks, then touches."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("design", type=Path)
+    parser.add_argument("--touches", type=int, default=64)
+    parser.add_argument("--user", default="")
+    parser.add_argument("--add", default="backlash(X)=10um")
+    args = parser.parse_args()
+    if shutil.which("rs274") is None:
+        raise SystemExit("LinuxCNC (rs274) is not installed: docs/controls.md")
+    with tempfile.TemporaryDirectory() as folder:
+        for program in programs_of(args.design):
+            begin = time.perf_counter()
+            said = interpreted(program, Path(folder))
+            seconds = time.perf_counter() - begin
+            is_whole = "PROGRAM_END" in said
+            made = said.count("STRAIGHT_PROBE") // 2
+            print(
+                f"{program.file}: {program.text.count(chr(10))} lines, "
+                f"{'all taken' if is_whole else 'NOT TAKEN'}, {made} of {program.touches} touches, "
+                f"{seconds:.1f} s"
+            )
+    if args.touches:
+        user = ["--user", args.user] if args.user else []
+        with tempfile.TemporaryDirectory() as folder:
+            begin = time.perf_counter()
+            touches = ["--touches", str(args.touches), "--add", args.add, *user]
+            output = ["-o", f"{folder}/control", "--noise-um", "0.2"]
+            matstd(["control-test", str(args.design), *touches, *output])
+            print(f"{time.perf_counter() - begin:.0f} s")
+
+
+if __name__ == "__main__":
+    main()

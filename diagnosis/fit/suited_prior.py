@@ -1,0 +1,99 @@
+"""The prior that suits a machine: its errors curve as much as expected, or clearly less.
+
+What is expected of a class of machines is wide, since it must hold for the worst of them. On a good
+machine, probed at few places, curves of which the run says little would then be free to follow the
+noise, and the model would predict worse than none. So the run may say that this machine is better
+than its class: what bends over an axis (parabolas, waves), and what tilts or leads aside over it,
+each get the one factor of a few under which the run is most likely,
+
+    log p(y) = -1/2 log det(I + X^T X) - (N + nu)/2 log(|y|^2 - y^T X (I + X^T X)^-1 X^T y + nu),
+
+with whitened columns X in units of the prior and nu observations for the noise that is stated. The
+class keeps its word unless the run clearly says otherwise. Squareness, scale and lines of rotary
+axes keep it always: hardly any run leaves them open, and they shall not be drawn to zero.
+
+Reference:
+    MacKay, Neural Computation 4 (1992) 415 (the evidence for a scale of the prior).
+"""
+
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from diagnosis.fit.prior import Prior
+from diagnosis.regression import PRIOR_DOF, Solution
+from twin.effects import ComponentError
+from twin.frames import Array
+from twin.machine import LETTERS
+from twin.model import Effect
+
+FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
+"""On what is expected: from the class down to a machine of a laboratory."""
+
+PRIOR_EXCEEDED = 2.0
+"""Mean squared parameter over its prior variance from which the machine is called worse than its
+stated distributions, and the prior is widened."""
+
+CLEARLY = 3.0
+"""Log evidence that a smaller factor must gain, 20 : 1."""
+
+
+def narrowed(prior: Prior, effects: Sequence[Effect], X: Array, y: Array) -> Prior:
+    """The prior with the factors under which a run is most likely.
+
+    Args:
+        prior: Of the parameters of the effects: what the class of the machine says.
+        effects: Of the model.
+        X: Columns of the effects, then of the set-ups, in units of the prior and of the noise, rows
+            in use, (M, P).
+        y: Deviations in units of the noise, (M,).
+    """
+    kinds = np.repeat([_kind(e) for e in effects], [len(e.parameters) for e in effects])
+    G, g, square = X.T @ X, X.T @ y, float(y @ y)
+    each = [np.ones(len(G)) for _ in range(len(FACTORS) ** 2)]
+    for factor, (bends, tilts) in zip(each, product(FACTORS, repeat=2), strict=True):
+        factor[: len(kinds)][kinds == "bends"] = bends
+        factor[: len(kinds)][kinds == "tilts"] = tilts
+    evidence = [_evidence(G, g, square, len(y), factor) for factor in each]
+    best = int(np.argmax(evidence))
+    if evidence[best] < evidence[0] + CLEARLY:
+        return prior
+    chosen = each[best][: len(prior)]
+    return Prior(prior.mean, chosen[:, None] * prior.root, chosen)
+
+
+def _kind(effect: Effect) -> str:
+    """What an error of the ordinary model does over its axis."""
+    if not isinstance(effect, ComponentError):
+        return "stays"
+    if effect.shape in ("parabolic", "sinusoidal"):
+        return "bends"
+    symbol = effect.symbol
+    is_scale = effect.shape == "linear" and LETTERS[symbol.component] == symbol.link[0]
+    return "stays" if is_scale or effect.shape == "constant" else "tilts"
+
+
+def _evidence(G: Array, g: Array, square: float, count: int, factor: Array) -> float:
+    """Log evidence up to a constant; G, g: normal equations in units of the prior times factor."""
+    M = factor[:, None] * G * factor
+    M[np.diag_indices_from(M)] += 1.0
+    low = cho_factor(M, lower=True)
+    along = factor * g
+    left = max(square - float(along @ cho_solve(low, along)), 0.0) + PRIOR_DOF
+    return float(-np.log(np.diag(low[0])).sum() - 0.5 * (count + PRIOR_DOF) * np.log(left))
+
+
+def widening(effects: Sequence[Effect], factor: float) -> Array:
+    """Factor on the prior of every parameter, (P, 1): none where its size was chosen already."""
+    shrunk = [getattr(e, "is_shrunk", False) for e in effects]
+    each = np.repeat(shrunk, [len(e.parameters) for e in effects])
+    return np.where(each, 1.0, factor)[:, None]
+
+
+def widened_by(solution: Solution, machine: int) -> float:
+    """How much wider the prior of the machine must be for its own parameters to be likely."""
+    decided = 1.0 - (solution.root[:machine] ** 2).sum(axis=1)
+    ratio = float(solution.phi[:machine] @ solution.phi[:machine]) / max(float(decided.sum()), 1.0)
+    return float(np.sqrt(ratio)) if ratio > PRIOR_EXCEEDED else 1.0

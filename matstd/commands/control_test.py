@@ -1,0 +1,110 @@
+"""`matstd control-test`: emitted programs on an installed LinuxCNC, and what its own log says."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from matstd.commands.simulate import add_planted, checked_noise, virtual_machine
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from probe_paths.emit import ProgramSet
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "design", metavar="OUT", help="folder of `matstd design`; its programs are for any control"
+    )
+    add_planted(parser)
+    parser.add_argument(
+        "--touches", metavar="N", type=int, help="only so many, spread evenly over the programs"
+    )
+    parser.add_argument(
+        "--user", default="", help="who runs LinuxCNC where you are root, which it refuses"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FOLDER", required=True, help="for programs, log and run file"
+    )
+    parser.add_argument("--force", action="store_true", help="replace what is in the folder")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the programs, keep the log whatever happens, evaluate it where all touches were made."""
+    from pathlib import Path
+
+    import numpy as np
+
+    from artefact.body import read_standard
+    from matstd.console import say
+    from probe_paths.language import read_dialect
+    from probe_paths.linuxcnc import installed, rehearse
+    from twin.files import write_run
+    from twin.units import MINUTE, UM
+
+    checked_noise(args)
+    user = installed(args.user)
+    design = Path(args.design)
+    standard = read_standard(design / "standard.toml")
+    for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
+    dialect = read_dialect("linuxcnc")
+    machine = virtual_machine(args, design / "machine.toml", for_errors, dialect)
+    files, out = _programs(design), _output_folder(args)
+
+    def told(made: ProgramSet) -> None:
+        touches = sum(program.touches for program in made.programs)
+        say(f"{touches} touches on LinuxCNC, about {made.duration / MINUTE:.0f} min")
+
+    made = rehearse(files, standard, machine, for_noise, out, args.touches, user, told)
+    write_run(out / "run.csv", made.run, _seen_from(design / "machine.toml", out))
+    say(
+        f"{out / 'run.csv'}: {len(made.run)} touches from LinuxCNC's own log, "
+        f"u = {made.u / UM:.3f} µm with the latch"
+    )
+    low, mean, high = (f(made.latched) / UM for f in (np.min, np.mean, np.max))
+    say(
+        f"- latched {low:.3f} to {high:.3f} µm beyond the twin's contact, mean {mean:.3f}; "
+        f"modelled 0 to {made.modelled / UM:.3f} µm"
+    )
+    for text in args.add:
+        say(f"- planted: {text}")
+    for remark in made.run.remarks:
+        say(f"- {remark}")
+    return 0
+
+
+def _output_folder(args: argparse.Namespace) -> Path:
+    """The folder, which is there and holds nothing that nobody asked to replace."""
+    from pathlib import Path
+
+    from twin.errors import DesignError
+
+    out = Path(args.output)
+    if out.exists() and not out.is_dir():
+        raise DesignError(f"{out}: is a file, expected a folder or a name that is free")
+    if out.is_dir() and any(out.iterdir()) and not args.force:
+        raise DesignError(f"{out}: already exists; choose another folder or give --force")
+    out.mkdir(parents=True, exist_ok=True)
+    for old in [*out.glob("*.TXT"), out / "run.csv"]:  # of an earlier run, which this one replaces
+        old.unlink(missing_ok=True)
+    return out
+
+
+def _programs(design: Path) -> list[Path]:
+    """Programs of a design in the order in which they are run."""
+    from twin.errors import BadFile
+
+    folder = design / "programs"
+    found = [p for p in folder.glob("*") if p.suffix.lower() in (".h", ".ngc")]
+    if not found:
+        raise BadFile(folder, "folder", "no program", "the folder that `matstd design` made")
+    return sorted(found, key=lambda p: (len(p.name), p.name))
+
+
+def _seen_from(file: Path, folder: Path) -> str:
+    import os
+    from pathlib import Path
+
+    return Path(os.path.relpath(file, folder.resolve())).as_posix()

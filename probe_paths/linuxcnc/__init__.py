@@ -1,0 +1,26 @@
+"""Emitted programs on a LinuxCNC that is installed here, without a screen: the twin is its machine.
+
+In: programs of a design and a `VirtualMachine`. Out: what the control itself logged, evaluated
+(`rehearse`). `machine_files` makes a machine of independent axes; the scripts in `beside` run in
+the Python of the system, as user interface and as component of the hardware layer; the exact twin
+(`TwinContact`) is asked over a socket where every stroke will meet the surface.
+"""
+
+from probe_paths.linuxcnc.latch import latch_error, latch_u
+from probe_paths.linuxcnc.machine_config import machine_files
+from probe_paths.linuxcnc.rehearsal import Rehearsal, rehearse
+from probe_paths.linuxcnc.replanned import shortened
+from probe_paths.linuxcnc.session import installed, run_on_linuxcnc
+from probe_paths.linuxcnc.twin_contact import TwinContact
+
+__all__ = [
+    "Rehearsal",
+    "TwinContact",
+    "installed",
+    "latch_error",
+    "latch_u",
+    "machine_files",
+    "rehearse",
+    "run_on_linuxcnc",
+    "shortened",
+]

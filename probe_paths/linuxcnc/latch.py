@@ -1,0 +1,43 @@
+"""What a control without a hardware latch adds to every touch.
+
+LinuxCNC looks at the probe once in every period of its servo thread and keeps the position that it
+then has: between the contact and that moment the axes go on.
+"""
+
+import numpy as np
+
+PERIOD = 1e-3
+"""Of the servo thread of our machine, s."""
+
+
+def latch_error(feed: float, period: float = PERIOD, latency: float = 0.0) -> float:
+    """Farthest that a latched position lies beyond the contact, along the stroke, mm.
+
+    ``feed (period + latency)``: the contact falls anywhere into a period, so that the error is
+    uniform between ``feed latency`` and this.
+
+    Args:
+        feed: Of the touch that measures, mm/s.
+        period: Of the servo thread, s.
+        latency: Of the probe's signal, s.
+    """
+    return feed * (period + latency)
+
+
+def latch_u(feed: float, period: float = PERIOD, latency: float = 0.0) -> float:
+    """Standard uncertainty of a touch by the latch, mm, about the contact itself.
+
+    The root of the mean square of an error that is uniform between ``a = feed latency`` and
+    ``b = feed (period + latency)``: ``sqrt((a^2 + a b + b^2) / 3)``. Nothing is corrected: a part
+    that all touches share is a larger ball, which the calibration of the probe takes up.
+
+    Args:
+        feed: Of the touch that measures, mm/s.
+        period: Of the servo thread, s.
+        latency: Of the probe's signal, s.
+
+    Reference:
+        JCGM 100, 4.3.7 (rectangular distribution).
+    """
+    a, b = feed * latency, latch_error(feed, period, latency)
+    return float(np.sqrt((a * a + a * b + b * b) / 3.0))

@@ -1,0 +1,95 @@
+"""A machine for LinuxCNC: every axis of the chain on its own, the probe asked at the twin."""
+
+from pathlib import Path
+
+from probe_paths.language import Dialect
+from probe_paths.linuxcnc.latch import PERIOD
+from probe_paths.plan import Probe, ProgramFrame
+from twin.machine import Chain
+from twin.units import DEG
+
+SPEED, ACCELERATION = 500.0, 5000.0
+"""Of linear axes, mm/s and mm/s^2; of rotary ones in degrees. Nothing is gained by a slow twin."""
+
+PROBER = "prober.py"
+HEADLESS = "headless.py"
+PROGRAMS = "programs.txt"
+SAID = "headless.txt"
+
+
+BESIDE = Path(__file__).parent / "beside"
+"""Files that go to LinuxCNC: templates, and scripts for the Python of the system."""
+
+_SUMMED = ("sum2.0.in0", "sum2.0.in1", "sum2.1.in0")
+
+
+def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> dict[str, str]:
+    """Text of every file of the machine, by name.
+
+    The preset stands where `ProgramFrame` wants it, the probe in the tool table.
+
+    Args:
+        probe: In the spindle.
+        dialect: Numbers of tool and preset.
+        socket: Where the twin answers.
+    """
+    frame = ProgramFrame(chain, probe)
+    letters = sorted(frame.letters, key="XYZABC".index)
+    numbers = {
+        "headless": HEADLESS,
+        "prober": PROBER,
+        "socket": socket,
+        "period": round(PERIOD * 1e9),
+        "letters": "".join(letters),
+        "spaced": " ".join(letters),
+        "joints": len(letters),
+        "speed": SPEED,
+        "acceleration": ACCELERATION,
+    }
+    axes = [_axis(chain, letter, i) for i, letter in enumerate(letters)]
+    offsets = [frame.reading(a, 0.0) - (probe.tool_length if a == "Z" else 0.0) for a in "XYZ"]
+    variables = [(5161 + i, 0.0) for i in range(9)] + [(5181 + i, 0.0) for i in range(9)]
+    variables += [(5210, 0.0)] + [(5211 + i, 0.0) for i in range(9)] + [(5220, 1.0)]
+    for system in range(9):
+        rest = [0.0] * 7  # A to W, and the rotation
+        values = [*(offsets if system == dialect.preset - 1 else [0.0] * 3), *rest]
+        variables += [(5221 + 20 * system + i, v) for i, v in enumerate(values)]
+    return {
+        "machine.ini": _text("machine.ini").format(**numbers) + "".join(axes),
+        "machine.hal": _text("machine.hal").format(**numbers, positions=_positions(len(letters))),
+        "machine.var": "".join(f"{number}\t{value:.6f}\n" for number, value in variables),
+        "tool.tbl": (
+            f"T{dialect.tool} P{dialect.tool} Z{probe.tool_length:.6f} D{2.0 * probe.radius:.6f}\n"
+        ),
+    }
+
+
+def _text(name: str) -> str:
+    """A template of a file of the machine."""
+    return (BESIDE / name).read_text(encoding="utf-8")
+
+
+def _axis(chain: Chain, letter: str, joint: int) -> str:
+    """Tables of one axis; a rotary one is not wrapped, so that readings are what they are."""
+    is_linear = letter in "XYZ"
+    low, high = (v if is_linear else v / DEG for v in chain.link(letter).range)
+    return _text("axis.ini").format(
+        letter=letter,
+        joint=joint,
+        low=low,
+        high=high,
+        speed=SPEED,
+        acceleration=ACCELERATION,
+        kind="LINEAR" if is_linear else "ANGULAR",
+        home=min(max(0.0, low), high),
+    )
+
+
+def _positions(joints: int) -> str:
+    """Every joint is where it is told to be, at once."""
+    lines = []
+    for i in range(joints):
+        summed = _SUMMED[i] if i < len(_SUMMED) else ""
+        to = f"joint.{i}.motor-pos-fb prober.joint-{i} {summed}".rstrip()
+        lines.append(f"net position-{i} joint.{i}.motor-pos-cmd => {to}")
+    return "\n".join(lines)

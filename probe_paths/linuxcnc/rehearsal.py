@@ -1,0 +1,93 @@
+"""Programs of a design on LinuxCNC from beginning to end: planned again, run, log evaluated."""
+
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from artefact.body import Standard
+from probe_paths.campaign import SMALLEST_U, VirtualMachine, check_moves, evaluate
+from probe_paths.control import MAX_FEED, read_log, read_program
+from probe_paths.emit import Feeds, ProgramSet, make_programs
+from probe_paths.linuxcnc.latch import latch_error, latch_u
+from probe_paths.linuxcnc.machine_config import machine_files
+from probe_paths.linuxcnc.replanned import shortened
+from probe_paths.linuxcnc.session import machine_folder, run_on_linuxcnc
+from probe_paths.linuxcnc.twin_contact import TwinContact
+from twin.errors import DesignError
+from twin.files import write_whole
+from twin.frames import Array
+from twin.record import Run
+
+
+@dataclass(frozen=True, eq=False)
+class Rehearsal:
+    """What LinuxCNC measured.
+
+    Attributes:
+        run: Evaluated from its own logs.
+        u: Standard uncertainty of every touch, noise and latch, mm.
+        latched: How far each logged position lies beyond the twin's contact, (N,), mm.
+        modelled: How far it may at most, mm.
+    """
+
+    run: Run
+    u: float
+    latched: Array
+    modelled: float
+
+
+def rehearse(
+    files: Sequence[Path],
+    standard: Standard,
+    machine: VirtualMachine,
+    rng: np.random.Generator,
+    out: Path,
+    count: int | None = None,
+    user: str = "",
+    told: Callable[[ProgramSet], None] = lambda made: None,
+) -> Rehearsal:
+    """Run programs of one set-up on LinuxCNC; programs and logs stay in a folder, come what may.
+
+    Args:
+        files: Programs of a design, for any control.
+        standard: The true one.
+        machine: As it really is; its dialect is that of LinuxCNC.
+        rng: For the noise of the trigger.
+        out: Folder for programs, logs and what LinuxCNC said.
+        count: Touches that are made; None for all.
+        user: Who runs LinuxCNC, as `installed` gives it.
+        told: Told of the programs before they run.
+
+    Raises:
+        DesignError: A control that stopped, died or was too busy; the folder says how far it came.
+        BadFile: A program that no cautious operator would start.
+    """
+    chain, dialect = machine.chain, machine.dialect
+    given = [read_program(path, chain) for path in files]
+    # feeds near nothing that is measured: as high as a program may state them
+    feeds = Feeds(approach=MAX_FEED, turning=MAX_FEED)
+    made = make_programs(shortened(given, standard, chain, count), dialect, feeds)
+    programs = [read_program(path, chain) for path in made.write(out)]
+    for program in programs:
+        check_moves(program, standard, chain)
+    contact = TwinContact(programs, standard, machine, rng)
+    told(made)
+    folder = machine_folder(user)
+    try:
+        config = machine_files(chain, programs[0].heading.probe, dialect, str(folder / "probe"))
+        session = run_on_linuxcnc(made.programs, config, contact, folder / "probe", user)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    for name, text in {**session.logs, "linuxcnc.txt": session.said}.items():
+        write_whole(out / name, text)
+    if session.outcome:
+        raise DesignError(f"{session.outcome}; what was logged is kept in {out}")
+    contact.check_in_time()
+    parts = [p for name in session.logs for p in read_log(out / name, chain.rotary_axes)]
+    slow = programs[0].touches[0].slow_feed
+    u = float(np.hypot(max(machine.noise, SMALLEST_U), latch_u(slow)))
+    run = evaluate(parts, standard, chain, u, dialect)
+    return Rehearsal(run, u, contact.latched(parts), latch_error(slow))

@@ -1,0 +1,234 @@
+"""Starts an installed LinuxCNC on a machine of ours, answers its probe, and keeps its log."""
+
+import json
+import os
+import pwd
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TextIO
+
+from probe_paths.emit import Program
+from probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, PROBER, PROGRAMS, SAID
+from probe_paths.linuxcnc.twin_contact import TwinContact
+from twin.errors import DesignError
+
+NEEDED = ("linuxcnc", "halcmd", "halrun")
+LOCK = Path("/tmp/linuxcnc.lock")
+"""LinuxCNC's own: one runs on a computer at a time."""
+
+_TROUBLE = re.compile(r"error|failed|exited|abort|killed", re.IGNORECASE)
+
+_SHUTDOWN = 30.0
+"""How long LinuxCNC may take to end, s; it took 3 s."""
+
+
+@dataclass(frozen=True)
+class Session:
+    """What one session left.
+
+    Attributes:
+        logs: Text of every log file by name, whole or as far as it came.
+        outcome: Empty where every program came to its end; else what stopped it, in one line.
+        said: All that LinuxCNC printed.
+    """
+
+    logs: Mapping[str, str]
+    outcome: str
+    said: str
+
+
+def run_on_linuxcnc(
+    programs: Sequence[Program],
+    files: Mapping[str, str],
+    contact: TwinContact,
+    socket_path: Path,
+    user: str = "",
+    patience: float = 3.0,
+) -> Session:
+    """Run programs one after the other.
+
+    Args:
+        programs: For LinuxCNC.
+        files: Of the machine.
+        contact: Decides every touch.
+        socket_path: Where the component of the probe asks; its folder is the machine's.
+        user: Who runs LinuxCNC; needed where we are root, as LinuxCNC refuses that.
+        patience: A program is stopped after so many times its planned duration and a minute.
+
+    Raises:
+        DesignError: LinuxCNC is not installed, runs already, or there is no user for it.
+    """
+    folder = socket_path.parent
+    _write(folder, files, programs, patience)
+    server = _listening(socket_path)
+    answering = threading.Thread(target=_answer, args=(server, contact), daemon=True)
+    answering.start()
+    longest = sum(60.0 + patience * p.duration for p in programs) + _SHUTDOWN
+    with (folder / "linuxcnc.txt").open("w") as said:
+        process = subprocess.Popen(
+            ["linuxcnc", "-r", "machine.ini"],
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            stdout=said,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            env=_environment(folder),
+            user=user or None,
+        )
+        try:
+            failed = _watched(process, contact, longest)
+        finally:
+            _ended(process, folder, user)
+            server.close()
+    text = (folder / "linuxcnc.txt").read_text(encoding="utf-8", errors="replace")
+    logs = {p.name: p.read_text(errors="replace") for p in sorted(folder.glob("*_*.TXT"))}
+    return Session(logs, failed or _outcome(folder, programs, text), text)
+
+
+def installed(user: str) -> str:
+    """User who can run LinuxCNC here, empty for ourselves.
+
+    Raises:
+        DesignError: It is not installed, it runs already, or we are root and nobody else is named.
+    """
+    missing = [name for name in NEEDED if shutil.which(name) is None]
+    if missing:
+        raise DesignError(
+            f"LinuxCNC is not installed here ({', '.join(missing)} not found); docs/controls.md "
+            "says how to install it"
+        )
+    if LOCK.exists():
+        raise DesignError(f"LinuxCNC runs already on this computer ({LOCK}); end it first")
+    if os.geteuid() == 0 and not user:
+        raise DesignError("LinuxCNC refuses to run as root: name an ordinary user by --user")
+    if user:
+        try:
+            entry = pwd.getpwnam(user)
+        except KeyError:
+            raise DesignError(f"--user {user}: no such user on this computer") from None
+        if entry.pw_uid == 0:
+            raise DesignError(f"--user {user}: LinuxCNC refuses root, expected an ordinary user")
+        if os.geteuid() not in (0, entry.pw_uid):
+            raise DesignError(f"--user {user}: only root can start LinuxCNC as somebody else")
+        return user if entry.pw_uid != os.geteuid() else ""
+    return ""
+
+
+def machine_folder(user: str) -> Path:
+    """A new folder in which that user may write; the caller removes it."""
+    folder = Path(tempfile.mkdtemp(prefix="matstd-linuxcnc-"))
+    if user:
+        shutil.chown(folder, user)
+    return folder
+
+
+def _write(
+    folder: Path, files: Mapping[str, str], programs: Sequence[Program], patience: float
+) -> None:
+    """All files that LinuxCNC reads; it only appends logs and saves its variables."""
+    queue = [f"{p.file} {60.0 + patience * p.duration:.0f}\n" for p in programs]
+    written = {p.file: p.text for p in programs} | dict(files) | {PROGRAMS: "".join(queue)}
+    for name, text in written.items():
+        (folder / name).write_text(text)
+    for name in (PROBER, HEADLESS):
+        shutil.copyfile(BESIDE / name, folder / name)
+        (folder / name).chmod(0o755)
+    owner = folder.stat()
+    for path in folder.iterdir():
+        os.chown(path, owner.st_uid, owner.st_gid)
+
+
+def _environment(folder: Path) -> dict[str, str]:
+    """No screen, and a home in which LinuxCNC may leave what it likes."""
+    keep = {k: v for k, v in os.environ.items() if k in ("PATH", "LANG", "LC_ALL", "TMPDIR")}
+    return keep | {"HOME": str(folder)}
+
+
+def _listening(path: Path) -> socket.socket:
+    server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    server.bind(str(path))
+    path.chmod(0o777)
+    server.listen(1)
+    return server
+
+
+def _answer(server: socket.socket, contact: TwinContact) -> None:
+    """Answer the one component that asks, until it goes."""
+    try:
+        link, _ = server.accept()
+    except OSError:  # LinuxCNC ended before it asked
+        return
+    with link, link.makefile("rw") as stream:
+        for line in stream:
+            _reply(stream, json.loads(line), contact)
+
+
+def _reply(stream: TextIO, question: dict[str, list[float]], contact: TwinContact) -> None:
+    answer = None
+    if "late" in question:
+        contact.arrived_late(float(question["late"]))  # type: ignore[arg-type]
+    else:
+        try:
+            answer = contact.travel(question["joints"], question["direction"])
+        except DesignError as error:
+            contact.failure = str(error)
+    stream.write(json.dumps(answer) + "\n")
+    stream.flush()
+
+
+def _watched(process: subprocess.Popen[bytes], contact: TwinContact, longest: float) -> str:
+    """Wait for the end; why it is not waited for, or nothing."""
+    end = time.monotonic() + longest
+    while process.poll() is None:
+        if contact.failure:
+            return contact.failure
+        if time.monotonic() > end:
+            return "LinuxCNC took more than three times as long as planned and was ended"
+        time.sleep(0.1)
+    return ""
+
+
+def _ended(process: subprocess.Popen[bytes], folder: Path, user: str) -> None:
+    """LinuxCNC and all that it started are gone, its lock with them."""
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGTERM)
+        try:
+            process.wait(_SHUTDOWN)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+    if LOCK.exists():
+        subprocess.run(
+            ["halrun", "-U"],
+            cwd=folder,
+            env=_environment(folder),
+            user=user or None,
+            capture_output=True,
+            timeout=_SHUTDOWN,
+            check=False,
+        )
+        LOCK.unlink(missing_ok=True)
+
+
+def _outcome(folder: Path, programs: Sequence[Program], said: str) -> str:
+    """What the operator says of it; empty where all programs are done."""
+    file = folder / SAID
+    lines = file.read_text().splitlines() if file.exists() else []
+    stopped = [line for line in lines if line.startswith("stopped ")]
+    if stopped:
+        return f"LinuxCNC {stopped[0]}"
+    done = [line.removeprefix("done ") for line in lines if line.startswith("done ")]
+    left = [p.file for p in programs if p.file not in done]
+    if not left:
+        return ""
+    words = [line.strip() for line in said.splitlines() if _TROUBLE.search(line)]
+    return f"LinuxCNC died in {left[0]}: {words[0][:200] if words else 'it said nothing of why'}"

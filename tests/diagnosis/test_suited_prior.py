@@ -1,0 +1,100 @@
+"""The factor on the prior that suits a machine, against another library and plain least squares."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_t
+
+from diagnosis.fit.identification import fit_run
+from diagnosis.fit.prior import Prior
+from diagnosis.fit.suited_prior import _evidence
+from diagnosis.geometry.learnt import geometry_rows
+from diagnosis.regression.noise import PRIOR_DOF
+from twin.library.ordinary import ordinary_model
+from twin.machine.chain import Axis, make_chain
+from twin.record.run import Run
+from twin.record.touches import Setup, Touches
+from twin.units import UM, URAD
+
+NOISE = 3.0 * UM
+SCALE, SQUARE = -18e-6, 41.0 * URAD
+
+
+def holes(seed: int, size: float = 1.0) -> Run:
+    """35 holes drilled by X and Y, x and y of each measured elsewhere: scale, squareness, noise."""
+    rng = np.random.default_rng(seed)
+    chain = make_chain("mill", "[w f X Y t]", {"X": Axis((0.0, 500.0)), "Y": Axis((0.0, 320.0))})
+    x, y = (v.ravel() for v in np.meshgrid(np.linspace(20.0, 480.0, 7), np.linspace(15, 310, 5)))
+    place = np.repeat(np.column_stack([x, y, np.zeros(len(x))]), 2, axis=0)
+    normal = np.tile([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], (len(x), 1))
+    # the machine believes to drill at x, y and drills at x (1 + e) - s y, y
+    error = np.zeros_like(place)
+    error[:, 0] = size * (SCALE * place[:, 0] - SQUARE * place[:, 1])
+    n = len(place)
+    touches = Touches(
+        chain=chain,
+        q=place[:, :2],
+        length=np.zeros(n),
+        radius=np.zeros(n),
+        point=place,
+        normal=normal,
+        setups=(Setup("a"),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=np.zeros(n),
+        approach=np.zeros((n, 2)),
+        pose=np.repeat(np.arange(len(x)), 2),
+    )
+    deviation = -(error * normal).sum(axis=1) + rng.normal(0.0, NOISE, n)
+    return Run(touches=touches, deviation=deviation, u=np.full(n, NOISE))
+
+
+def test_evidence_is_that_of_a_multivariate_t_distribution():
+    rng = np.random.default_rng(1)
+    X, y = rng.normal(size=(30, 8)), rng.normal(size=30)
+    factors = [np.ones(8), np.full(8, 0.25), rng.uniform(0.1, 1.0, 8)]
+    ours = [_evidence(X.T @ X, X.T @ y, float(y @ y), 30, f) for f in factors]
+    theirs = [
+        multivariate_t(np.zeros(30), np.eye(30) + (X * f**2) @ X.T, df=PRIOR_DOF).logpdf(y)
+        for f in factors
+    ]
+    np.testing.assert_allclose(np.diff(ours), np.diff(theirs), rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_good_machine_is_told_as_well_as_by_least_squares_of_what_is_there(seed):
+    run = holes(seed)
+    model = ordinary_model(run.touches.chain)
+    fit = fit_run(run, model)
+    wide = fit_run(run, model, Prior.of_effects(model.effects))
+    assert fit.prior.factor[: len(model.parameters)].min() < 0.1
+    assert fit.test_rms < wide.test_rms
+    rows = {r.symbol: r for r in geometry_rows(fit)}
+    x, y = run.touches.point[:, 0], run.touches.point[:, 1]
+    nx, ny = run.touches.normal[:, 0], run.touches.normal[:, 1]
+    A = np.column_stack([nx, ny, ny * x - nx * y, -nx * x, -ny * y, nx * y])  # place, then errors
+    theta = np.linalg.lstsq(A, run.deviation, rcond=None)[0]
+    u = NOISE * np.sqrt(np.diag(np.linalg.inv(A.T @ A)))
+    for symbol, k in (("EXX", 3), ("EC0Y", 5)):
+        row = rows[symbol]
+        assert row.is_determined
+        assert abs(row.estimate.value - theta[k]) < u[k]
+        assert row.estimate.u < 1.5 * u[k]
+    # what is expected of the class stays what it is: only the belief for this machine is narrower
+    wide_rows = {r.symbol: r for r in geometry_rows(wide)}
+    assert rows["EXX"].expected == pytest.approx(wide_rows["EXX"].expected)
+
+
+def test_lines_keep_what_is_expected_of_them_and_so_does_a_machine_of_its_class():
+    run = holes(1, size=25.0)
+    model = ordinary_model(run.touches.chain)
+    factor = fit_run(run, model).prior.factor[: len(model.parameters)]
+    bends = np.array(
+        [getattr(e, "shape", "") in ("parabolic", "sinusoidal") for e in model.effects]
+    )
+    assert (factor[~bends] == 1.0).all()
+    # X is bowed by 120 µm, as an ordinary machine may be: one curve of many, so not quite the class
+    x = run.touches.point[:, 0]
+    bow = 120.0 * UM * ((x - 250.0) / 250.0) ** 2 * run.touches.normal[:, 1]
+    bowed = fit_run(replace(run, deviation=run.deviation - bow), model)
+    assert bowed.prior.factor.min() > factor.min()
