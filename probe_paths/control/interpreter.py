@@ -6,6 +6,7 @@ and stands with the touch.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +22,13 @@ from probe_paths.control.structure import (
     program_name,
     promise,
 )
-from probe_paths.language import Dialect, read_blocks
+from probe_paths.language import Dialect, interlocks, language_of, read_blocks
 from probe_paths.plan import Heading, Probe, ProgramFrame
 from twin.errors import BadFile
 from twin.machine import Chain
+
+_BEYOND = 1.05
+"""Of its limit, what is off where it is tried whether a program stops."""
 
 
 def read_program(
@@ -99,10 +103,13 @@ def interpret(
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head.log_lines)
-    state = State(path, frame, np.full(len(chain.axes), np.nan), np.zeros(len(chain.axes)))
+    state = _begun(path, frame)
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
+    for test in interlocks(language_of(path), frame):
+        for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
+            runner.run(0, replace(_begun(path, frame), fault=test, off=off))
     for touch in steps:
         if isinstance(touch, ProbeStep) and touch.feature not in features:
             raise BadFile(
@@ -112,6 +119,12 @@ def interpret(
                 "a number of the head's list (;FEATURE <number> IS <name>)",
             )
     return ReadProgram(path=path, name=name, heading=head, features=features, steps=tuple(steps))
+
+
+def _begun(path: Path, frame: ProgramFrame) -> State:
+    """The control when a program is started: nobody knows where its axes stand."""
+    axes = len(frame.chain.axes)
+    return State(path, frame, np.full(axes, np.nan), np.zeros(axes))
 
 
 def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:

@@ -7,9 +7,6 @@ from probe_paths.language import TOOL_LENGTH, Block, Datum, Kind, language_of
 from probe_paths.plan import LINEAR
 from twin.units import DEG
 
-SAME_LENGTH = 1e-4
-"""Four decimals of a length, mm."""
-
 MAX_PROBING_FEED = 1000.0
 """Above this a cycle 4 is refused, mm/min: the trigger delay and the overtravel grow with it."""
 
@@ -22,27 +19,34 @@ LONGEST_SEARCH = 10.0
 
 
 def system_datum(block: Block, state: State) -> float:
-    """Calibration of the probe, number of the tool, nominal rotary positions."""
-    probe = state.frame.probe
-    places = {Datum(a): a for a in state.frame.letters if a not in LINEAR}
+    """Calibration of the probe, number of the tool, positions, end of Z, basic rotation."""
+    frame, probe = state.frame, state.frame.probe
     known = {
         Datum.RADIUS: probe.radius,
         Datum.LENGTH: probe.tool_length,
         Datum.OFFSET_X: 0.0,
         Datum.OFFSET_Y: 0.0,
+        Datum.ROTATION: 0.0,
+        Datum.TOP: frame.chain.link("Z").range[1],
     }
+    places = {Datum(word) for a in frame.letters for word in (a, f"preset {a}")}
+    for letter in frame.letters:
+        # where the tool changer left an axis, its position is any, with and without the preset
+        reading = float(np.nan_to_num(state.q[frame.chain.axis_index(letter)]))
+        known[Datum(letter)] = reading if letter in LINEAR else reading / DEG
+        known[Datum(f"preset {letter}")] = frame.coordinate(letter, reading)
     if state.tool is not None:
         known[Datum.TOOL] = float(state.tool)
     system = language_of(state.path).SYSTEM
     datum = next((d for d, text in system.items() if text == block.word("datum")), None)
-    if datum in places:
-        if not state.is_synchronous:
-            raise state.refusal(block, "a position read ahead", f"{state.says.sync} before it")
-        return float(state.q[state.frame.chain.axis_index(places[datum])]) / DEG
     if datum is None or datum not in known:
-        available = ", ".join(system[d] for d in (*known, *places))
+        available = ", ".join(system[d] for d in known if d in system)
         raise state.refusal(block, block.word("datum"), f"one of {available}")
-    return known[datum]
+    if datum in places and not state.is_synchronous:
+        raise state.refusal(block, "a position read ahead", f"{state.says.sync} before it")
+    fault = state.fault
+    is_off = fault is not None and datum == (fault.work or fault.datum)
+    return known[datum] + is_off * state.off
 
 
 def check_cycle(state: State, block: Block, vector: Block, length: float) -> None:
@@ -105,11 +109,15 @@ def _tool_call(block: Block, state: State) -> None:
         expected = f"{says.reset} and a retract with {says.machine} before it"
         raise state.refusal(block, repr(block.text), expected)
     state.tool = int(block.word("tool"))
-    state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length
-    state.length_off, state.length_tests = None, set()
+    is_other = state.fault is not None and state.fault.datum is None
+    state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length + is_other * state.off
     # the tool changer leaves the linear axes wherever its builder wanted
     state.q[state.frame.linear] = np.nan
     state.is_retracted = False
+
+
+def _spindle_off(block: Block, state: State) -> None:
+    state.is_spindle_off = True
 
 
 def _wait(block: Block, state: State) -> None:
@@ -125,15 +133,13 @@ def _subtract(block: Block, state: State) -> None:
     if not isinstance(value, float):
         raise state.refusal(block, repr(block.text), "a number, not the result of a touch")
     state.write(block, int(block.word("q")), value - block.number("value"))
-    if int(block.word("from")) == TOOL_LENGTH:
-        planned = state.frame.probe.tool_length
-        if abs(block.number("value") - planned) > SAME_LENGTH:
-            raise state.refusal(
-                block,
-                f"a length of {block.number('value'):g} mm",
-                f"{planned:g} mm, as the head says",
-            )
-        state.length_off = int(block.word("q"))
+
+
+def _minus(block: Block, state: State) -> None:
+    value, other = (state.value(block, int(block.word(name))) for name in ("from", "other"))
+    if not isinstance(value, float) or not isinstance(other, float):
+        raise state.refusal(block, repr(block.text), "numbers, not results of touches")
+    state.write(block, int(block.word("q")), value - other)
 
 
 _SETTERS = {
@@ -148,4 +154,6 @@ _SETTERS = {
     Kind.WAIT: _wait,
     Kind.ASSIGN: _assign,
     Kind.SUBTRACT: _subtract,
+    Kind.MINUS: _minus,
+    Kind.SPINDLE_OFF: _spindle_off,
 }

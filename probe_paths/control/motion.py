@@ -139,7 +139,7 @@ def _check_height(
             return
         if letters != ["Z"] or not np.all(np.isfinite(target[state.frame.linear])):
             raise state.refusal(block, repr(block.text), "X and Y at the retract, then Z alone")
-        state.check_length_was_tested(block)
+        state.check_is_as_planned(block)
         state.is_retracted, state.clearance = False, after
         return
     assert state.clearance is not None

@@ -11,8 +11,8 @@ from probe_paths.control.motion import retract_max, straight_line
 from probe_paths.control.state import State
 from probe_paths.control.steps import STATUS, Halt, Move, Print, ProbeStep, Result, Step
 from probe_paths.language import (
-    LENGTH_LIMIT,
     Block,
+    Interlock,
     Kind,
     MaskLine,
     Q,
@@ -94,7 +94,10 @@ class Runner:
                 self._check_end(state, block, returns)
                 return steps
             if block.kind is Kind.ERROR:
-                self._check_halt(block, steps, is_branch)
+                if state.fault is None:
+                    self._check_halt(block, steps, is_branch)
+                else:
+                    self._check_alarm(i, state, state.fault)
                 return [*steps, Halt(block.line, int(block.word("number")))]
             i = self._next(i, block, state, returns, steps)
 
@@ -126,8 +129,6 @@ class Runner:
         value = state.value(block, int(block.word("q" if is_less else "q_greater")))
         target, limit = self.places[int(block.word("label"))] + 1, block.number("limit")
         if not isinstance(value, Result):
-            if state.length_off == int(block.word("q" if is_less else "q_greater")):
-                self._length_test(block, state, is_less)
             return target if (value < limit if is_less else value > limit) else i + 1
         if value.part != STATUS or limit != 0.0 or not is_less:
             raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
@@ -135,22 +136,6 @@ class Runner:
         missed = state.copied()
         self.touches[value.touch].on_miss.extend(self.run(target, missed, is_branch=True))
         return i + 1
-
-    def _length_test(self, block: Block, state: State, is_less: bool) -> None:
-        """A jump that stops the program where the called tool is not as long as the probe."""
-        limit = -block.number("limit") if is_less else block.number("limit")
-        if limit > LENGTH_LIMIT:
-            raise state.refusal(
-                block, f"a length that may differ by {limit:g} mm", f"{LENGTH_LIMIT} mm at most"
-            )
-        for other in self.blocks[self.places[int(block.word("label"))] + 1 :]:
-            if other.kind is Kind.ERROR:
-                state.length_tests.add("LT" if is_less else "GT")
-                return
-            if other.kind not in _SILENT:
-                raise state.refusal(
-                    other, repr(other.text), f"{state.says.halt} after another length"
-                )
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
         """Every block that changes the state or does something."""
@@ -286,6 +271,16 @@ class Runner:
             raise state.refusal(block, "M30 inside a subprogram", "LBL 0 at its end")
         if not state.is_retracted:
             raise state.refusal(block, "M30", f"a retract ({state.says.retract}) at the end")
+
+    def _check_alarm(self, i: int, state: State, fault: Interlock) -> None:
+        """A stop says what is wrong by the label that it stands behind."""
+        label = next(b for b in reversed(self.blocks[:i]) if b.kind is Kind.LABEL)
+        if label.word("label") != str(int(fault.label)):
+            raise state.refusal(
+                self.blocks[i],
+                f"a stop behind LBL {label.word('label')} where {fault.what} is off",
+                f"LBL {fault.label:d}, the alarm of that",
+            )
 
     def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
         """Only a touch without contact may end a program early, and only after a retract."""

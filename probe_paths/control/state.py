@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from probe_paths.control.steps import Value
-from probe_paths.language import FREE, LENGTH_LIMIT, Block, Says, language_of
+from probe_paths.language import FREE, Block, Interlock, Says, language_of
 from probe_paths.plan import ProgramFrame
 from twin.errors import BadFile
 from twin.frames import Array
@@ -42,9 +42,10 @@ class State:
         untested: Touch whose status was not looked at yet.
         way_back: Readings that the next move must return to after a touch.
         is_synchronous: FN 20 was read since the last motion.
-        length_off: Parameter that holds how much longer the called tool is than the planned probe.
+        is_spindle_off: M5 has been read.
+        fault: What is not as planned while it is tried whether the program stops.
         stale: Counters that belong to the touch or the visit before.
-        length_tests: Which ends of its tolerance a jump has tested, "LT" and "GT".
+        off: By how much, mm or degrees.
     """
 
     path: Path
@@ -65,8 +66,9 @@ class State:
     untested: int | None = None
     way_back: Array | None = None
     is_synchronous: bool = False
-    length_off: int | None = None
-    length_tests: set[str] = field(default_factory=set)
+    is_spindle_off: bool = False
+    fault: Interlock | None = None
+    off: float = 0.0
     stale: set[int] = field(default_factory=set)
 
     def copied(self) -> "State":
@@ -74,7 +76,7 @@ class State:
         other = copy.copy(self)
         other.q, other.side = self.q.copy(), self.side.copy()
         other.parameters, other.shift_off = dict(self.parameters), set(self.shift_off)
-        other.length_tests, other.stale = set(self.length_tests), set(self.stale)
+        other.stale = set(self.stale)
         return other
 
     @property
@@ -91,6 +93,7 @@ class State:
         missing = [
             name
             for name, there in (
+                ("M5", self.is_spindle_off or "M5" not in language_of(self.path).RESET),
                 (self.says.reset, self.is_tcpm_off),
                 (self.says.plane, self.is_plane_off),
                 (self.says.shift, self.shift_off == set("XYZ")),
@@ -102,13 +105,13 @@ class State:
         if missing:
             raise self.refusal(block, what, f"{missing[0]} before it")
 
-    def check_length_was_tested(self, block: Block) -> None:
-        """No tool goes down whose length has not been held against the planned probe's."""
-        if self.length_tests != {"LT", "GT"}:
+    def check_is_as_planned(self, block: Block) -> None:
+        """No probe goes down where something is not as planned and could have been tested."""
+        if self.fault is not None:
             raise self.refusal(
                 block,
-                f"{block.text!r} with a tool of untested length",
-                f"{self.says.length} less the planned length, {LENGTH_LIMIT} mm at most, before it",
+                f"{block.text!r} although {self.fault.what} is off by {self.off:+g}",
+                f"a test that stops the program before it (LBL {self.fault.label:d})",
             )
 
     def check_status_was_tested(self, block: Block) -> None:
@@ -126,8 +129,6 @@ class State:
             raise self.refusal(block, f"Q{q}", f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}")
         self.parameters[q] = value
         self.stale.discard(q)
-        if q == self.length_off:
-            self.length_off = None
 
     def value(self, block: Block, q: int) -> Value:
         """A Q parameter that has been set in this run; nothing left over from others counts."""

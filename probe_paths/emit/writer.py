@@ -7,18 +7,18 @@ import numpy as np
 
 from probe_paths.language import (
     LANGUAGES,
-    LENGTH_LIMIT,
     MAX_LINE,
     TOOL_LENGTH,
     Datum,
     Dialect,
     ErrorText,
+    Interlock,
     Label,
     Q,
     SharedMask,
     Touch,
+    interlocks,
     parse_mask,
-    signed,
 )
 from probe_paths.plan import (
     LINEAR,
@@ -66,6 +66,7 @@ class Writer:
         self.language = LANGUAGES[dialect.language]
         self.frame = ProgramFrame(plan.chain, plan.probe)
         self.rotary = plan.chain.rotary_axes
+        self.tests = interlocks(self.language, self.frame)
         self.number = {name: i + 1 for i, name in enumerate(plan.standard.features)}
         self.heading = Heading(
             standard=plan.standard.name,
@@ -99,7 +100,7 @@ class Writer:
     def _remarks(self, rows: IntArray, duration: float) -> list[str]:
         """What the operator must know, and what a reader of the text must."""
         k, probe = self.language, self.plan.probe
-        table = f"L{signed(probe.tool_length)} R{signed(probe.radius)}"
+        table = f"L{probe.tool_length:+.4f} R{probe.radius:+.4f}"
         used = dict.fromkeys(self.plan.feature[rows].tolist())
         features = sorted(used, key=self.number.__getitem__)
         return [
@@ -152,10 +153,38 @@ class Writer:
             k.read(Q.OFFSET_Y, Datum.OFFSET_Y),
             k.read(Q.TOOL, Datum.TOOL),
             k.assign(Q.PRESET, self.dialect.preset),
-            k.difference(Q.LENGTH_OFF, TOOL_LENGTH, self.plan.probe.tool_length),
-            k.jump_if_less(Q.LENGTH_OFF, -LENGTH_LIMIT, Label.OTHER_PROBE),
-            k.jump_if_greater(Q.LENGTH_OFF, LENGTH_LIMIT, Label.OTHER_PROBE),
             self._print(f"{name}.A", name),
+            k.structure("TEST PROBE, PRESET AND MACHINE"),
+            *(block for test in self.tests for block in self._tested(test)),
+        ]
+
+    def _tested(self, test: Interlock) -> list[str]:
+        """Read, take off what is planned, and stop where too much is left."""
+        k = self.language
+        if test.datum is None:
+            rest = [k.difference(Q.CHECK, TOOL_LENGTH, test.planned)]
+        else:
+            rest = [k.read(Q.CHECK, test.datum)]
+            if test.work is not None:
+                rest += [k.read(Q.CHECK_WORK, test.work), k.minus(Q.CHECK, Q.CHECK_WORK)]
+            rest += [k.difference(Q.CHECK, Q.CHECK, test.planned)] if test.planned else []
+        return [
+            *rest,
+            k.jump_if_less(Q.CHECK, -test.limit, test.label),
+            k.jump_if_greater(Q.CHECK, test.limit, test.label),
+        ]
+
+    def _alarms(self) -> list[str]:
+        """What stops the program where a test fails; the number of the label is the alarm."""
+        k = self.language
+        return [
+            block
+            for test in self.tests
+            for block in (
+                k.label(test.label, f"ALARM {test.label:d}: {test.what.upper()}"),
+                k.OPERATOR_STOP,
+                k.stop_with_error(ErrorText.INPUT_VALUE_INCORRECT),
+            )
         ]
 
     def _print(self, mask: str, name: str) -> str:
@@ -221,9 +250,7 @@ class Writer:
             self._print(f"{SharedMask.POINT}.A", name),
             k.LABEL_END,
             *missed,
-            k.label(Label.OTHER_PROBE, "NOT THE PROBE OF THE PLAN"),
-            k.OPERATOR_STOP,
-            k.stop_with_error(ErrorText.INPUT_VALUE_INCORRECT),
+            *self._alarms(),
         ]
 
 

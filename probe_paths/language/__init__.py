@@ -9,7 +9,6 @@ function in every language, a pattern in its reader and an execution in `probe_p
 from probe_paths.language.blocks import Block, Kind
 from probe_paths.language.dialect import (
     FREE,
-    LENGTH_LIMIT,
     TOOL_LENGTH,
     Dialect,
     ErrorText,
@@ -17,6 +16,7 @@ from probe_paths.language.dialect import (
     Q,
 )
 from probe_paths.language.dialect_file import read_dialect
+from probe_paths.language.interlock import Interlock, interlocks
 from probe_paths.language.language import Datum, Says, Touch
 from probe_paths.language.languages import LANGUAGES, language_of, read_blocks
 from probe_paths.language.masks import (
@@ -27,12 +27,11 @@ from probe_paths.language.masks import (
     parse_mask,
     shared_masks,
 )
-from probe_paths.language.text import MAX_LINE, checked_name, signed
+from probe_paths.language.text import MAX_LINE, checked_name
 
 __all__ = [
     "FREE",
     "LANGUAGES",
-    "LENGTH_LIMIT",
     "LOG_HEAD",
     "MAX_LINE",
     "TOOL_LENGTH",
@@ -40,6 +39,7 @@ __all__ = [
     "Datum",
     "Dialect",
     "ErrorText",
+    "Interlock",
     "Kind",
     "Label",
     "MaskLine",
@@ -49,10 +49,10 @@ __all__ = [
     "Touch",
     "checked_name",
     "head_mask",
+    "interlocks",
     "language_of",
     "parse_mask",
     "read_blocks",
     "read_dialect",
     "shared_masks",
-    "signed",
 ]

@@ -27,6 +27,7 @@ class Kind(Enum):
     STRUCTURE = r"\* - (?P<text>.+)"
     STOCK_LOW = rf"BLK FORM 0\.1 Z {_XYZ}"
     STOCK_HIGH = rf"BLK FORM 0\.2 {_XYZ}"
+    SPINDLE_OFF = r"M0?5"
     TCPM_ON = r"M128(?: F\d+)?"
     TCPM_OFF = r"M129"
     SHORTER_WAY = r"M126"
@@ -50,9 +51,10 @@ class Kind(Enum):
     # a control that saves a program leaves out blanks, zeros and the last line end
     ASSIGN = rf"FN ?0: Q(?P<q>\d+) ?= ?(?P<value>{_NUM})"
     SUBTRACT = rf"FN ?2: Q(?P<q>\d+) ?= ?\+?Q(?P<from>\d+) ?- ?(?P<value>{_NUM})"
+    MINUS = r"FN ?2: Q(?P<q>\d+) ?= ?\+?Q(?P<from>\d+) ?- ?\+?Q(?P<other>\d+)"
     JUMP = (
         r"FN ?1(?:2: ?IF ?\+?Q(?P<q>\d+) ?LT|1: ?IF ?\+?Q(?P<q_greater>\d+) ?GT) ?"
-        r"(?P<limit>[+-]\d+) GOTO LBL ?(?P<label>\d+)"
+        r"(?P<limit>[+-]\d+(?:\.\d*)?) GOTO LBL ?(?P<label>\d+)"
     )
     ERROR = r"FN ?14: ERROR ?= ?(?P<number>\d+)"
     PRINT = rf"FN ?16: F-PRINT (?P<mask>{_PATH}) ?/ ?(?P<target>{_PATH})"
@@ -88,7 +90,7 @@ _KNOWN_OTHERS = (
     (r"BEGIN|END", "BEGIN PGM <name> MM and END PGM <name> MM"),
 )
 _ANYTHING = (
-    "a block of the closed list: BEGIN END ; * BLK L M126 M127 M129 M140 PLANE CYCL TOOL TCH FN "
+    "a block of the closed list: BEGIN END ; * BLK L M5 M126 M127 M129 M140 PLANE CYCL TOOL TCH FN "
     "LBL CALL STOP M30"
 )
 

@@ -14,7 +14,6 @@ class Q(IntEnum):
     OFFSET_Y = 1604
     TOOL = 1605
     PRESET = 1606
-    LENGTH_OFF = 1607
     RESULT_X = 1610
     RESULT_Y = 1611
     RESULT_Z = 1612
@@ -24,6 +23,8 @@ class Q(IntEnum):
     FEATURE = 1622
     SIDE_1 = 1623
     SIDE_2 = 1624
+    CHECK = 1614
+    CHECK_WORK = 1615
     ROTARY_1 = 1631
     ROTARY_2 = 1632
 
@@ -36,11 +37,19 @@ FREE = range(1600, 2000)
 
 
 class Label(IntEnum):
-    """Subprograms of our programs."""
+    """Subprograms of our programs; from `OTHER_PROBE` on alarms, which docs/alarms.md explains."""
 
     LOG = 90
     NO_CONTACT = 91
     OTHER_PROBE = 92
+    RADIUS = 101
+    ROTATION = 102
+    TOP = 103
+    PRESET_X = 104
+    PRESET_Y = 105
+    PRESET_Z = 106
+    ZERO_1 = 107
+    ZERO_2 = 108
 
 
 class ErrorText(IntEnum):

@@ -175,18 +175,23 @@ def difference(q: int, minuend: int, subtrahend: float) -> str:
     return f"#{q:d} = [{_parameter(minuend)} - {signed(subtrahend)}]"
 
 
-def jump_if_less(q: int, limit: int, label: int) -> str:
+def minus(q: int, other: int) -> str:
+    """A parameter less another one."""
+    return f"#{q:d} = [#{q:d} - #{other:d}]"
+
+
+def jump_if_less(q: int, limit: float, label: int) -> str:
     """Call a subprogram that does not come back when a parameter is less than a number."""
     return _test(q, "LT", limit, label, 100 + label)
 
 
-def jump_if_greater(q: int, limit: int, label: int) -> str:
+def jump_if_greater(q: int, limit: float, label: int) -> str:
     """The same when it is greater."""
     return _test(q, "GT", limit, label, 200 + label)
 
 
-def _test(q: int, comparison: str, limit: int, label: int, number: int) -> str:
-    condition = f"O{number} IF [#{q:d} {comparison} {limit:+d}]"
+def _test(q: int, comparison: str, limit: float, label: int, number: int) -> str:
+    condition = f"O{number} IF [#{q:d} {comparison} {parameter(limit)}]"
     return LINE_END.join([condition, call(label), f"O{number} ENDIF"])
 
 

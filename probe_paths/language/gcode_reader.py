@@ -34,7 +34,8 @@ _LINES = {
     ),
     Kind.READ: rf"#(?P<q>\d+) = (?P<datum>{_SYSTEM})",
     Kind.ASSIGN: rf"#(?P<q>\d+) = (?P<value>{_NUM})",
-    Kind.SUBTRACT: rf"#(?P<q>\d+) = \[{g.LENGTH} - (?P<value>{_NUM})\]",
+    Kind.SUBTRACT: rf"#(?P<q>\d+) = \[#(?P<from>\d+) - (?P<value>{_NUM})\]",
+    Kind.MINUS: r"#(?P<q>\d+) = \[#(?P<from>\d+) - #(?P<other>\d+)\]",
     Kind.WAIT: re.escape(g.WAIT),
     Kind.CALL: r"O(?P<label>[1-9]\d*) CALL",
     Kind.LABEL: r"O(?P<label>[1-9]\d*) (?P<what>SUB(?: \(.*\))?|ENDSUB)",
@@ -43,7 +44,7 @@ _LINES = {
     Kind.PROGRAM_STOP: r"M30",
 }
 _PATTERNS = {kind: re.compile(pattern + r"\Z") for kind, pattern in _LINES.items()}
-_IF = re.compile(r"O(\d+) IF \[#(?P<q>\d+) (?P<than>LT|GT) (?P<limit>[+-]\d+)\]\Z")
+_IF = re.compile(r"O(\d+) IF \[#(?P<q>\d+) (?P<than>LT|GT) (?P<limit>[+-]\d+(?:\.\d+)?)\]\Z")
 _LOG = re.compile(r"\(LOG,(.*)\)\Z")
 _APPEND = re.compile(r"\(LOGAPPEND,([A-Z0-9_.]+)\)\Z")
 _VALUE = re.compile(r"#(\d+)")
@@ -213,7 +214,8 @@ def _straight(words: Words) -> Words:
 
 
 def _minuend(words: Words) -> Words:
-    return {**words, "from": str(TOOL_LENGTH)}
+    is_length = f"#{words['from']}" == g.LENGTH
+    return {**words, "from": str(TOOL_LENGTH) if is_length else words["from"]}
 
 
 def _label(words: Words) -> Words:

@@ -104,14 +104,19 @@ def difference(q: int, minuend: int, subtrahend: float) -> str:
     return f"FN 2: Q{q:d} = +Q{minuend:d} - {signed(subtrahend)}"
 
 
-def jump_if_less(q: int, limit: int, label: int) -> str:
-    """FN 12: go to a label when a parameter is less than a whole number."""
-    return f"FN 12: IF +Q{q:d} LT {limit:+d} GOTO LBL {label:d}"
+def minus(q: int, other: int) -> str:
+    """FN 2: a parameter less another one."""
+    return f"FN 2: Q{q:d} = +Q{q:d} - +Q{other:d}"
 
 
-def jump_if_greater(q: int, limit: int, label: int) -> str:
-    """FN 11: go to a label when a parameter is greater than a whole number."""
-    return f"FN 11: IF +Q{q:d} GT {limit:+d} GOTO LBL {label:d}"
+def jump_if_less(q: int, limit: float, label: int) -> str:
+    """FN 12: go to a label when a parameter is less than a number."""
+    return f"FN 12: IF +Q{q:d} LT {parameter(limit)} GOTO LBL {label:d}"
+
+
+def jump_if_greater(q: int, limit: float, label: int) -> str:
+    """FN 11: go to a label when a parameter is greater than a number."""
+    return f"FN 11: IF +Q{q:d} GT {parameter(limit)} GOTO LBL {label:d}"
 
 
 def stop_with_error(number: int) -> str:
@@ -162,6 +167,7 @@ def call(number: int) -> str:
 
 LABEL_END = "LBL 0"
 TCPM_OFF = "M129"
+SPINDLE_OFF = "M5"
 PLANE_OFF = "PLANE RESET STAY"
 SHORTER_WAY = "M126"
 SHORTER_WAY_OFF = "M127"
@@ -170,7 +176,7 @@ OPERATOR_STOP = "STOP"
 PROGRAM_STOP = "M30"
 
 
-RESET: Sequence[str] = (TCPM_OFF, PLANE_OFF, *datum_shift_off())
+RESET: Sequence[str] = (SPINDLE_OFF, TCPM_OFF, PLANE_OFF, *datum_shift_off())
 UNWIND: Sequence[str] = (SHORTER_WAY_OFF,)
 
 _CLOCK = ("T%3d:%3d:%3d", ("HOUR", "MIN", "SEC"))
@@ -190,6 +196,10 @@ SYSTEM: Mapping[Datum, str] = {
     Datum.A: "ID240 NR1 IDX4",
     Datum.B: "ID240 NR1 IDX5",
     Datum.C: "ID240 NR1 IDX6",
+    Datum.ROTATION: "ID210 NR1",
+    Datum.TOP: "ID230 NR3 IDX3",
+    **{Datum(a): f"ID240 NR1 IDX{i}" for i, a in enumerate("XYZ", start=1)},
+    **{Datum(f"preset {a}"): f"ID270 NR1 IDX{i}" for i, a in enumerate("XYZABC", start=1)},
 }
 
 SAYS = Says(

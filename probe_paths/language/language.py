@@ -15,16 +15,30 @@ from probe_paths.language.masks import LogForm, MaskLine
 
 
 class Datum(StrEnum):
-    """System data that our programs read; A, B, C are nominal positions of rotary axes."""
+    """System data that our programs read; X to C are nominal positions of the axes.
+
+    With `preset` before them they are those that the active preset makes of them.
+    """
 
     RADIUS = "radius of the calibrated ball"
     LENGTH = "length of the calibrated probe"
     OFFSET_X = "offset of the ball from the spindle axis in X"
     OFFSET_Y = "the same in Y"
     TOOL = "number of the called tool"
+    ROTATION = "basic rotation"
+    TOP = "upper software limit of Z"
+    X = "X"
+    Y = "Y"
+    Z = "Z"
     A = "A"
     B = "B"
     C = "C"
+    WORK_X = "preset X"
+    WORK_Y = "preset Y"
+    WORK_Z = "preset Z"
+    WORK_A = "preset A"
+    WORK_B = "preset B"
+    WORK_C = "preset C"
 
 
 class Touch(NamedTuple):
@@ -115,8 +129,9 @@ class Language(Protocol):
     def read(self, q: int, datum: Datum) -> str: ...
     def assign(self, q: int, value: float) -> str: ...
     def difference(self, q: int, minuend: int, subtrahend: float) -> str: ...
-    def jump_if_less(self, q: int, limit: int, label: int) -> str: ...
-    def jump_if_greater(self, q: int, limit: int, label: int) -> str: ...
+    def minus(self, q: int, other: int) -> str: ...
+    def jump_if_less(self, q: int, limit: float, label: int) -> str: ...
+    def jump_if_greater(self, q: int, limit: float, label: int) -> str: ...
     def stop_with_error(self, number: int) -> str: ...
     def printed(self, mask: str, lines: Sequence[MaskLine], target: str) -> str: ...
     def probe_vector(self, dialect: Dialect, result: int, touch: Touch) -> list[str]: ...

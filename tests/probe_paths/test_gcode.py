@@ -73,7 +73,7 @@ def test_the_collision_check_is_the_same(twins, small, chain, made):
     for i in (place, place + 3):  # to the start of the touch, and back to it
         lines[i] = re.sub(r"Z([+-][\d.]+)", lambda m: f"Z{float(m[1]) - 6.0:+.4f}", lines[i])
     dipped = interpret("\n".join([*lines, ""]).encode(), Path("MS_A_1.ngc"), {}.get, chain)
-    with pytest.raises(BadFile, match=r"line 12\d: found a gap of"):
+    with pytest.raises(BadFile, match=r"line 1[34]\d: found a gap of"):
         check_moves(dipped, small, chain)
 
 
@@ -151,7 +151,7 @@ def changed(text, old, new):
         ("T30 M6\n", "T31 M6\n", r"tool 30, expected 31"),
         (" G94\n", "\n", r"expected"),
         ("O192 IF", "O192 IF [1 EQ 1]\nO192 IF", "expected O<number> SUB"),
-        ("[#5403 - +163.0000]", "[#5403 - +165.0000]", r"165 mm, expected 163"),
+        ("[#5403 - +163.0000]", "[#5403 - +165.0000]", r"after a touch without contact"),
         ("#1613 = -1\n", "", r"status of the touch before|expected #1613 = -1"),
         ("[250] [+5.0000]", "[2500] [+5.0000]", r"F2500, expected F1 to F1000"),
         ("[+8.0000] [250]", "[+80.0000] [250]", r"at most 10 mm beyond"),
@@ -222,5 +222,5 @@ def test_the_interpreter_of_linuxcnc_takes_every_block(number, made, tmp_path):
     missed = rs274.interpreted(program.text, tmp_path)  # where nothing is simulated nothing is met
     assert "(ABORT,1014)" in missed
     assert "PROGRAM_END" not in missed
-    other_probe = re.sub(r"#1607 = .*", "#1607 = +5", program.text)
+    other_probe = re.sub(r"#1614 = .*", "#1614 = +5", program.text)
     assert "(ABORT,1011)" in rs274.interpreted(other_probe, tmp_path)

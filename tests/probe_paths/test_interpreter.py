@@ -160,7 +160,7 @@ SEEDED: dict[str, tuple[Change, str]] = {
     "status left over": (drop("FN 0: Q1613", 1), "FN 0: Q1613 = -1 before it"),
     "status never set": (drop("FN 0: Q1613"), "FN 0: Q1613 = -1 before it"),
     "length check the wrong way": (swap("LT -1", "LT +1"), "after a touch without contact"),
-    "length of another probe": (swap("- +163.0", "- +150.0"), "163 mm, as the head says"),
+    "length of another probe": (swap("- +163.0", "- +150.0"), "after a touch without contact"),
     "parameter left over": (drop("FN 0: Q1606"), "a parameter set by this program"),
     "touch number forgotten": (drop("FN 0: Q1620", 1), "touch set anew"),
     "stated side wrong": (edit(r"Q1623 = \+1", "Q1623 = -1"), "as it last moved"),
@@ -170,7 +170,7 @@ SEEDED: dict[str, tuple[Change, str]] = {
     "no log line": (drop("FN 16: F-PRINT TNC:\\MATSTD\\MSPOINT.A"), "FN 16 with its results"),
     "miss without retract": (drop("M140"), "M140 MB MAX, and no other move"),
     "miss goes on": (drop("FN 14"), "a subprogram that is called"),
-    "system datum unknown": (swap("ID350 NR12", "ID350 NR52"), "ID20 NR1, ID240 NR1"),
+    "system datum unknown": (swap("ID350 NR12", "ID350 NR52"), "one of ID350 NR11, ID350 NR12"),
     # what a cautious operator would notice
     "another tool": (swap("TOOL CALL 30 Z", "TOOL CALL 31 Z"), "31, as the program calls it"),
     "another preset": (swap("Q339=+1", "Q339=+2"), "2, as the program calls it"),
@@ -192,17 +192,29 @@ SEEDED: dict[str, tuple[Change, str]] = {
     ),
     "log of another name": (swap("MS_A_1.TXT", "MS_A_2.TXT", 1), "MS_A_1.TXT"),
     "masks of another folder": (swap("MATSTD\\MSPOINT", "NEW\\MSPOINT"), "where the log is"),
-    "interlock removed": (drop("FN 12: IF +Q1607"), "a tool of untested length"),
-    "other half of the interlock removed": (drop("FN 11: IF +Q1607"), "a tool of untested length"),
-    "interlock without its difference": (drop("FN 2:"), "Q1607 without a value"),
-    "interlock widened": (swap("GT +1 GOTO", "GT +50 GOTO"), "1 mm at most"),
-    "interlock that goes on": (drop("FN 14: ERROR= 1011"), "STOP and FN 14"),
+    "interlock without its difference": (drop("FN 2:"), "Q1614 without a value"),
+    "interlock that goes on": (drop("FN 14: ERROR= 1011"), "a subprogram that is called"),
     "interlock on another parameter": (
-        swap("FN 11: IF +Q1607", "FN 11: IF +Q1602"),
+        swap("FN 11: IF +Q1614", "FN 11: IF +Q1602"),
         "after a touch without contact",
     ),
+    "spindle not stopped": (drop("M5"), "M5 before it"),
     "loop without end": (insert("CALL LBL 90", "FN 12: IF +Q1613"), "expected at most 8"),
 }  # fmt: skip
+
+
+ALARMS = {
+    92: ("length of the tool", 1.05),
+    101: ("radius of the ball", 0.21),
+    102: ("basic rotation", 0.0525),
+    103: ("upper end of Z", 5.25),
+    104: ("preset in X", 1.05),
+    105: ("preset in Y", 1.05),
+    106: ("preset in Z", 1.05),
+    107: ("zero of C", 0.0525),
+    108: ("zero of B", 0.0525),
+}
+"""What is tested before the probe goes down, and what is off where that is tried."""
 
 
 @pytest.fixture(scope="session")
@@ -220,6 +232,36 @@ def test_every_seeded_error_is_found(name, first, programs, chain):
     with pytest.raises(BadFile, match=expected) as caught:
         interpret(renumbered(broken), Path("MS_A_1.H"), programs.masks.get, chain)
     assert re.match(r"MS_A_1\.H: (line \d+|head|file): found .*, expected ", str(caught.value))
+
+
+@pytest.mark.parametrize("label", ALARMS)
+@pytest.mark.parametrize("how", ["less", "greater", "wider", "elsewhere", "turned"])
+def test_a_test_of_the_control_that_is_weakened_is_found(label, how, first, programs, chain):
+    """One half removed, the limit tenfold, another alarm, another number held against it."""
+    what, off = ALARMS[label]
+    lines = bare(first.text)
+    less, greater = (
+        next(
+            i
+            for i, line in enumerate(lines)
+            if line.startswith(f"FN {n}: ") and f"L {label}" in line
+        )
+        for n in (12, 11)
+    )
+    expected = f"although {what} is off by [-+]{off}, expected a test .*LBL {label}"
+    if how in ("less", "greater"):
+        del lines[less if how == "less" else greater]
+    elif how == "wider":
+        lines[greater] = re.sub(r"GT \S+", "GT +50", lines[greater])
+    elif how == "elsewhere":
+        other = 92 if label != 92 else 101
+        lines[less] = lines[less].replace(f"LBL {label}", f"LBL {other}")
+        expected = f"a stop behind LBL {other} where {what} is off, expected LBL {label}"
+    else:
+        # a number that is right to half its limit today is wrong at the limit
+        lines.insert(less, f"FN 2: Q1614 = +Q1614 - {0.5 * off:+.4f}")
+    with pytest.raises(BadFile, match=expected):
+        interpret(renumbered(lines), Path("MS_A_1.H"), programs.masks.get, chain)
 
 
 def test_raw_faults_of_the_file_are_found(first, programs, chain):

@@ -68,7 +68,8 @@ def test_every_block_of_the_vocabulary_is_one_that_the_parser_knows():
         *k.probe_vector(Dialect(), 1610, Touch([0.0, 0.6, -0.8], 8.0, 250.0, 5.0)),
         k.printed("TNC:\\A\\M.A", [], "TNC:\\A\\L.TXT"), k.PROGRAM_STOP, k.label(90, "WHY"),
         k.jump_if_less(1613, 0, 91), k.jump_if_greater(1607, 2, 91),
-        k.difference(1607, 114, 163.5), k.LABEL_END, k.label(91), k.RETRACT_MAX, k.OPERATOR_STOP,
+        k.difference(1607, 114, 163.5), k.minus(1607, 1608), k.SPINDLE_OFF,
+            k.LABEL_END, k.label(91), k.RETRACT_MAX, k.OPERATOR_STOP,
         k.stop_with_error(1014), k.end("ALL"),
     ])  # fmt: skip
     blocks = read_blocks(text.encode("ascii"), "ALL.H")

@@ -271,7 +271,7 @@ def test_a_control_that_dies_half_way_leaves_its_log(
         ),
         (
             "echo 'stopped MS_A_1.ngc: M0' > headless.txt",
-            "LinuxCNC stopped MS_A_1.ngc: another probe than planned",
+            "LinuxCNC stopped MS_A_1.ngc: a test of probe, preset or machine",
         ),
         ("exit 1", "LinuxCNC died in MS_A_1.ngc: it said nothing of why"),
         (

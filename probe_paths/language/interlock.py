@@ -1,0 +1,64 @@
+"""What a program tests on the control before the probe goes down, and stops where it is not so.
+
+Every test takes a system datum (or the difference of two), subtracts what the plan has, and goes to
+a label that stops the program where the rest is beyond a limit. The number of the label is the
+alarm that the operator reads. A language without a datum has no such test.
+"""
+
+from typing import NamedTuple
+
+from probe_paths.language.dialect import LENGTH_LIMIT, Label
+from probe_paths.language.language import Datum, Language
+from probe_paths.plan import LINEAR, ProgramFrame
+
+PRESET_LIMIT = 1.0
+"""Of the preset's place, mm: the clearance that is planned at a touch."""
+
+ANGLE_LIMIT = 0.05
+"""Of basic rotation and rotary zeros, degrees: 0.2 mm at 200 mm."""
+
+RADIUS_LIMIT = 0.2
+"""Of the calibrated ball, mm."""
+
+TOP_LIMIT = 5.0
+"""Of the upper end of Z, mm: the height for turns has the planned clearance above everything."""
+
+
+class Interlock(NamedTuple):
+    """One test.
+
+    Attributes:
+        label: Where it stops the program.
+        what: Is tested.
+        datum: That is read; None for the length in the tool table.
+        work: That is subtracted from it, or None.
+        planned: What is left where all is as planned, mm or degrees.
+        limit: By how much it may differ.
+    """
+
+    label: Label
+    what: str
+    datum: Datum | None
+    work: Datum | None
+    planned: float
+    limit: float
+
+
+def interlocks(language: Language, frame: ProgramFrame) -> list[Interlock]:
+    """Tests of a program, in their order."""
+    probe, chain = frame.probe, frame.chain
+    rows: list[tuple[Label, str, Datum | None, Datum | None, float, float]] = [
+        (Label.OTHER_PROBE, "length of the tool", None, None, probe.tool_length, LENGTH_LIMIT),
+        (Label.RADIUS, "radius of the ball", Datum.RADIUS, None, probe.radius, RADIUS_LIMIT),
+        (Label.ROTATION, "basic rotation", Datum.ROTATION, None, 0.0, ANGLE_LIMIT),
+        (Label.TOP, "upper end of Z", Datum.TOP, None, chain.link("Z").range[1], TOP_LIMIT),
+    ]
+    for letter, label in zip(LINEAR, (Label.PRESET_X, Label.PRESET_Y, Label.PRESET_Z), strict=True):
+        work, planned = Datum(f"preset {letter}"), -frame.coordinate(letter, 0.0)
+        rows.append((label, f"preset in {letter}", Datum(letter), work, planned, PRESET_LIMIT))
+    for letter, label in zip(chain.rotary_axes, (Label.ZERO_1, Label.ZERO_2), strict=False):
+        work = Datum(f"preset {letter}")
+        rows.append((label, f"zero of {letter}", Datum(letter), work, 0.0, ANGLE_LIMIT))
+    tests = [Interlock(*row) for row in rows]
+    known = {None, *language.SYSTEM}
+    return [test for test in tests if test.datum in known and test.work in known]
