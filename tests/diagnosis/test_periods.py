@@ -230,3 +230,20 @@ def test_a_stated_pitch_is_scanned_beyond_what_readings_resolve() -> None:
 def test_even_step_by_hand() -> None:
     assert even_step(np.array([3.0, 9.0, 15.0, 27.0])) == pytest.approx(6.0)
     assert even_step(np.array([3.0, 9.0, 17.0, 27.0])) is None
+
+
+def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets() -> None:
+    """Eleven uneven targets 39 mm apart: more periods do as well than can be looked at closely."""
+    rng = np.random.default_rng(7)
+    targets = np.round(np.linspace(5.0, 395.0, 11) + rng.uniform(-1.5, 1.5, 11), 1)
+    run = positioning(targets, 10.0, 1.5 * UM, seed=2)
+    chain = run.touches.chain.with_pitch("X", 10.0)
+    found = diagnose(replace(run, touches=replace(run.touches, chain=chain)))
+    effect = next(e for e in found.found if e.name == "periodic(EXX)")
+    assert isinstance(effect, Tunable)
+    assert effect.tuning["period"] == pytest.approx(10.0, rel=2e-3)
+    confusion = found.steps[-1].confusion
+    assert confusion is not None
+    assert confusion.alike is not None
+    assert confusion.alike.pitch == 10.0
+    assert len(confusion.alike.periods) > 3
