@@ -12,6 +12,7 @@ from probe_paths.campaign.disturbances import effects_over_record, in_campaign
 from probe_paths.campaign.duration import probing_time
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.order_study import Order, Ordering, orders
+from probe_paths.campaign.setup_tolerance import setup_tolerance
 from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate
 
 __all__ = [
@@ -29,5 +30,6 @@ __all__ = [
     "in_campaign",
     "orders",
     "probing_time",
+    "setup_tolerance",
     "simulate",
 ]
