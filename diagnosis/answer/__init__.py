@@ -7,7 +7,7 @@ shown, `next_measurement` touches that tell look-alikes apart, `proof` compares 
 
 from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from diagnosis.answer.comparison import Comparison, GroupResidual, compare
-from diagnosis.answer.detectable import Detectable
+from diagnosis.answer.detectable import Detectable, Scanned
 from diagnosis.answer.next_measurement import Plan
 from diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
 from diagnosis.answer.run_diagnosis import diagnose
@@ -25,6 +25,7 @@ __all__ = [
     "Plan",
     "Proof",
     "RunErrors",
+    "Scanned",
     "Step",
     "Trend",
     "Verdict",

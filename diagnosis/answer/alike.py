@@ -96,10 +96,10 @@ def periods_alike(
     if inner is None:
         return found, None
     assert isinstance(found.effect, Tunable)
-    best = _best(found.effect, inner, base)
+    link = complement.touches.chain.link(inner.over)
+    best = _best(found.effect, inner, base, link.pitch)
     if len(best) < 2:
         return found, None
-    link = complement.touches.chain.link(inner.over)
     taken = [period_value(o.effect) for o in others if period_of(o.effect, complement) is not None]
     best = [b for b in best if all(abs(period_value(b.effect) - t) > 1e-6 * t for t in taken)]
     fraction = [_fraction(period_value(b.effect), link.pitch, inner) for b in best]
@@ -113,18 +113,29 @@ def periods_alike(
     return best[named], Alike(inner.over, rest, even_step(q), pitch)
 
 
-def _best(effect: Tunable, inner: Inner, base: EffectSet) -> list[ScaledEffect]:
-    """The effect at every period that has the most evidence, or nearly, longest first."""
+def _best(
+    effect: Tunable, inner: Inner, base: EffectSet, pitch: float | None
+) -> list[ScaledEffect]:
+    """The effect at every period that has the most evidence, or nearly, longest first.
+
+    Whole fractions of a stated pitch are looked at in any case: uneven targets let hundreds of
+    periods explain a run about equally well, more than can be refined.
+    """
     complement = base.complement
     periods = strongest(effect, inner, complement, base.residual)
+    stated = [pitch / k for k in range(1, FRACTIONS + 1)] if pitch else []
+    stated = [p for p in stated if inner.grid[0] <= p <= inner.grid[-1]]
+    scanned = len(periods)
+    periods = np.concatenate([periods, stated])
     variants = tuple(effect.tuned(float(p)) for p in periods)
     scores = score_all(base, signatures(complement, [Grid(effect, variants, len(variants))], 1))
-    drop = scores.free_drop
+    drop = scores.free_drop[:scanned]
     padded = np.concatenate([[-np.inf], drop, [-np.inf]])
     is_peak = (drop >= padded[:-2]) & (drop >= padded[2:]) & (drop > (1.0 - WINDOW) * drop.max())
     peaks = np.flatnonzero(is_peak)
     peaks = peaks[np.argsort(-drop[peaks], kind="stable")][:REFINED]
-    sized = [refined(base, variants[i], LEVELS) for i in peaks]
+    looked_at = [*peaks, *range(scanned, len(periods))]
+    sized = [refined(base, variants[i], LEVELS) for i in looked_at]
     top = max((e for _, e in sized), default=-np.inf)
     close = [s for s, e in sized if top - e < ALIKE]
     out: list[ScaledEffect] = []

@@ -1,20 +1,40 @@
 """What a run could have shown: the smallest size of every effect that would have been found."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import chdtri
 
 from diagnosis.evidence import EffectSet, Signatures
+from diagnosis.fit import inner_unit
 from diagnosis.search import CHANCE
 from twin.frames import Array
-from twin.model import Effect
+from twin.model import Effect, inner_values
+from twin.record import Touches
 
 POWER = 0.84
 """Standard deviations of the statistic above its threshold: found in four of five runs."""
 
 INVISIBLE = 30.0
 """Beyond so many times its expected size an effect is called invisible in these touches."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scanned:
+    """Range in which an inner parameter was looked for, refinement between its points included.
+
+    Attributes:
+        quantity: `period`, `tau`.
+        unit: As in files: `mm`, `min`.
+        low: In that unit.
+        high: In that unit.
+    """
+
+    quantity: str
+    unit: str
+    low: float
+    high: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,6 +48,7 @@ class Detectable:
         unit: That unit.
         largest: Largest deviation of a touch that an effect of this size causes, mm; None as size.
         survives: Share of its signature (as squares) that the model cannot imitate.
+        scanned: Where its inner parameters were looked for; outside, nothing is said of it.
     """
 
     effect: Effect
@@ -35,6 +56,7 @@ class Detectable:
     unit: str
     largest: float | None
     survives: float
+    scanned: tuple[Scanned, ...] = ()
 
 
 def detectable(
@@ -93,9 +115,15 @@ def _one(pool: Signatures, variant: int, length: float, survives: float) -> Dete
     """
     effect = pool.variants[variant]
     first = effect.parameters[0]
+    scanned = tuple(_scans(effect, pool.complement.touches))
     if not length < INVISIBLE:
         return Detectable(
-            effect=effect, size=None, unit=first.unit, largest=None, survives=survives
+            effect=effect,
+            size=None,
+            unit=first.unit,
+            largest=None,
+            survives=survives,
+            scanned=scanned,
         )
     C = pool.complement.columns([effect]) * pool.complement.u[:, None]
     largest = length * float(np.sqrt((C**2).sum(axis=1).max()))
@@ -105,4 +133,14 @@ def _one(pool: Signatures, variant: int, length: float, survives: float) -> Dete
         unit=first.unit,
         largest=largest,
         survives=survives,
+        scanned=scanned,
     )
+
+
+def _scans(effect: Effect, touches: Touches) -> Iterator[Scanned]:
+    """Ranges of the inner parameters of an effect; an instant is looked for in all of the run."""
+    for inner, _ in inner_values(effect, touches):
+        suffix, factor = inner_unit(inner)
+        if inner.acts != "at an instant" and len(inner.grid) > 1:
+            low, high = float(np.min(inner.grid)) / factor, float(np.max(inner.grid)) / factor
+            yield Scanned(inner.name, suffix.removeprefix("_"), low, high)

@@ -230,10 +230,15 @@ def _detectable(found: Detectable) -> dict[str, Any]:
     """
     suffix, factor = file_unit(found.unit)
     own = None if found.size is None else _digits(found.size / factor)
+    scanned = {
+        f"{s.quantity}_{s.unit}" if s.unit else s.quantity: [_digits(s.low), _digits(s.high)]
+        for s in found.scanned
+    }
+    where = {"scanned": scanned} if scanned else {}
     if suffix == "um":
-        return {"effect": found.effect.name, "smallest_um": own}
+        return {"effect": found.effect.name, "smallest_um": own, **where}
     largest = None if found.largest is None else _um(found.largest)
-    return {"effect": found.effect.name, "smallest_um": largest, f"smallest_{suffix}": own}
+    return {"effect": found.effect.name, "smallest_um": largest, f"smallest_{suffix}": own, **where}
 
 
 def _plan(plan: Plan) -> dict[str, Any]:

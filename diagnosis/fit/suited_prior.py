@@ -24,7 +24,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from diagnosis.fit.prior import Prior
 from diagnosis.regression import PRIOR_DOF, Solution
-from twin.effects import ComponentError
+from twin.effects import Change, ComponentError
 from twin.frames import Array
 from twin.machine import LETTERS
 from twin.model import Effect
@@ -65,7 +65,8 @@ def narrowed(prior: Prior, effects: Sequence[Effect], X: Array, y: Array) -> Pri
 
 
 def _kind(effect: Effect) -> str:
-    """What an error of the ordinary model does over its axis."""
+    """What an error of the ordinary model, or its change, does over its axis."""
+    effect = effect.effect if isinstance(effect, Change) else effect
     if not isinstance(effect, ComponentError):
         return "stays"
     if effect.shape in ("parabolic", "sinusoidal"):

@@ -49,9 +49,19 @@ def since_first_run(model: Model) -> Model:
 
 
 def with_changes(prior: Prior, model: Model) -> Prior:
-    """What is believed of a changing model, from what is believed of its standing effects."""
-    changes = [e for e in model.effects if isinstance(e, Change)]
-    return prior.joined(Prior.of_effects(changes))
+    """What is believed of a changing model, from what is believed of its standing effects.
+
+    A machine that bends less than its class, as the run says, changes by less as well.
+    """
+    factors, at = {}, 0
+    for effect in standing(model):
+        factors[effect.name] = prior.factor[at : at + len(effect.parameters)]
+        at += len(effect.parameters)
+    for change in (e for e in model.effects if isinstance(e, Change)):
+        factor = factors[change.effect.name]
+        stated = Prior.of_effects([change])
+        prior = prior.joined(Prior(stated.mean, factor[:, None] * stated.root, factor))
+    return prior
 
 
 def of_first(prior: Prior, model: Model) -> Prior:

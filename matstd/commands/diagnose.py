@@ -154,7 +154,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     from matstd.console import console, say
     from report.effects import plan_words, rival_words
     from report.geometry import console_lines
-    from report.words import remark_sentence, verdict_sentence
+    from report.words import remark_sentence, scanned_sentence, verdict_sentence
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
@@ -170,8 +170,9 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     known = result.run.touches, result.geometry, result.faults, result.trend
     for line, is_first in console_lines(*known):
         say(f"- {line}", style="bold" if is_first else None)
-    for remark in result.remarks:
-        say(f"- {remark_sentence(remark)}")
+    told = [*(remark_sentence(r) for r in result.remarks), scanned_sentence(result.detectable)]
+    for line in filter(None, told):
+        say(f"- {line}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:
         say(
             "- model.toml holds only effects you named; --auto adds what was found, "

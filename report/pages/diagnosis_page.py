@@ -36,6 +36,7 @@ from report.plots import (
 from report.style import series
 from report.words import (
     remark_sentence,
+    scanned_sentence,
     sizes,
     structure_words,
     values,
@@ -100,6 +101,7 @@ def write_diagnosis_page(
         geometry=geometry_section(result.geometry),
         trend=trend_section(result.trend, place),
         detectable=_detectable(result.detectable),
+        scanned=scanned_sentence(result.detectable),
         candidates=[(parse_effect(c.effect, chain), c) for c in result.candidates],
         plans=[_plan(p) for p in result.plans],
         gross=gross_rows(result.fit),

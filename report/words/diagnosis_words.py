@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from diagnosis.answer import Comparison, Diagnosis, Step, Verdict
+from diagnosis.answer import Comparison, Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import Fit, Reported, Role
 from diagnosis.residual import Condition, Shape, Side, Structure
 from report.effects import class_words, words_of_name
@@ -220,6 +220,21 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         f"of held-out touches is {microns(diagnosis.fit.test_rms)}, and the noise is "
         f"{noise_words(diagnosis.fit)}.{also}{fall}"
     )
+
+
+def scanned_sentence(found: Sequence[Detectable]) -> str:
+    """Where periods, time constants and the like were looked for; "" where there is none."""
+    ranges: dict[tuple[str, str], tuple[float, float]] = {}
+    told = (s for d in found if d.size is not None for s in d.scanned)
+    for scan in (s for s in told if s.unit or s.quantity == "harmonic"):
+        key = (_WORDS.get(scan.quantity, scan.quantity), scan.unit)
+        low, high = ranges.get(key, (scan.low, scan.high))
+        ranges[key] = (min(low, scan.low), max(high, scan.high))
+    each = [
+        f"{name}s of {digits(low)} to {digits(high)}{f' {unit_words(unit)}' if unit else ''}"
+        for (name, unit), (low, high) in sorted(ranges.items())
+    ]
+    return f"Looked for were {listed(each)}; outside, this run says nothing." if each else ""
 
 
 def comparison_sentence(found: Comparison) -> str:

@@ -138,9 +138,13 @@ def test_limits_and_regions_of_the_contract(table) -> None:
     """A length has its size in smallest_um alone; anything else beside it in its own unit."""
     for entry in table["detectable"]:
         assert {"effect", "smallest_um"} <= set(entry)
-        assert len(entry) <= 3
-        assert all(v is None or v > 0.0 for k, v in entry.items() if k != "effect")
+        sizes = {k: v for k, v in entry.items() if k not in ("effect", "scanned")}
+        assert len(sizes) <= 2
+        assert all(v is None or v > 0.0 for v in sizes.values())
     by_name = {e["effect"]: set(e) for e in table["detectable"]}
+    scanned = {e["effect"]: e.get("scanned") for e in table["detectable"]}
+    assert scanned["periodic(EXX)"] == {"period_mm": [1.0, 50.0]}
+    assert scanned["backlash(X)"] is None
     assert by_name["backlash(X)"] == {"effect", "smallest_um"}
     assert by_name["backlash(B)"] == {"effect", "smallest_um", "smallest_urad"}
     assert all(0 < w["touches"] <= 780 and w["region"] for w in table["where"])

@@ -11,6 +11,7 @@ import pytest
 from diagnosis.answer import Verdict, diagnose
 from diagnosis.answer.alike import even_step
 from diagnosis.fit.describe import Role
+from report.words.diagnosis_words import scanned_sentence
 from twin.effects.periodic import scanned_periods
 from twin.frames import Array
 from twin.machine import Axis, make_chain
@@ -119,6 +120,18 @@ def test_a_small_sine_is_found_beside_a_large_one_in_a_long_log() -> None:
     assert sorted(periods) == pytest.approx([0.8, 20.0], rel=1e-4)
 
 
+def test_what_was_scanned_is_told() -> None:
+    """Targets 6 mm apart over 295 mm: periods from 1 to 50 mm."""
+    found = diagnose(positioning(np.arange(5.0, 300.0, 6.0), 2.5, 0.0))
+    assert found.verdict is Verdict.NONE
+    (scan,) = next(d for d in found.detectable if d.effect.name == "periodic(EXX)").scanned
+    assert (scan.quantity, scan.unit, scan.high) == ("period", "mm", 50.0)
+    assert scan.low == pytest.approx(1.0, rel=0.01)
+    sentence = scanned_sentence(found.detectable)
+    assert "periods of 1.00 to 50.0 mm" in sentence
+    assert "this run says nothing" in sentence
+
+
 def test_effects_of_a_log_do_not_cancel_one_another() -> None:
     """Reading and time run together: growth and polynomials would cancel, thousands of µm each."""
     rng = np.random.default_rng(0)
@@ -217,3 +230,20 @@ def test_a_stated_pitch_is_scanned_beyond_what_readings_resolve() -> None:
 def test_even_step_by_hand() -> None:
     assert even_step(np.array([3.0, 9.0, 15.0, 27.0])) == pytest.approx(6.0)
     assert even_step(np.array([3.0, 9.0, 17.0, 27.0])) is None
+
+
+def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets() -> None:
+    """Eleven uneven targets 39 mm apart: more periods do as well than can be looked at closely."""
+    rng = np.random.default_rng(7)
+    targets = np.round(np.linspace(5.0, 395.0, 11) + rng.uniform(-1.5, 1.5, 11), 1)
+    run = positioning(targets, 10.0, 1.5 * UM, seed=2)
+    chain = run.touches.chain.with_pitch("X", 10.0)
+    found = diagnose(replace(run, touches=replace(run.touches, chain=chain)))
+    effect = next(e for e in found.found if e.name == "periodic(EXX)")
+    assert isinstance(effect, Tunable)
+    assert effect.tuning["period"] == pytest.approx(10.0, rel=2e-3)
+    confusion = found.steps[-1].confusion
+    assert confusion is not None
+    assert confusion.alike is not None
+    assert confusion.alike.pitch == 10.0
+    assert len(confusion.alike.periods) > 3

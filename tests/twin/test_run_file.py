@@ -271,3 +271,57 @@ def test_a_line_that_nobody_placed_is_said(tmp_path: Path) -> None:
 def test_uncertainties_that_no_touch_has_are_refused(tmp_path: Path, u: str) -> None:
     with pytest.raises(BadFile, match=r"line 9, column u_um: found"):
         read_run(write(tmp_path, [ROW + f",{u}"], columns=COLUMNS + ",u_um"))
+
+
+def run_of_rows(count: int = 40) -> list[str]:
+    """Touches a little apart in time and place, eight features again and again."""
+    return [
+        ROW.replace("a,a,", f"f{k % 8},a,", 1)
+        .replace(",1.5,", f",{9.0 * k + (k % 3)},")
+        .replace(",20.5", f",{20.0 + 0.01 * k}")
+        .replace("36.998", f"{36.998 + 1e-4 * (k % 7):.4f}")
+        for k in range(count)
+    ]
+
+
+@pytest.mark.parametrize("order", ["shuffled", "by feature", "last half first"])
+def test_rows_in_another_order_are_the_same_run(tmp_path: Path, order: str) -> None:
+    rows = run_of_rows()
+    (tmp_path / "one").mkdir()
+    one = read_run(write(tmp_path / "one", rows))
+    if order == "shuffled":
+        mixed = [rows[i] for i in np.random.default_rng(1).permutation(len(rows))]
+    elif order == "by feature":
+        mixed = sorted(rows, key=lambda row: row.split(",")[0])
+    else:
+        mixed = rows[20:] + rows[:20]
+    other = read_run(write(tmp_path, mixed))
+    assert other.fingerprint == one.fingerprint
+    np.testing.assert_array_equal(other.touches.time, one.touches.time)
+    np.testing.assert_array_equal(other.touches.temperature["s"], one.touches.temperature["s"])
+    (told,) = [r for r in other.remarks if "time_s goes back" in r]
+    assert "another order" in told
+    assert not any("goes back" in r for r in one.remarks)
+
+
+def test_a_clock_that_began_anew_is_no_other_order(tmp_path: Path) -> None:
+    """Twice from zero: what is sorted by such times is the order of nothing."""
+    rows = run_of_rows()
+    again = [
+        row.replace(f",{9.0 * (k + 20) + (k + 20) % 3},", f",{9.0 * k + 4.0},")
+        for k, row in enumerate(rows[20:])
+    ]
+    run = read_run(write(tmp_path, rows[:20] + again))
+    assert not run.touches.time.any()
+    assert any("a clock that began anew" in r for r in run.remarks)
+    assert run.line.tolist() == list(range(9, 49))
+
+
+def test_a_clock_that_was_set_is_told(tmp_path: Path) -> None:
+    rows = run_of_rows()
+    rows[30:] = [
+        r.replace(f",{9.0 * k + k % 3},", f",{1.7e9 + 9.0 * k},")
+        for k, r in enumerate(rows[30:], start=30)
+    ]
+    run = read_run(write(tmp_path, rows))
+    assert any("time_s jumps from" in r and "line 39" in r for r in run.remarks)

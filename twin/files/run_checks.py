@@ -41,6 +41,9 @@ GAP = 1.0
 """A stated deviation this far (mm) from that of the readings is of another touch: set-ups are moved
 to where their touches are from 0.3 mm and 1 mrad on, so that at most half of it is left."""
 
+JUMP = 86400.0
+"""A pause (s) shorter than a day is a night's rest and needs no word."""
+
 _OTHER_UNITS = {
     1e-3: "mm in a column of µm",
     1e3: "nm in a column of µm",
@@ -162,13 +165,21 @@ def _with_clock(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     time = run.touches.time
     if "time_s" in table and len(run) > 1 and np.ptp(time) == 0.0:
         remarks.append(f"time_s is {time[0]:g} in every row: no effect of time can be found")
+    gaps = np.sort(np.diff(time))
+    if len(gaps) > 1 and gaps[-1] > max(JUMP, 10.0 * float(np.abs(gaps[:-1]).sum())):
+        i = int(np.argmax(np.diff(time)))
+        remarks.append(
+            f"line {run.line[i + 1]}: time_s jumps from {time[i]:g} to {time[i + 1]:g}, longer "
+            "than all the rest of the run; if the clock was set, what follows time is wrong"
+        )
     back = np.flatnonzero(np.diff(time) < 0.0)
     if not len(back):
         return run
     i = int(back[0])
     remarks.append(
         f"line {run.line[i + 1]}: time_s goes back from {time[i]:g} to {time[i + 1]:g}; "
-        "time is left out, so that no effect of time can be found; everything else is used"
+        "a clock that began anew: time is left out, so that no effect of time can be found; "
+        "everything else is used"
     )
     return replace(run, touches=replace(run.touches, time=np.zeros(len(run))))
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,12 @@ COLDEST, HOTTEST = -60.0, 200.0
 
 MOST_GAPS = 0.5
 """A sensor with gaps in a larger share of its rows is left out."""
+
+SHUFFLED = 0.25
+"""Share of rows before which time goes back, from which they are shuffled: half of them are."""
+
+RESTARTS = 3
+"""Times that a clock may begin anew; rows sorted by features or poses go back more often."""
 
 LATEST = 1e11
 """Times (s) beyond this, three thousand years, are in another unit."""
@@ -82,6 +89,41 @@ def normals(table: CsvTable, remarks: list[str]) -> Array:
 def times(table: CsvTable) -> Array:
     """Time of every row, (N,), s; zero where none is recorded."""
     return table.numbers("time_s", largest=LATEST) if "time_s" in table else np.zeros(len(table))
+
+
+def put_in_order(table: CsvTable, remarks: list[str]) -> None:
+    """Take the rows in the order of their times where they stand in another, and tell it.
+
+    A clock that began anew goes back too; its times mean nothing beside the earlier ones, and the
+    rows stay as they are.
+    """
+    at = times(table)
+    back = np.flatnonzero(np.diff(at) < 0.0)
+    order = np.argsort(at, kind="stable")
+    if len(back) and _is_one_clock(at, back, order):
+        i = int(back[0])
+        remarks.append(
+            f"line {table.lines[i + 1]}: time_s goes back from {at[i]:g} to {at[i + 1]:g}: rows "
+            "stand in another order than that of their times, in which they are taken"
+        )
+        table.reorder(order)
+
+
+def _is_one_clock(at: Array, back: IntArray, order: IntArray) -> bool:
+    """Whether times that go back are of one clock: rows shuffled, in stretches one after the other,
+    or sorted by something else.
+
+    Sorted rows of one machine have some time between them; where clocks began anew rows fall
+    anywhere between one another.
+    """  # noqa: D205
+    if len(back) > SHUFFLED * len(at):
+        return True
+    stretches = sorted(np.split(at, back + 1), key=lambda s: float(s[0]))
+    if all(a[-1] <= b[0] for a, b in pairwise(stretches)):
+        return True
+    gaps = np.diff(at[order])
+    gaps = gaps[gaps > 0.0]
+    return len(back) > RESTARTS and bool(np.quantile(gaps, 0.05) > 0.1 * np.median(gaps))
 
 
 def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:

@@ -98,6 +98,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     if not len(table):
         raise BadFile(path, "table", "no rows", "a row a touch")
     remarks = list(chain.remarks)
+    columns.put_in_order(table, remarks)
     stated = _assemble(table, chain, head, remarks)
     run = stated
     moved: tuple[Moved, ...] = ()

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.errors import BadFile
 from twin.frames import Array
@@ -58,6 +59,11 @@ class CsvTable:
         for line, row in zip(self.lines, self.cells, strict=True):
             if len(row) != len(self.columns):
                 raise BadFile(path, f"line {line}", _cells(row, self.columns), _EXPECTED)
+
+    def reorder(self, order: NDArray[np.int64]) -> None:
+        """Take the rows in another order; their line numbers go with them."""
+        self.lines = [self.lines[i] for i in order]
+        self.cells = [self.cells[i] for i in order]
 
     def __len__(self) -> int:
         return len(self.cells)
