@@ -12,8 +12,8 @@ from probe_paths.campaign.disturbances import effects_over_record, in_campaign
 from probe_paths.campaign.duration import probing_time
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.order_study import Order, Ordering, orders
-from probe_paths.campaign.setup_tolerance import setup_tolerance
 from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate
+from probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
     "FIRST_MORNING",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from artefact.body import Meeting, contact
-from probe_paths.campaign.setup_tolerance import STEPS_MM, setup_tolerance
+from probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
 from probe_paths.language.dialect import Dialect
 from report.pages.setup_page import PAGE, PICTURE, write_setup_page
 from report.pages.tables import page_tables
