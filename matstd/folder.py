@@ -46,7 +46,10 @@ def results_folder(
     WORKING.add(place)
     try:  # from before the folder is made: an interrupt can come at any moment
         work = place / "results"
-        work.mkdir(parents=True)
+        try:
+            work.mkdir(parents=True)
+        except OSError as error:  # whatever it is, nothing was written yet
+            raise DesignError(f"{out}: cannot be made ({error.strerror or error})") from error
         with locked(place):
             yield work
             _move(work, out, [*ours, *refused])

@@ -115,7 +115,7 @@ def refusals(project: Project, folder: Path, out: str) -> Iterator[None]:
     except NotReachable as error:
         told = str(error)
         if not told.startswith(str(project.path)):
-            told = f"{project.path}: {told}; change setup, probe.length_mm or workspace"
+            told = f"{project.path}: {told}; change workspace, setup or probe.length_mm"
         if not (folder / PICTURE).exists():
             raise NotReachable(told) from error
         picture = Path(out) / REFUSED

@@ -26,7 +26,7 @@ def draw_reach(reach: PlacesInReach, chain: Chain, blank: Blank) -> Figure:
         reach: Places, poses, what each touch is beyond.
         blank: The blank.
     """
-    drawn = figure(12.0, 8.4, None)  # a constrained layout would draw everything twice
+    drawn = figure(7.6, layout=None)  # a constrained layout would draw everything twice
     drawn.subplots_adjust(0.07, 0.07, 0.97, 0.89, 0.24, 0.32)
     top, side, poses, limits = drawn.subplots(2, 2).ravel()
     drawn.suptitle(
@@ -91,10 +91,11 @@ def _limits(axes: Axes, reach: PlacesInReach) -> None:
         axes.axis("off")
         axes.text(0.5, 0.5, "every place is reached at every table pose", ha="center")
         return
-    words = [_words(limit) for limit, _ in barred]
-    axes.barh(words, [100.0 * share for _, share in barred], color=BLUE)
-    axes.invert_yaxis()
-    axes.set(xlabel="share of all touches tried / %", xlim=(0.0, 100.0))
+    for row, (limit, share) in enumerate(barred):
+        axes.barh(row, 100.0 * share, 0.4, color=BLUE)
+        axes.text(0.0, row - 0.25, f"{_words(limit)}: {100.0 * share:.0f} %", va="bottom")
+    axes.set(xlabel="share of all touches tried / %", xlim=(0.0, 100.0), yticks=[])
+    axes.set_ylim(max(len(barred), 3) - 0.5, -0.8)
 
 
 def _words(limit: Limit) -> str:
