@@ -1,6 +1,7 @@
 """One thread a worker: several workers, each with as many BLAS threads as cores, only wait."""
 
 import os
+from pathlib import Path
 
 import pytest
 
@@ -9,6 +10,33 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 pytest_plugins = ["machines", "standards", "runs"]
 """Fixtures that the tests of several rooms share, in `tests/fixtures`."""
+
+
+LONGEST = (
+    "matstd/test_design.py",
+    "artefact/test_placement.py",
+    "matstd/test_design_machines.py",
+    "test_examples.py",
+    "test_examples_diagnosis.py",
+    "matstd/test_measure_commands.py",
+    "diagnosis/test_files_and_commands.py",
+    "report/test_diagnosis_pictures.py",
+    "oracles/test_simulator.py",
+    "diagnosis/test_prediction.py",
+    "matstd/test_sensitivity_command.py",
+    "matstd/test_reach.py",
+    "probe_paths/test_simulate.py",
+    "test_formats.py",
+    "test_notebooks.py",
+)
+"""Files of more than ten seconds: begun first, so that no worker waits for one of them at the end;
+left to itself, xdist begins with the files of most tests."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest files first, the others in their order."""
+    rank = {Path(__file__).parent / name: k for k, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: rank.get(item.path, len(rank)))
 
 
 @pytest.fixture(autouse=True)

@@ -22,7 +22,7 @@ THERMAL, HIDDEN = EXAMPLES / "fl_thermal", EXAMPLES / "hidden_effect"
 
 NOISE = 0.6  # of the simulated runs, µm
 NEAR_NOISE = 1.05  # what a model leaves over the noise, once the effect is in
-NEAR = 1.4  # plain error of whole poses left out over the noise: their prediction is uncertain too
+NEAR = 1.12  # error of another run over the noise: 160 parameters of 780 touches add 10 %, or less
 COVERED = 3.0  # standard uncertainties within which a planted size is found
 HALF_DIGIT = 5e-4  # µm: the thinned record has three decimals
 
@@ -64,9 +64,16 @@ def truth(name: str) -> dict:
 # a warm-up that the library knows
 
 
-def test_the_warm_up_is_named_and_the_error_falls_to_the_noise(tmp_path):
-    words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "-o", tmp_path / "out")
-    found = result(tmp_path / "out")
+@pytest.fixture(scope="module")
+def warm_up(tmp_path_factory):
+    """Words and result of the command."""
+    out = tmp_path_factory.mktemp("warm_up") / "out"
+    words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "-o", out)
+    return words, result(out)
+
+
+def test_the_warm_up_is_named_and_the_error_falls_to_the_noise(warm_up):
+    words, found = warm_up
     (hidden,) = truth("warm_up")["hidden"]
     first, last = found["steps"][0], found["steps"][-1]
     assert found["verdict"] == "missing effect"
@@ -83,8 +90,8 @@ def test_the_warm_up_is_named_and_the_error_falls_to_the_noise(tmp_path):
     assert re.search(re.escape(row).replace(r"\ \.\*\ ", ".*"), words)
 
 
-def test_all_chips_of_the_warm_up_are_told_by_line(tmp_path):
-    words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "-o", tmp_path / "out")
+def test_all_chips_of_the_warm_up_are_told_by_line(warm_up):
+    words, _ = warm_up
     text = (HIDDEN / "warm_up.csv").read_text(encoding="utf-8").splitlines()
     head = next(i for i, line in enumerate(text) if not line.startswith("#"))
     chips = {head + 2 + row for row in truth("warm_up")["chips"]}  # lines count from 1

@@ -149,7 +149,7 @@ def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> 
     # d rms / d theta = C^T C theta / (n rms)
     slope = C.T @ explained / max(len(C) * rms, 1e-300)
     return Reported(
-        quantity="amplitude",
+        quantity="rms",
         unit="um",
         value=rms / UM,
         u=float(np.sqrt(slope @ covariance @ slope)) / UM,

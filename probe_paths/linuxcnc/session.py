@@ -91,7 +91,7 @@ def run_on_linuxcnc(
             server.close()
     text = (folder / "linuxcnc.txt").read_text(encoding="utf-8", errors="replace")
     logs = {p.name: p.read_text(errors="replace") for p in sorted(folder.glob("*_*.TXT"))}
-    return Session(logs, failed or _outcome(folder, programs, text), text)
+    return Session(logs, failed or _outcome(folder, programs, text, logs), text)
 
 
 def installed(user: str) -> str:
@@ -219,13 +219,17 @@ def _ended(process: subprocess.Popen[bytes], folder: Path, user: str) -> None:
         LOCK.unlink(missing_ok=True)
 
 
-def _outcome(folder: Path, programs: Sequence[Program], said: str) -> str:
-    """What the operator says of it; empty where all programs are done."""
+def _outcome(folder: Path, programs: Sequence[Program], said: str, logs: Mapping[str, str]) -> str:
+    """Why not all programs are done, as far as anybody knows; empty where they are."""
     file = folder / SAID
     lines = file.read_text().splitlines() if file.exists() else []
     stopped = [line for line in lines if line.startswith("stopped ")]
     if stopped:
-        return f"LinuxCNC {stopped[0]}"
+        missed = re.findall(r"NOCONTACT P(\d+)", "".join(logs.values()))
+        halt = (
+            f"touch {missed[-1]} has no contact" if missed else "a test of probe, preset or machine"
+        )
+        return re.sub(r": M0\Z", f": {halt}", f"LinuxCNC {stopped[0]}")
     done = [line.removeprefix("done ") for line in lines if line.startswith("done ")]
     left = [p.file for p in programs if p.file not in done]
     if not left:

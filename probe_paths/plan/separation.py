@@ -173,7 +173,8 @@ def _nearest(
     for pick in _SUBSETS:
         i = np.array(pick)
         share = _solved(gram[:, i[:, None], i], right[:, i])
-        good = has[:, i].all(axis=1) & (share >= 0.0).all(axis=1) & (share.sum(axis=1) <= 1.0)
+        with np.errstate(invalid="ignore"):  # shares of points on one line may be inf and -inf
+            good = has[:, i].all(axis=1) & (share >= 0.0).all(axis=1) & (share.sum(axis=1) <= 1.0)
         there = w + np.einsum("mi,mik->mk", share, edge[:, i])
         size = np.einsum("mi,mi->m", there, there)
         better = np.flatnonzero(good & (size < smallest))

@@ -15,7 +15,11 @@ from twin.record import Run
 from twin.units import UM
 from twin.words import listed
 
-_WORDS = {"tau": "time constant"}
+_WORDS = {
+    "rms": "rms that it alone explains",
+    "length": "correlation length",
+    "tau": "time constant",
+}
 
 PERIODS_TOLD = 4
 """Periods that look alike that are told one by one, the longest ones."""
@@ -45,6 +49,8 @@ def named_value(reported: Reported) -> tuple[str, str]:
         return words, f"{side} {digits(reported.value, 3)} {unit_words(reported.unit)}".rstrip()
     if reported.unit == "s" and reported.u is None:
         return words, span(reported.value)
+    if reported.quantity == "length" and not reported.unit:
+        return words, f"{reported.value:.0%} of the travel"
     return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))
 
 

@@ -87,7 +87,7 @@ def test_a_table_is_named_where_no_law_does_the_same(name) -> None:
     result = diagnose(run)
     assert sorted(e.name for e in result.found) == AXES[name][2]
     assert result.fit.test_rms < 1.2 * NOISE
-    sizes = [r for s in result.steps[1:] for r in s.reported if r.name == "amplitude_um"]
+    sizes = [r for s in result.steps[1:] for r in s.reported if r.name == "rms_um"]
     assert all(r.u < 0.1 * r.value for r in sizes)
 
 

@@ -6,14 +6,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import rs274
 
 from artefact.body.limits import Limits
+from artefact.body.standard_file import read_standard
 from artefact.brief.project_file import read_project
 from artefact.place.placement import PlacementOptions
 from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
 from matstd.cli import main
 from matstd.from_project import blank, placement_options, probe_reach
+from probe_paths.control.interpreter import read_program
+from probe_paths.emit.program import make_programs
+from probe_paths.language.dialect_file import read_dialect
+from probe_paths.linuxcnc.replanned import shortened
+from twin.files.machine_file import read_machine
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
 
@@ -62,6 +69,7 @@ def test_every_file_is_there(made: Path) -> None:
         "identification.json",
         "identifiability.json",
         "report.html",
+        "setup/setup.html",
         "errors.toml",
         "machine.toml",
         "sensitivity/poses.csv",
@@ -251,6 +259,20 @@ def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:
     assert project.expected.ranges.of(chain, chain.symbol("EXX")) == (3.0 * UM, 4.0 * UM)
     assert project.expected.ranges.of(chain, chain.symbol("EC0Y")) == (1.0 * URAD, 2.0 * URAD)
     assert project.expected.ranges.of(chain, chain.symbol("EYX")) == (50.0 * UM, 100.0 * UM)
+
+
+@rs274.is_there
+def test_linuxcnc_takes_every_block_of_the_whole_programs(made: Path, tmp_path: Path) -> None:
+    """The design is for an iTNC; its programs planned again from their text, for LinuxCNC."""
+    chain, standard = read_machine(made / "machine.toml"), read_standard(made / "standard.toml")
+    read = [read_program(path, chain) for path in sorted((made / "programs").glob("*.H"))]
+    plan = shortened(read, standard, chain)
+    programs = make_programs(plan, read_dialect("linuxcnc")).programs
+    assert sum(p.touches for p in programs) == sum(len(p.touches) for p in read) > 100
+    for program in programs:
+        said = rs274.interpreted(rs274.all_met(program.text), tmp_path)
+        assert "PROGRAM_END" in said
+        assert said.count("STRAIGHT_PROBE") == 2 * program.touches
 
 
 @pytest.mark.slow

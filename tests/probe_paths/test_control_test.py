@@ -162,7 +162,8 @@ def test_a_hidden_effect_is_named_from_the_controls_own_log(design, golden, smal
 
     model = str(tmp_path / "known" / "model.toml")
     found = tmp_path / "found"
-    assert main(["compare", str(out / "run.csv"), "--model", model, *quiet, str(found)]) == 0
+    compared = str(tmp_path / "compared")
+    assert main(["compare", str(out / "run.csv"), "--model", model, *quiet, compared]) == 0
     assert main(["diagnose", str(out / "run.csv"), "--model", model, *quiet, str(found)]) == 0
     told = json.loads((found / "diagnosis.json").read_text())
     assert told["verdict"] == "missing effect"

@@ -1,13 +1,12 @@
 """Programs for LinuxCNC: the same steps as for the iTNC, read strictly, taken by rs274."""
 
 import re
-import shutil
-import subprocess
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
+import rs274
 
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_solver import VirtualMachine
@@ -210,34 +209,18 @@ def test_words_have_one_spelling_at_both_ends():
     assert [b.kind.name for b in found[-4:]] == ["LABEL", "JUMP", "LABEL", "END"]
 
 
-@pytest.mark.skipif(shutil.which("rs274") is None, reason="LinuxCNC (rs274) is not installed")
+@rs274.is_there
 @pytest.mark.parametrize("number", [0, 1, 2])
 def test_the_interpreter_of_linuxcnc_takes_every_block(number, made, tmp_path):
     """Every touch is taken as met, so that no block is left out; a bad block is not taken."""
     program = made.programs[number]
-    met = program.text.replace("[#5070 - 1]", "0").replace("#5070 GT 0", "1 GT 0")
-    done = interpreted(met, tmp_path)
+    met = rs274.all_met(program.text)
+    done = rs274.interpreted(met, tmp_path)
     assert "PROGRAM_END" in done
     assert done.count("STRAIGHT_PROBE") == 2 * program.touches
-    assert "PROGRAM_END" not in interpreted(met.replace("\nG0 Z", "\nG0 H", 1), tmp_path)
-    missed = interpreted(program.text, tmp_path)  # where nothing is simulated nothing is met
+    assert "PROGRAM_END" not in rs274.interpreted(met.replace("\nG0 Z", "\nG0 H", 1), tmp_path)
+    missed = rs274.interpreted(program.text, tmp_path)  # where nothing is simulated nothing is met
     assert "(ABORT,1014)" in missed
     assert "PROGRAM_END" not in missed
     other_probe = re.sub(r"#1614 = .*", "#1614 = +5", program.text)
-    assert "(ABORT,1011)" in interpreted(other_probe, tmp_path)
-
-
-def interpreted(text, folder):
-    """What rs274 says of a program."""
-    (folder / "tool.tbl").write_text("T30 P30 Z163.0 D6.0\n")
-    (folder / "a.var").write_text("")
-    (folder / "A.ngc").write_text(text)
-    done = subprocess.run(
-        ["rs274", "-t", "tool.tbl", "-v", "a.var", "-g", "A.ngc"],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    return done.stdout + done.stderr
+    assert "(ABORT,1011)" in rs274.interpreted(other_probe, tmp_path)

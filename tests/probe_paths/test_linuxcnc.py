@@ -265,6 +265,14 @@ def test_a_control_that_dies_half_way_leaves_its_log(
             "echo 'stopped MS_A_2.ngc: Linear move would exceed Z limits' > headless.txt",
             "LinuxCNC stopped MS_A_2.ngc: Linear move would exceed Z limits",
         ),
+        (
+            "echo 'NOCONTACT P7.000000' > MS_A_1.TXT; echo 'stopped MS_A_1.ngc: M0' > headless.txt",
+            "LinuxCNC stopped MS_A_1.ngc: touch 7 has no contact",
+        ),
+        (
+            "echo 'stopped MS_A_1.ngc: M0' > headless.txt",
+            "LinuxCNC stopped MS_A_1.ngc: a test of probe, preset or machine",
+        ),
         ("exit 1", "LinuxCNC died in MS_A_1.ngc: it said nothing of why"),
         (
             "for i in 1 2; do echo done MS_A_$i.ngc >> headless.txt; done",
