@@ -43,12 +43,12 @@ def asked_printer(args: argparse.Namespace) -> Printer | None:
     return printer()
 
 
-def print_report(folder: Path, printed_by: Printer | None) -> None:
+def print_report(folder: Path, printed_by: Printer | None, name: str = "report") -> None:
     """Print the page of a folder, if anything shall."""
     if printed_by is not None:
         from report.pages import write_pdf
 
-        write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
+        write_pdf(folder / f"{name}.html", folder / f"{name}.pdf", printed_by)
 
 
 def add_start(parser: argparse.ArgumentParser, without: str) -> None:

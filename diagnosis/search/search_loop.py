@@ -71,6 +71,10 @@ BETTER = 0.97
 """Share of the held-out error of named effects that patterns without a name, or tables, must reach
 to push one of them out: as far as both predict alike, the name stays."""
 
+LONG = 2000
+"""Rows from which laws and tables are searched for together: a search of laws that do not explain a
+log goes on for minutes."""
+
 FREEDOM = 3.0
 """Factor on the prior of a found effect in its last fit: being found tells more of its size than
 what is usual, and an estimate shall not be drawn to zero."""
@@ -183,7 +187,7 @@ def search_until_stable(
     """Search among laws, then with tables, which say where an axis is wrong and not why.
 
     A table is followed only where it predicts plainly better than what the laws came to: it can
-    imitate any of them.
+    imitate any of them. A long log tells them apart by its evidence, in one search.
 
     Args:
         added: Effects that the user added.
@@ -191,9 +195,9 @@ def search_until_stable(
         progress: Told of every stage.
     """
     laws = [e for e in candidates if not getattr(e, "is_table", False)]
+    if len(laws) == len(candidates) or len(task.run) > LONG:
+        return _with_further_periods(task, added, candidates, progress)
     state = _with_further_periods(task, added, laws, progress)
-    if len(laws) == len(candidates):
-        return state
     other = _with_further_periods(task, added, candidates, progress)
     return other if _held_out(other) < BETTER * _held_out(state) else state
 

@@ -19,6 +19,12 @@ if TYPE_CHECKING:
 REFUSED = "reach-refused.png"
 """Picture of what the machine reaches, all that a refused run leaves in its folder."""
 
+SHEET = "setup"
+"""Folder of the set-up sheet."""
+
+SHEET_FILES = (f"{SHEET}/setup.pdf", f"{SHEET}/tables/*.csv")
+"""Of it, what not every run leaves."""
+
 _KEYS = {
     "smallest concave radius": "limits.min_concave_radius_mm (smaller)",
     "slope": "limits.max_slope_deg (larger)",
@@ -62,18 +68,20 @@ def run(args: argparse.Namespace) -> int:
     dialect(project)  # a control that nobody knows is refused before any work
     say_assumed(project.chain)
     with (
-        results_folder(args.output, args.force, REPORT_FILES, [REFUSED]) as folder,
+        results_folder(args.output, args.force, (*REPORT_FILES, *SHEET_FILES), [REFUSED]) as folder,
         refusals(project, folder, args.output),
     ):
         from matstd.design import design
         from matstd.progress import stages
-        from report.pages import write_design_page
+        from report.pages import write_design_page, write_setup_page
 
         with stages() as progress, connected(args.scheduler) as workers:
             made = design(project, folder, progress, workers)
             progress("report", 0, 1)
             remarks = write_design_page(made, folder)
             print_report(folder, printed_by)
+            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, dialect(project))
+            print_report(sheet.parent, printed_by, sheet.stem)
     for remark in remarks:
         say(f"- {remark}")
     verdict, *others = design_lines(made.placement)
@@ -84,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
         say(f"- touch dropped: {refusal}")
     for machine in made.machines:
         say(f"- {proof_line(machine.seed + 1, machine.in_workspace, machine.proof)}")
-    say(f"{args.output}: look at report.html")
+    say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0
 
 

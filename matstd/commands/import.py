@@ -199,6 +199,8 @@ def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     axis = args.positioning
     if axis not in tuple("XYZABC"):
         raise DesignError(f"--positioning {axis}: expected one of X Y Z A B C")
+    turns = axis in "ABC"
+    u = _uncertainty(args, "u_urad", URAD) if turns else _uncertainty(args, "u_um", UM)
     test = read_positioning(sheet, axis, args.unit, (args.target, args.actual))
     low, high = (
         v / (DEG if axis in "ABC" else 1.0) for v in (test.target.min(), test.target.max())
@@ -209,8 +211,6 @@ def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         f"{len(np.unique(test.cycle))} cycles or strokes; {up} readings with {axis} growing, "
         f"{down} with it falling"
     )
-    turns = axis in "ABC"
-    u = _uncertainty(args, "u_urad", URAD) if turns else _uncertainty(args, "u_um", UM)
     chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
     return positioning_run(test, chain, u), chain
 

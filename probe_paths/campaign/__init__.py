@@ -13,6 +13,7 @@ from probe_paths.campaign.duration import probing_time
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.order_study import Order, Ordering, orders
 from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate
+from probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
     "FIRST_MORNING",
@@ -29,5 +30,6 @@ __all__ = [
     "in_campaign",
     "orders",
     "probing_time",
+    "setup_tolerance",
     "simulate",
 ]

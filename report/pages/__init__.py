@@ -9,6 +9,7 @@ from report.pages.design_page import write_design_page
 from report.pages.design_result import Design, Proven
 from report.pages.diagnosis_page import write_diagnosis_page
 from report.pages.pdf import Printer, printer, write_pdf
+from report.pages.setup_page import write_setup_page
 from report.pages.study_page import write_study_page
 
 __all__ = [
@@ -20,5 +21,6 @@ __all__ = [
     "write_design_page",
     "write_diagnosis_page",
     "write_pdf",
+    "write_setup_page",
     "write_study_page",
 ]

@@ -11,6 +11,7 @@ from report.plots.plan_pictures import write_order_picture, write_touches_pictur
 from report.plots.proof_picture import write_proof_picture
 from report.plots.reach_picture import draw_reach
 from report.plots.residual_pictures import draw_normal_plot, draw_over_variables
+from report.plots.setup_picture import write_setup_picture
 from report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, is_spread
 from report.plots.touch_curve_picture import draw_touch_curves
 from report.plots.trend_picture import draw_trend
@@ -33,5 +34,6 @@ __all__ = [
     "is_spread",
     "write_order_picture",
     "write_proof_picture",
+    "write_setup_picture",
     "write_touches_picture",
 ]

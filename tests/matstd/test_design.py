@@ -69,6 +69,7 @@ def test_every_file_is_there(made: Path) -> None:
         "identification.json",
         "identifiability.json",
         "report.html",
+        "setup/setup.html",
         "errors.toml",
         "machine.toml",
         "sensitivity/poses.csv",

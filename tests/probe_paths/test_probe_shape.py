@@ -167,24 +167,31 @@ def test_every_move_of_the_program_keeps_clear(wide, points, small, chain):
         here = there
 
 
-def other_head(program, change):
-    """Text of a program whose head states another probe or workshop, with the hash of that."""
+def other_head(programs, change):
+    """The first program with another probe or workshop in its head, and its masks, with hashes."""
+    program = programs.programs[0]
     blocks = [re.sub(r"^\d+ ", "", line) for line in program.text.split("\r\n")]
     stated = [line[1:] for line in blocks if line.startswith(";")]
     first = next(i for i, line in enumerate(stated) if line.startswith("STANDARD"))
     heading, count = parse_heading(list(enumerate(stated[first:])), "A.H")
-    old, new = heading.lines, change(heading).lines
+    changed = change(heading)
+    old, new = heading.lines, changed.lines
     at = blocks.index(f";{old[0]}")
     assert count == len(old)
     blocks[at : at + count] = [f";{line}" for line in new]
-    return "\r\n".join(blocks)
+    masks = dict(programs.masks)
+    for name, text in masks.items():
+        for line, other in zip(heading.log_lines, changed.log_lines, strict=True):
+            text = text.replace(f'"{line}"', f'"{other}"')
+        masks[name] = text
+    return "\r\n".join(blocks), masks.get
 
 
 def test_a_program_for_a_slim_probe_is_refused_with_a_wide_one_in_its_head(programs, small, chain):
     """The same moves, another probe: the check reads it from the text."""
     wide = replace(WIDE, stack=((25.0, 1.5), (160.0, 31.0)))
-    text = other_head(programs.programs[0], lambda head: replace(head, probe=wide))
-    read = interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+    text, masks = other_head(programs, lambda head: replace(head, probe=wide))
+    read = interpret(text.encode("ascii"), Path("MS_A_1.H"), masks, chain)
     assert read.heading.probe == wide
     with pytest.raises(BadFile, match="a gap of"):
         check_moves(read, small, chain)
@@ -203,8 +210,8 @@ def test_a_clamp_in_the_head_is_kept_clear_of(programs, small, chain):
     def with_post(head):
         return replace(head, workshop=replace(head.workshop, bodies=(post,)))
 
-    text = other_head(programs.programs[0], with_post)
-    read = interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+    text, masks = other_head(programs, with_post)
+    read = interpret(text.encode("ascii"), Path("MS_A_1.H"), masks, chain)
     with pytest.raises(BadFile, match=r"a gap of .* to POST"):
         check_moves(read, small, chain)
 

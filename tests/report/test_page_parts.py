@@ -8,7 +8,7 @@ import openpyxl
 import pytest
 
 from report.pages import pdf
-from report.pages.contents import with_contents
+from report.pages.page import with_contents
 from report.pages.pdf import printer, write_pdf
 from report.pages.tables import page_tables, write_tables
 from twin.errors import DesignError, MissingLibrary

@@ -50,7 +50,8 @@ def mapped_run(sheet: Sheet, path: str | Path) -> str:
     check_format(data, "import/1", path)
     table = checked(MappingTable, data, path)
     if not any(isinstance(how, ColumnTable) for how in table.columns.values()):
-        raise BadFile(path, "columns", "constants alone", 'a column such as { from = "x" }')
+        found = "constants alone" if table.columns else "nothing"
+        raise BadFile(path, "columns", found, 'a column such as { from = "x" }')
     cells = {name: _cells(sheet, name, how, path) for name, how in table.columns.items()}
     out = io.StringIO()
     import tomli_w

@@ -1,0 +1,70 @@
+"""How far from its stated place a standard may stand before a touch is lost."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from artefact.body import Meeting, contact
+from probe_paths.plan import TouchPlan
+from twin.frames import Array, apply, fixed_xyz, inverse, pose, turn
+from twin.machine import linear_directions, tip
+from twin.units import DEG
+
+STEPS_MM = (0.5, 1.0, 1.5, 2.0, 2.5)
+"""Displacements that are tried, mm; a touch looks 3 mm beyond the surface."""
+
+STEPS_DEG = (0.1, 0.25, 0.5, 1.0)
+"""Rotations that are tried, degrees."""
+
+_TOUCHES = 60  # of the plan, evenly: each takes 3 ms, and there are twelve directions
+
+
+def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
+    """Largest displacement, either way, by which no touch of a plan is lost.
+
+    The standard is displaced on the perfect twin, and every looked-at touch has to meet the
+    feature it was planned for within its path.
+
+    Returns:
+        By X Y Z, mm, and A B C, degrees, about the standard's own axes; zero where the smallest
+        step is too much already.
+    """
+    rows = np.unique(np.linspace(0, len(plan) - 1, _TOUCHES).astype(np.int64))
+    columns = [plan.chain.axis_index(a) for a in plan.chain.linear_axes]
+    direction = np.zeros((len(rows), len(plan.chain.axes)))
+    direction[:, [plan.chain.axis_index(a) for a in "XYZ"]] = plan.direction[rows]
+    along = linear_directions(plan.chain, plan.start[rows])
+    way = np.einsum("nij,nj->ni", along, direction[:, columns])
+    centre = tip(plan.chain, plan.start[rows], plan.probe.length)
+
+    def is_met(T_artefact_standing: Array) -> bool:
+        T_standing_table = inverse(plan.setup.T_table_artefact @ T_artefact_standing)
+        met = contact(
+            plan.standard,
+            apply(T_standing_table, centre),
+            turn(T_standing_table, way),
+            plan.probe.radius,
+            np.full(len(rows), plan.distance),
+        )
+        good = (met.meeting == Meeting.SURFACE) & (met.feature == plan.feature[rows])
+        return bool(good.all())
+
+    def moved(i: int, size: float) -> Array:
+        vector = size * np.eye(3)[i % 3]
+        return pose(t=vector) if i < 3 else pose(fixed_xyz(vector * DEG))
+
+    steps = (STEPS_MM,) * 3 + (STEPS_DEG,) * 3
+    return {
+        letter: _largest(steps[i], lambda size, i=i: is_met(moved(i, size)))  # type: ignore[misc]
+        for i, letter in enumerate("XYZABC")
+    }
+
+
+def _largest(steps: Sequence[float], is_good: Callable[[float], bool]) -> float:
+    """Largest step up to which all are good either way; halving what is left."""
+    low, high = 0, len(steps)
+    while low < high:
+        middle = (low + high + 1) // 2
+        good = is_good(steps[middle - 1]) and is_good(-steps[middle - 1])
+        low, high = (middle, high) if good else (low, middle - 1)
+    return steps[low - 1] if low else 0.0

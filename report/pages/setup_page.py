@@ -1,0 +1,72 @@
+"""The set-up sheet: what an operator needs beside the programs, on two pages of paper."""
+
+from pathlib import Path
+
+from probe_paths.campaign import setup_tolerance
+from probe_paths.emit import ProgramSet
+from probe_paths.language import LANGUAGES, Dialect, Label, interlocks
+from probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, TouchPlan, calibration_hash
+from report.pages.page import write_page
+from report.plots import write_setup_picture
+from twin.frames import fixed_xyz_angles
+from twin.units import DEG, MINUTE
+
+PAGE, PICTURE = "setup.html", "setup.png"
+"""Names in the folder of the sheet."""
+
+_REMEDY = {
+    Label.OTHER_PROBE: "number and length of the probe in the tool table, to the ball's far pole",
+    Label.RADIUS: "calibration of the probe; another stylus",
+    Label.ROTATION: "column ROT of the preset's row",
+    Label.TOP: "software limit of Z against the machine file",
+    Label.PRESET_X: "X of the preset's row: the centre of the table",
+    Label.PRESET_Y: "Y of the preset's row: the centre of the table",
+    Label.PRESET_Z: "Z of the preset's row: the face of the table",
+    Label.ZERO_1: "the rotary axis in the preset's row",
+    Label.ZERO_2: "the rotary axis in the preset's row",
+}
+
+
+def write_setup_page(folder: Path, plan: TouchPlan, programs: ProgramSet, dialect: Dialect) -> Path:
+    """Write the sheet with its drawing; the path of the page.
+
+    Args:
+        folder: To be made.
+        plan: Of the programs.
+        programs: As written.
+        dialect: Of the control.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    write_setup_picture(folder / PICTURE, plan)
+    T = plan.setup.T_table_artefact
+    tests = interlocks(LANGUAGES[dialect.language], ProgramFrame(plan.chain, plan.probe))
+    heading = Heading(
+        standard=plan.standard.name,
+        setup=plan.setup,
+        probe=plan.probe,
+        workshop=plan.options.workshop,
+    )
+    tolerance = setup_tolerance(plan)
+    write_page(
+        folder / PAGE,
+        "setup.html",
+        picture_file=folder / PICTURE,
+        standard=plan.standard,
+        chain=plan.chain,
+        probe=plan.probe,
+        workshop=plan.options.workshop,
+        dialect=dialect,
+        origin=T[:3, 3].tolist(),
+        angles=(fixed_xyz_angles(T[:3, :3]) / DEG).tolist(),
+        calibration=calibration_hash(plan.standard),
+        workshop_hash=heading.workshop_hash,
+        programs=[(p.name, p.touches, p.duration / MINUTE) for p in programs.programs],
+        minutes=programs.duration / MINUTE,
+        visits=len(plan.visits),
+        refused=[str(refusal) for refusal in plan.refused],
+        alarms=[(int(t.label), t.what, f"{t.limit:g}", _REMEDY[t.label]) for t in tests],
+        missed=int(Label.NO_CONTACT),
+        tolerance=tolerance,
+        clearance=SMALLEST_GAP,
+    )
+    return folder / PAGE

@@ -1,0 +1,88 @@
+"""The set-up sheet: every alarm of the programs explained, every figure that of the plan."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.body import Meeting, contact
+from probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
+from probe_paths.language.dialect import Dialect
+from report.pages.setup_page import PAGE, PICTURE, write_setup_page
+from report.pages.tables import page_tables
+from twin.frames import apply, inverse, pose, turn
+from twin.machine.kinematics import linear_directions, tip
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "make_programs.py"
+
+
+@pytest.fixture(scope="module")
+def golden():
+    spec = importlib.util.spec_from_file_location("make_programs", GOLDEN)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def sheet(golden, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sheet") / "setup"
+    programs = golden.programs()
+    page = write_setup_page(folder, golden.plan(), programs, Dialect())
+    assert page == folder / PAGE
+    assert (folder / PICTURE).stat().st_size > 10_000
+    return page.read_text(encoding="utf-8"), programs
+
+
+def test_every_alarm_of_the_programs_is_explained(sheet):
+    text, programs = sheet
+    alarms = set(re.findall(r"LBL (\d+) ;(?:ALARM|NOTRIGGER)", programs.programs[0].text))
+    assert len(alarms) == 10
+    (table,) = [t for t in page_tables(text) if t.section == "Alarms"]
+    told = {row[0]: row for row in table.rows[table.headings :]}
+    assert set(told) == alarms
+    assert all(len(row[-1]) > 10 for row in told.values())
+
+
+def test_hashes_programs_and_place_are_those_of_the_head(sheet):
+    text, programs = sheet
+    head = programs.programs[0].text
+    for word in ("CALIBRATION", "WORKSHOP"):
+        assert re.search(rf";{word} (\w+)", head)[1] in text
+    (table,) = [t for t in page_tables(text) if t.section == "Run"]
+    rows = table.rows[table.headings :]
+    assert [(name, int(touches)) for name, touches, _ in rows] == [
+        (p.name, p.touches) for p in programs.programs
+    ]
+    place = next(t for t in page_tables(text) if t.section == "Mount")
+    found = [float(cell) for cell in place.rows[-1]]
+    np.testing.assert_allclose(found[:3], [12.0, -8.0, 5.0])
+    np.testing.assert_allclose(found[3:], [0.0, 0.0, np.degrees(0.35)], atol=1e-4)
+
+
+def test_the_tolerance_is_where_the_first_touch_is_lost(golden):
+    """With every touch and on its own: none is lost at the stated step, one at the next."""
+    plan = golden.plan()
+    tolerance = setup_tolerance(plan)
+    assert set(tolerance) == set("XYZABC")
+    assert all(0.0 < tolerance[a] <= STEPS_MM[-1] for a in "XYZ")
+    columns = [plan.chain.axis_index(a) for a in plan.chain.linear_axes]
+    direction = np.zeros((len(plan), len(plan.chain.axes)))
+    direction[:, [plan.chain.axis_index(a) for a in "XYZ"]] = plan.direction
+    along = linear_directions(plan.chain, plan.start)
+    way = np.einsum("nij,nj->ni", along, direction[:, columns])
+    centre = tip(plan.chain, plan.start, plan.probe.length)
+
+    def lost(z):
+        stands = inverse(plan.setup.T_table_artefact @ pose(t=np.array([0.0, 0.0, z])))
+        path = np.full(len(plan), 8.0)
+        met = contact(plan.standard, apply(stands, centre), turn(stands, way), 3.0, path)
+        return np.sum((met.meeting != Meeting.SURFACE) | (met.feature != plan.feature))
+
+    assert lost(tolerance["Z"]) == lost(-tolerance["Z"]) == 0
+    if tolerance["Z"] < STEPS_MM[-1]:
+        beyond = STEPS_MM[STEPS_MM.index(tolerance["Z"]) + 1]
+        assert lost(beyond) + lost(-beyond) > 0
+    assert lost(-9.0) > 0
