@@ -1,6 +1,6 @@
 """Runs whose noise remembers, AR(1) from touch to touch: false names, verdicts, hidden effects.
 
-    python benchmarks/noise_with_memory.py [--runs 40] [--hidden] [--jobs 1]
+    python benchmarks/noise_with_memory.py [--runs 40] [--first 0] [--hidden] [--jobs 1]
 
 The runs come from the independent exact simulator; only its white noise is exchanged for an
 autoregression of the same size with a correlation of 0.5 to 0.95 between touches that follow.
@@ -71,10 +71,11 @@ def one(job: tuple[int, bool]):
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=40)
+    parser.add_argument("--first", type=int, default=0, help="number of the first run")
     parser.add_argument("--hidden", action="store_true", help="with an effect hidden beside it")
     parser.add_argument("--jobs", type=int, default=1)
     args = parser.parse_args()
-    jobs = [(seed, args.hidden) for seed in range(args.runs)]
+    jobs = [(seed, args.hidden) for seed in range(args.first, args.first + args.runs)]
     with ProcessPoolExecutor(args.jobs) as pool:
         results = list(pool.map(one, jobs))
     for seed, true, found, verdict, told, right, seconds in results:

@@ -6,7 +6,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.answer.alike import Alike
-from diagnosis.evidence import EffectSet, ScaledEffect, Signatures, addition, projected, score_all
+from diagnosis.evidence import (
+    EffectSet,
+    ScaledEffect,
+    Signatures,
+    addition,
+    projected,
+    scanned_grids,
+    score_all,
+    signatures,
+)
 from diagnosis.search import refined
 from twin.frames import Array
 from twin.model import Effect
@@ -16,7 +25,8 @@ CONFUSED = float(np.log(100.0))
 """Log odds below which two effects count as not told apart."""
 
 WINDOW = 15.0
-"""Rivals whose evidence on the grid is this far behind are not refined."""
+"""Rivals whose evidence on the grid is this far behind that of the named effect on its own grid are
+not refined."""
 
 MOST_RIVALS = 40
 """Rivals that are refined, the most likely first: a class of more would tell a reader nothing."""
@@ -144,7 +154,7 @@ def confusion_class(
     names = {found.effect.name} | {o.effect.name for o in others}
     rivals = [Rival(found, 0.0, 1.0)]
     explained = _explained(base, found)
-    for variant in _ranked(pool, scores.evidence, top - WINDOW):
+    for variant in _ranked(pool, scores.evidence, min(top, _on_grid(base, found)) - WINDOW):
         candidate = pool.variants[variant]
         if candidate.name in names:
             continue
@@ -152,6 +162,15 @@ def confusion_class(
         overlap = float(abs(explained @ _explained(base, sized)))
         rivals.append(Rival(sized, float(top - evidence), overlap))
     return _ordered(rivals, plausibility([r.effect for r in rivals], complement.touches))
+
+
+def _on_grid(base: EffectSet, found: ScaledEffect) -> float:
+    """Evidence of an effect at the best point of its grid: a large one gains by thousands between.
+
+    Its rivals stand at points of their grids, so there it is held against them.
+    """
+    grids = scanned_grids([found.effect], base.complement)
+    return float(score_all(base, signatures(base.complement, grids, 1)).evidence.max())
 
 
 def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:

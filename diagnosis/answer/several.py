@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.answer.trend import Trend, run_errors
+from diagnosis.answer.trend import SingleChange, Trend, run_errors, single_change
 from diagnosis.answer.verdict import Diagnosis
 from diagnosis.fit import Fit, Prior, fit_run
 from diagnosis.geometry import (
@@ -36,12 +36,12 @@ def settled(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]
     fitted = [int(i) for i in np.unique(touches.run[task.run.split != "test"])]
     possible = [0] * task.is_known + fitted[1:]
     free = diagnosed(_with(task, possible))
-    shown = _shown(task, free, possible)
+    shown, alone = _shown(task, free, possible)
     result = free if shown == possible else diagnosed(_with(task, shown))
     if len(touches.runs) == 1:
         return result
     apart = geometry_rows(_apart(result.fit, fitted[1:]))
-    trend = Trend(run_errors(result.fit), tuple(shown), apart, geometry_rows(result.fit))
+    trend = Trend(run_errors(result.fit), tuple(shown), apart, geometry_rows(result.fit), alone)
     return replace(result, trend=trend)
 
 
@@ -53,16 +53,26 @@ def _with(task: DiagnosisTask, since: Sequence[int]) -> DiagnosisTask:
     return replace(task, model=model, prior=with_changes(task.prior, model))
 
 
-def _shown(task: DiagnosisTask, free: Diagnosis, possible: Sequence[int]) -> list[int]:
-    """Runs from which on the geometry is another: a quantity says so, or all of them together."""
+def _shown(
+    task: DiagnosisTask, free: Diagnosis, possible: Sequence[int]
+) -> tuple[list[int], dict[int, SingleChange]]:
+    """Runs from which on the geometry is another, and what changed into them if only one thing did.
+
+    A quantity says so while all the others may change as well; or all of them together; or one
+    effect by itself, which a crash or a shim is likelier to be than a hundred at once.
+    """
     shown = {*_since_model(free.geometry.rows), *changed_runs(free.fit)}
+    alone: dict[int, SingleChange] = {}
     for run in (i for i in possible if i not in shown):
         without, beside = (_fit(task, free, since) for since in (shown, {*shown, run}))
         # an earlier fit that has to be believed less is one of another state of the machine
         is_contradicted = run == 0 and without.widened > 1.0
-        if is_contradicted or _evidence(beside) > _evidence(without) + CLEARLY:
+        single = single_change(without, run) if run else None
+        if single is not None:
+            alone[run] = single
+        if is_contradicted or single or _evidence(beside) > _evidence(without) + CLEARLY:
             shown.add(run)
-    return sorted(shown)
+    return sorted(shown), alone
 
 
 def _fit(task: DiagnosisTask, free: Diagnosis, since: Iterable[int]) -> Fit:

@@ -1,12 +1,15 @@
 """What several runs of one machine tell of its course, and how well each of them is known."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from diagnosis.fit import Fit, fit_run
-from diagnosis.geometry import GeometryRow, changed_since, changing
+from diagnosis.geometry import CHANGED, Estimate, GeometryRow, changed_since, changing
+from twin.effects import Change
 from twin.frames import Array
+from twin.model import Effect, columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +38,26 @@ class RunErrors:
         return self.rms is None
 
 
+ALIKE = 1.0
+"""Standard uncertainties by which a location error may be less clear than another effect and is
+still the one that is told: odds of the root of e."""
+
+
+@dataclass(frozen=True, slots=True)
+class SingleChange:
+    """What changed into a run, if nothing else of the geometry did.
+
+    Attributes:
+        effect: The clearest of all.
+        unit: Of its parameter, "mm" or "rad".
+        size: Of the change.
+    """
+
+    effect: Effect
+    unit: str
+    size: Estimate
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Trend:
     """What changed between several runs of one machine, and what did not.
@@ -46,12 +69,15 @@ class Trend:
         rows: The geometry with its course, every run by itself.
         settled: The same with runs between which nothing changed as one: what did change is known
             better by it.
+        alone: By run, the one change that is beyond chance if nothing else changed, where none is
+            while everything may.
     """
 
     runs: tuple[RunErrors, ...]
     changed: tuple[int, ...]
     rows: tuple[GeometryRow, ...]
     settled: tuple[GeometryRow, ...]
+    alone: Mapping[int, SingleChange] = field(default_factory=dict)
 
     def known_best(self, run: int) -> tuple[GeometryRow, ...]:
         """The rows, in the same order, by which what changed into a run is known best."""
@@ -77,6 +103,40 @@ def run_errors(fit: Fit) -> tuple[RunErrors, ...]:
             )
         )
     return tuple(out)
+
+
+def single_change(fit: Fit, run: int) -> SingleChange | None:
+    """The clearest change of one effect into a run, nothing else changing; None within chance.
+
+    One column more beside a fit: ``a = c^T r / c^T P c`` with P the projection on what the model
+    cannot imitate and r what it leaves.
+
+    Args:
+        fit: In which that run is as the one before.
+        run: Number of the run.
+    """
+    touches = fit.run.touches
+    beside = changing(fit.model, touches, [run]).effects
+    tried = [e for e in beside if isinstance(e, Change) and len(e.parameters) == 1]
+    C = columns(tried, touches)
+    C = fit.whitener(C) if fit.whitener else C[fit.used] / (fit.u[fit.used, None] * fit.weight)
+    left = C - fit.solution.Q @ (fit.solution.Q.T @ C)
+    size = np.einsum("np,np->p", C, left)
+    sd = np.array([p.sd for e in tried for p in e.parameters])
+    seen = np.flatnonzero(size * sd**2 > 1.0)  # what is expected would show beyond the noise
+    if not len(seen):
+        return None
+    value, u = (left.T @ fit.solution.residual)[seen] / size[seen], 1.0 / np.sqrt(size[seen])
+    clear = np.abs(value) / u
+    # a slope of a straightness and a squareness are one thing: the user's word is the second
+    is_place = np.array([tried[i].effect.kind == "location" for i in seen])
+    best = int(np.argmax(clear + ALIKE * is_place))
+    if clear[best] <= CHANGED:
+        return None
+    effect = tried[seen[best]].effect
+    return SingleChange(
+        effect, effect.parameters[0].unit, Estimate(float(value[best]), float(u[best]))
+    )
 
 
 def _without(fit: Fit, run: int) -> Fit | None:

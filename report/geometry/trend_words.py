@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from diagnosis.answer import Trend
 from diagnosis.geometry import CHANGED, Estimate, GeometryRow, Quantity
+from report.effects import effect_title
 from report.geometry.geometry_words import quantity_name, shown_unit, sized
 from report.numbers import digits
 from report.words import microns
@@ -26,7 +27,7 @@ def change_sentences(trend: Trend) -> list[str]:
         if i not in trend.changed:
             out.append(f"{between} nothing of the geometry changed{_would_have(trend.rows, i)}")
         elif not rows:
-            out.append(f"{between} the geometry changed, no quantity by itself beyond chance")
+            out.append(f"{between} the geometry changed{_alone(trend, i)}")
         else:
             told = [_changed(row, i) for row in rows[:TOLD]]
             more = f"; and {len(rows) - TOLD} more in the table" if len(rows) > TOLD else ""
@@ -44,6 +45,15 @@ def _left_out(trend: Trend) -> str:
     known = [(run.name, run.left_out) for run in trend.runs if run.left_out is not None]
     errors = [f"{name} {microns(error)}" for name, error in known]
     return f"each run predicted by the others, its set-ups fitted: {', '.join(errors)} rms"
+
+
+def _alone(trend: Trend, run: int) -> str:
+    """What changed if only one thing did, where no quantity is clear while all may change."""
+    single = trend.alone.get(run)
+    if single is None:
+        return ", though no quantity by itself beyond chance"
+    size = sized(single.size, single.unit)
+    return f"; if only one of its errors did, {effect_title(single.effect)} by {size}"
 
 
 def changed_rows(trend: Trend, run: int) -> list[GeometryRow]:

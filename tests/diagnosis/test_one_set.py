@@ -26,7 +26,7 @@ from matstd.cli import main
 from report.words.diagnosis_words import figures, number_words
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
-from twin.model.model import Model
+from twin.model.model import Model, columns
 from twin.record.copies import without_copies
 from twin.units import UM
 
@@ -249,3 +249,18 @@ def test_ways_of_a_choice_are_told_with_the_limit_that_was_met() -> None:
     table = choice_table(choice)
     assert (table["chosen"], table["blocks"]) == ("single effects", 2)
     assert [w["held_out_um"] for w in table["ways"]] == pytest.approx([plain, 1.0], rel=1e-5)
+
+
+def test_rivals_of_a_large_effect_are_told(case) -> None:
+    """Hundreds of times the noise, off the grid: one growth is like two others."""
+    run = case(*LAG).run
+    start = ordinary_model(run.touches.chain)
+    lag = parse_effect("thermal-lag(EZZ)", start.chain).tuned(1900.0)
+    large = columns([lag], run.touches)[:, 0] * 300 * UM
+    run = replace(run, deviation=run.deviation + large)
+    task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
+    alike = [f"thermal-lag(EZ{axis})" for axis in "XYZ"]
+    library = [parse_effect(n, start.chain) for n in [*alike, "thermal-lag(EXC)", "backlash(X)"]]
+    tested = told_set(search_until_stable(task, (), library))
+    growth = next(c for c in tested.classes if c.effect.name in alike)
+    assert {growth.effect.name, *(r.effect.name for r in growth.rivals)} == set(alike)

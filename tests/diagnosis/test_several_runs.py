@@ -12,6 +12,7 @@ from simulator_runs import read_runs, simulated_runs
 
 from diagnosis.answer.comparison import compare
 from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.answer.trend import single_change
 from diagnosis.answer.verdict import Verdict
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.prior import Prior
@@ -115,6 +116,20 @@ def test_a_slow_change_is_seen_though_no_step_of_it_would_be() -> None:
     assert len(found) < 4
     same = joined(made(6, [{}] * 5))
     assert changed_runs(fit_run(same, changing(model, same.touches, range(1, 5)))) == ()
+
+
+@pytest.mark.parametrize("seed", [4, 6])
+def test_one_change_alone_is_seen_where_a_hundred_at_once_would_hide_it(seed) -> None:
+    """Four times finer than a geometry of which anything may change; nothing where nothing did."""
+    found = []
+    for size in (0.0, CHANGE):
+        run = joined(made(seed, [{}, {"EC0Y": size}]))
+        found.append(single_change(fit_run(run, ordinary_model(run.touches.chain)), 1))
+    nothing, squareness = found
+    assert nothing is None
+    assert squareness.effect.name == "location(EC0Y)"
+    assert abs(squareness.size.value - CHANGE) < COVERED * squareness.size.u
+    assert squareness.size.u < 3.0 * URAD
 
 
 # since a saved model
