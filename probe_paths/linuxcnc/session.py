@@ -229,7 +229,7 @@ def _outcome(folder: Path, programs: Sequence[Program], said: str, logs: Mapping
         halt = (
             f"touch {missed[-1]} has no contact" if missed else "a test of probe, preset or machine"
         )
-        return re.sub(r": M0\Z", f": {halt}", f"LinuxCNC {stopped[0]}")
+        return re.sub(r": (M0|1011|1014)\Z", f": {halt}", f"LinuxCNC {stopped[0]}")
     done = [line.removeprefix("done ") for line in lines if line.startswith("done ")]
     left = [p.file for p in programs if p.file not in done]
     if not left:

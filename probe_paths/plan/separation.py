@@ -173,8 +173,9 @@ def _nearest(
     for pick in _SUBSETS:
         i = np.array(pick)
         share = _solved(gram[:, i[:, None], i], right[:, i])
-        with np.errstate(invalid="ignore"):  # shares of points on one line may be inf and -inf
-            good = has[:, i].all(axis=1) & (share >= 0.0).all(axis=1) & (share.sum(axis=1) <= 1.0)
+        # points in a line or a plane have no solution of their own: a smaller set has it
+        share = np.where(np.isfinite(share).all(axis=1)[:, None], share, -1.0)
+        good = has[:, i].all(axis=1) & (share >= 0.0).all(axis=1) & (share.sum(axis=1) <= 1.0)
         there = w + np.einsum("mi,mik->mk", share, edge[:, i])
         size = np.einsum("mi,mi->m", there, there)
         better = np.flatnonzero(good & (size < smallest))

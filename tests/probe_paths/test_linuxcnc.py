@@ -266,7 +266,7 @@ def test_a_control_that_dies_half_way_leaves_its_log(
             "LinuxCNC stopped MS_A_2.ngc: Linear move would exceed Z limits",
         ),
         (
-            "echo 'NOCONTACT P7.000000' > MS_A_1.TXT; echo 'stopped MS_A_1.ngc: M0' > headless.txt",
+            "echo NOCONTACT P7.000000 > MS_A_1.TXT; echo stopped MS_A_1.ngc: 1014 > headless.txt",
             "LinuxCNC stopped MS_A_1.ngc: touch 7 has no contact",
         ),
         (
