@@ -41,7 +41,13 @@ def settled(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]
     if len(touches.runs) == 1:
         return result
     apart = geometry_rows(_apart(result.fit, fitted[1:]))
-    trend = Trend(run_errors(result.fit), tuple(shown), apart, geometry_rows(result.fit), alone)
+    trend = Trend(
+        runs=run_errors(result.fit),
+        changed=tuple(shown),
+        rows=apart,
+        settled=geometry_rows(result.fit),
+        alone=alone,
+    )
     return replace(result, trend=trend)
 
 

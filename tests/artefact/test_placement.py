@@ -250,7 +250,7 @@ def test_poses_keep_room_to_be_approached(reach, chain):
     np.testing.assert_allclose(poses / DEG, np.round(poses / DEG), atol=1e-9)
     assert len(np.unique(poses[:, 1])) > 20  # many different readings of B
     Criterion.rotary = np.array([(0.0, 0.0), (-109.0 * DEG, -108.0 * DEG)])
-    with pytest.raises(NotReachable, match="no room to approach"):
+    with pytest.raises(NotReachable, match="leave no room: they are approached from both sides"):
         table_poses(Criterion, 18)
 
 

@@ -10,6 +10,7 @@ from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.verdict import Verdict
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
+from diagnosis.fit.prior import Prior
 from diagnosis.regression.memory import CLEARLY, Memory, likely_memory, whitener
 from diagnosis.remarks.run_remarks import remarks
 from report.words.diagnosis_words import verdict_sentence
@@ -176,9 +177,9 @@ def test_the_stated_error_is_that_of_another_run(clean, memory) -> None:
 def test_rows_that_count_for_less_widen_what_is_told(noisy) -> None:
     """With a = 0.8 nine touches are one observation: uncertainties of the well known grow by 3."""
     model = ordinary_model(noisy.touches.chain)
-    gross = fit_run(noisy, model).gross
-    whole = fit_run(noisy, model, gross=gross)
-    slow = fit_run(noisy, model, gross=gross, memory=Memory(0.8, is_filtered=False))
+    prior, gross = Prior.of_effects(model.effects), fit_run(noisy, model).gross
+    whole = fit_run(noisy, model, prior, gross=gross)
+    slow = fit_run(noisy, model, prior, gross=gross, memory=Memory(0.8, is_filtered=False))
     assert slow.weight == pytest.approx(3.0)
     ratio = np.sqrt(np.diag(slow.covariance) / np.diag(whole.covariance))
     assert np.all(ratio > 0.999)

@@ -311,6 +311,6 @@ def test_a_slip_is_as_large_as_the_direction_that_was_probed_says() -> None:
     (told,), _ = sizes(
         task, [ScaledEffect(slip, 4.0)], gross, ResidualSpace.of(task.fit((), gross))
     )
-    size = next(r for r in told if r.name.startswith("rms"))
+    size = next(r for r in told if r.name.startswith("amplitude"))
     assert abs(size.value - 9.0) < 3.0 * size.u
     assert size.u < 1.0

@@ -159,7 +159,7 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("\nradius_mm = 3.0", "\nradius_mm = 20.0", "limits.min_concave_radius_mm"),
         ("gap_mm = 1.0", "gap_mm = -1.0", "limits.gap_mm"),
         ("gap_mm = 1.0", "gap_mm = 60.0", "8 patches fit on the blank; between them the ball"),
-        ("B = [-90.0, 20.0]", "B = [28.0, 30.0]", "limits of B leave no room"),
+        ("B = [-90.0, 20.0]", "B = [28.0, 30.0]", "leave no room: they are approached"),
     ],
 )
 def test_bad_project(

@@ -40,7 +40,10 @@ def without_copies(run: Run) -> Run:
     """
     out, remarks = run, list(run.remarks)
     same = _copies(run, with_time=True)
-    if same.sum() > (0.0 if np.ptp(run.touches.time) > 0.0 else 3.0 * _by_chance(run)):
+    chance = 0.0 if np.ptp(run.touches.time) > 0.0 else 3.0 * _by_chance(run)
+    if same.any() and same.sum() > chance:
+        0.0 if np.ptp(run.touches.time) > 0.0 else 3.0 * _by_chance(run)
+    ):
         out = out[~same]
         remarks.append(_words(run, same, "stand twice" if same.sum() > 1 else "stands twice"))
     again = _copies(out, with_time=False)
