@@ -42,8 +42,6 @@ def without_copies(run: Run) -> Run:
     same = _copies(run, with_time=True)
     chance = 0.0 if np.ptp(run.touches.time) > 0.0 else 3.0 * _by_chance(run)
     if same.any() and same.sum() > chance:
-        0.0 if np.ptp(run.touches.time) > 0.0 else 3.0 * _by_chance(run)
-    ):
         out = out[~same]
         remarks.append(_words(run, same, "stand twice" if same.sum() > 1 else "stands twice"))
     again = _copies(out, with_time=False)
