@@ -174,7 +174,8 @@ def _nearest(
         i = np.array(pick)
         share = _solved(gram[:, i[:, None], i], right[:, i])
         # points in a line or a plane have no solution of their own: a smaller set has it
-        share = np.where(np.isfinite(share).all(axis=1)[:, None], share, -1.0)
+        finite = np.asarray(np.isfinite(share).all(axis=1))
+        share = np.where(finite[:, None], share, -1.0)
         good = has[:, i].all(axis=1) & (share >= 0.0).all(axis=1) & (share.sum(axis=1) <= 1.0)
         there = w + np.einsum("mi,mik->mk", share, edge[:, i])
         size = np.einsum("mi,mi->m", there, there)
