@@ -128,6 +128,7 @@ def test_06_the_step_file_holds_one_solid_with_every_face_named(tmp_path: Path) 
     assert {p.name for p in tmp_path.iterdir()} == {"standard.step", "standard.stl"}
 
 
+@pytest.mark.slow
 def test_05_an_ideal_scatter_leaves_what_the_noise_leaves_and_one_face_leaves_more() -> None:
     result = load(5).main()
     left = result["not predicted after 160 touches, µm"]

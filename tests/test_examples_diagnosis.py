@@ -181,6 +181,7 @@ def test_the_spindle_run_is_the_record(tmp_path):
     np.testing.assert_array_equal(again.split, run.split)
 
 
+@pytest.mark.slow
 def test_thermal_memory_is_found_in_the_spindle_and_halves_the_held_out_error():
     """What is found does not rest on the sampling: here a row every half hour."""
     make_run, warm_body = module(THERMAL / "make_run.py"), module(THERMAL / "warm_body.py")

@@ -26,6 +26,8 @@ from twin.machine.kinematics import table_to_tool, tip
 from twin.record.touches import Setup
 from twin.units import DEG, NM
 
+pytestmark = pytest.mark.slow  # whole designs; `test_placement_parts` and the command's test stay
+
 LENGTH = 160.0
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
 CHOICE = TouchOptions(touches=160, poses=12)

@@ -75,6 +75,7 @@ def test_a_fine_log_shows_a_short_period(period: float) -> None:
     assert confusion.alike is None
 
 
+@pytest.mark.slow
 def test_a_fine_log_of_many_rows_shows_two_periods() -> None:
     """A screw of 2 mm and an encoder of 0.25 mm, written down while the axis moves evenly."""
     rng = np.random.default_rng(4)
@@ -108,6 +109,7 @@ def test_a_large_sine_keeps_its_name_beside_a_wave_in_time(times: float) -> None
     assert found.fit.rms == pytest.approx(UM, rel=0.06)
 
 
+@pytest.mark.slow
 def test_a_small_sine_is_found_beside_a_large_one_in_a_long_log() -> None:
     """Six thousand rows are screened: the second period stands only in the second screening."""
     rng = np.random.default_rng(99)

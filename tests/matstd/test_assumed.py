@@ -51,6 +51,7 @@ def test_tables_say_it(place, capsys, words) -> None:
     assert LINE in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_study_says_it_on_the_console_and_on_its_page(place, capsys) -> None:
     project = 'format = "project/1"\nseed = 1\nmachine = "machine.toml"\n[workspace]\nposes = 500\n'
     project += "[montecarlo]\ndraws = 100\n[probe]\nradius_mm = 3.0\nlength_mm = 160.0\n"
