@@ -57,9 +57,9 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The whole command with fewer candidates, one rival of spheres and no maps in space.
+    """The whole command with fewer candidates, one rival of spheres and no maps but the path.
 
-    `make proof` has them all.
+    `make proof` has them all; maps are those of `matstd sensitivity`, which has its own test.
     """
     folder = tmp_path_factory.mktemp("design")
     out = folder / "out"
@@ -68,6 +68,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(design, "placement_options", fewer)
         patch.setattr(placed_spheres, "_CANDIDATES", 60)
         patch.setattr(placed_spheres, "COUNTS", (4,))
+        patch.setattr(design, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
     return out
