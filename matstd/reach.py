@@ -1,4 +1,4 @@
-"""What of the wanted standard the machine reaches, looked at before anything else is done.
+"""What of the wanted standard fits and is reached, looked at before anything else is done.
 
 A refusal says which travel or angle binds, and the nearest wish that could be met.
 """
@@ -11,6 +11,7 @@ import numpy as np
 
 from artefact.body import DatumSphere, Standard
 from artefact.brief import Project
+from artefact.place import room_for
 from artefact.reach import (
     ANGLE,
     Limit,
@@ -30,9 +31,9 @@ from probe_paths.plan import (
     swing_height,
     top_height,
 )
-from report.plots import draw_reach
+from report.plots import draw_reach, draw_room
 from report.style import save
-from twin.errors import NotReachable
+from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
 from twin.machine import linear_directions
 from twin.record import Setup
@@ -40,6 +41,9 @@ from twin.units import DEG
 
 PICTURE = "reach.png"
 """File of the picture in a folder of results."""
+
+ROOM_PICTURE = "room.png"
+"""Of the patches that fit on the blank; only a refusal draws it."""
 
 _POSES = 60  # table poses that are tried
 _PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer no choice of patches was ever found
@@ -118,6 +122,32 @@ def check_reach(project: Project, folder: Path) -> Array:
     raise NotReachable(f"{project.path}: {against}; {nearest}")
 
 
+def check_room(project: Project, folder: Path, poses: Array) -> None:
+    """Refuse more patches than stand side by side, with a picture of those that do.
+
+    Args:
+        project: What is wanted.
+        folder: For the picture.
+        poses: Table poses to choose from, (K, R), rad.
+
+    Raises:
+        NotBuildable: How many fit (fact `fitting`), the gap with which all would (`gap`, mm).
+    """
+    made, options = blank(project), placement_options(project)
+    patches, limits = options.patches, made.limits
+    room = room_for(patches, probe_reach(project), made, poses, options.sites, project.seed)
+    if len(room.sites) >= patches:
+        return
+    save(draw_room(room.sites, patches, made), folder / ROOM_PICTURE)
+    raise NotBuildable(
+        f"only {len(room.sites)} of {patches} patches fit on the blank side by side, of "
+        f"{room.tried} places tried; between them the ball of radius {limits.ball_radius:g} mm has "
+        f"to pass with a gap of {limits.gap:g} mm",
+        fitting=len(room.sites),
+        gap=room.gap,
+    )
+
+
 def _enough(project: Project) -> int:
     return _PLACES_A_PATCH * placement_options(project).patches
 
@@ -159,11 +189,21 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
     retract = chain.link("Z").range[1] - options.retract
     to_rise = top_height(chain, poses, solid, tool) + options.clearance
     turns = np.flatnonzero(to_rise <= retract)  # the way to the others is of no use
-    home = home_readings(chain)
-    ways = [swing_height(chain, np.stack([home, poses[i]]), solid, tool)[0] for i in turns]
+    home, ends = home_readings(chain), _beyond(project, poses, options.overshoot)
+    ways = [swing_height(chain, np.stack([home, ends[i]]), solid, tool)[0] for i in turns]
     turning = np.array(ways) + 0.5 * options.clearance
     to_rise[turns] = np.maximum(to_rise[turns], turning)
     return to_rise, retract
+
+
+def _beyond(project: Project, poses: Array, overshoot: float) -> Array:
+    """Poses (K, R) with the way beyond them from which they may be approached, where it exists."""
+    travels = [project.chain.link(a).range for a in project.chain.rotary_axes]
+    low, high = np.array(travels).reshape(-1, 2).T
+    home = home_readings(project.chain)
+    out = poses + overshoot * np.where(poses >= home, 1.0, -1.0)
+    beyond: Array = np.where((out >= low) & (out <= high), out, poses)
+    return beyond
 
 
 def _fits(project: Project, wish: Wish) -> bool:
