@@ -33,7 +33,7 @@ _KEYS = {
     "slope": "limits.max_slope_deg (larger)",
     "height": "blank.height_mm (larger)",
     "room for the ball before": "limits.gap_mm or probe.radius_mm (smaller)",
-    "distance of the stem from": "limits.gap_mm (smaller)",
+    "distance of the stem from": "limits.gap_mm or probe.radius_mm (smaller)",
     "mass": "limits.max_mass_kg (larger)",
 }
 """What may be changed where a constraint binds."""
