@@ -19,6 +19,7 @@ _WORDS = {
     "rms": "rms that it alone explains",
     "length": "correlation length",
     "tau": "time constant",
+    "step": "per step of",
 }
 
 PERIODS_TOLD = 4
