@@ -17,13 +17,22 @@ from artefact.reach import (
     Limit,
     PlacesInReach,
     ProbeReach,
+    hangs,
     places_on,
     reach_of,
+    seat_height,
     spread_poses,
     turned,
 )
 from artefact.worth import poses_within
-from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
+from matstd.from_project import (
+    blank,
+    placement_options,
+    plan_options,
+    probe,
+    probe_reach,
+    workshop,
+)
 from probe_paths.plan import (
     home_readings,
     readings_at,
@@ -33,8 +42,8 @@ from probe_paths.plan import (
 )
 from report.plots import draw_reach, draw_room
 from report.style import save
-from twin.errors import NotBuildable, NotReachable
-from twin.frames import Array
+from twin.errors import BadFile, NotBuildable, NotReachable
+from twin.frames import Array, fixed_xyz_angles
 from twin.machine import linear_directions
 from twin.record import Setup
 from twin.units import DEG
@@ -45,6 +54,7 @@ PICTURE = "reach.png"
 ROOM_PICTURE = "room.png"
 """Of the patches that fit on the blank; only a refusal draws it."""
 
+_SUNK = 1.0  # mm by which a seat may lie below the table's face: set-ups are measured
 _POSES = 60  # table poses that are tried
 _PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer no choice of patches was ever found
 _SHIFTS = (20.0, 50.0, 100.0, 200.0, 400.0)  # mm
@@ -87,8 +97,10 @@ def check_reach(project: Project, folder: Path) -> Array:
         Table poses to choose from, (K, R), rad: those at which Z can rise above the standard.
 
     Raises:
+        BadFile: A standard that stands in the table or hangs under it.
         NotReachable: Fewer places than a standard needs; which limit binds, the nearest wish.
     """
+    _check_standing(project)
     wanted, rotary = probe_reach(project), _rotary(project)
     poses = poses_within(project.chain, rotary, placement_options(project).choice.poses)
     places, enough = places_on(blank(project)), _enough(project)
@@ -120,6 +132,26 @@ def check_reach(project: Project, folder: Path) -> Array:
     found = [wish.words for wish in _nearest(project, wanted, rotary, tried)]
     nearest = f"{' or '.join(found)} would do" if found else f"no other {_TRIED} alone would do"
     raise NotReachable(f"{project.path}: {against}; {nearest}")
+
+
+def _check_standing(project: Project) -> None:
+    setup, face = project.setup, workshop(project).table.high
+    key, T = f"setup.{setup.name}", setup.T_table_artefact
+    above = seat_height(T, blank(project).base.half_size) - face
+    if above < -_SUNK:
+        raise BadFile(
+            project.path,
+            f"{key}.origin_mm",
+            T[:3, 3].tolist(),
+            f"a seat on the table's face or above it: its lowest corner lies {-above:.1f} mm below",
+        )
+    if hangs(project.chain, T):
+        raise BadFile(
+            project.path,
+            f"{key}.rotation_deg",
+            np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 6).tolist(),
+            "a standard that looks towards the tool with every axis at zero: its seat does",
+        )
 
 
 def check_room(project: Project, folder: Path, poses: Array) -> None:
@@ -208,9 +240,13 @@ def _beyond(project: Project, poses: Array, overshoot: float) -> Array:
 
 def _fits(project: Project, wish: Wish) -> bool:
     """Whether a changed project is within reach; by few places and poses first."""
+    T, made = wish.reach.setup.T_table_artefact, blank(project)
+    sunk = seat_height(T, made.base.half_size) < wish.reach.workshop.table.high - _SUNK
+    if sunk or hangs(project.chain, T):
+        return False
     grid = poses_within(project.chain, wish.rotary, placement_options(project).choice.poses)
     for some, step in ((spread_poses(grid, _ROUGH), 3), (spread_poses(grid, _POSES), 1)):
-        point, normal = (v[::step] for v in places_on(blank(project)))
+        point, normal = (v[::step] for v in places_on(made))
         if reach_of(wish.reach, point, normal, some).places * step < _enough(project):
             return False
     to_rise, retract = _to_rise(project, wish.reach, some)

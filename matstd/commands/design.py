@@ -58,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from artefact.brief import read_project
+    from artefact.reach import standing_remarks
     from matstd.console import say, say_assumed
     from matstd.folder import results_folder
     from matstd.from_project import dialect
@@ -70,6 +71,8 @@ def run(args: argparse.Namespace) -> int:
         project = replace(project, control=own if own.endswith(".toml") else args.control)
     dialect(project)  # a control that nobody knows is refused before any work
     say_assumed(project.chain)
+    for remark in standing_remarks(project.chain, project.setup.T_table_artefact):
+        say(f"- {remark}")
     leftovers = (*REPORT_FILES, *SHEET_FILES)
     with (
         results_folder(args.output, args.force, leftovers, [REFUSED, NO_ROOM]) as folder,
