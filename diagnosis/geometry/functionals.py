@@ -193,9 +193,12 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
     t = fit.run.touches[fit.used]
     link = t.chain.link(axis)
     reach = float(np.linalg.norm(np.ptp(t.point_table, axis=0)))
+    if t.instrument.reads_angle:
+        reach = float(np.median(np.linalg.norm(t.point, axis=1)))
     unit = {False: "mm", True: "rad"}
     is_joint = t.chain.is_serial_arm and axis in t.chain.arm_joints
-    for component, weights in () if is_joint else sorted(_line_of(fit, axis).items()):
+    is_untold = is_joint or t.instrument.reads_angle  # where it is, no angle tells
+    for component, weights in () if is_untold else sorted(_line_of(fit, axis).items()):
         yield Functional(
             quantity=Quantity.ROTARY_LINE,
             symbol=f"E{LETTERS[component]}0{axis}",
@@ -206,12 +209,15 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
         )
     for component, curve in sorted(_curves(fit, _along_axis(fit, axis), link).items()):
         is_angle = component >= 3
+        weights = _peak_to_valley(curve, theta)
+        if not np.any(weights):  # nothing that was measured feels it
+            continue
         yield Functional(
             quantity=Quantity.ROTARY_MOTION,
             symbol=f"E{LETTERS[component]}{axis}",
             axes=(axis,),
             unit=unit[is_angle],
-            weights=_peak_to_valley(curve, theta),
+            weights=weights,
             lever=reach if is_angle else 1.0,
         )
 
@@ -253,7 +259,7 @@ def _line_of(fit: Fit, axis: str) -> dict[int, Array]:
         [np.tile(np.eye(3), (len(poses), 1, 1)), _crossed(poses.point_table)], axis=2
     )
     basis = np.concatenate([np.stack(list(own.values()), axis=2), rigid], axis=2)
-    size = np.linalg.norm(basis.reshape(-1, basis.shape[2]), axis=0)
+    size = np.maximum(np.linalg.norm(basis.reshape(-1, basis.shape[2]), axis=0), 1e-300)
     scaled = basis.reshape(-1, basis.shape[2]) / size
     found = np.linalg.lstsq(scaled, D.reshape(-1, D.shape[2]), rcond=1e-9)[0] / size[:, None]
     return {component: found[k] for k, component in enumerate(own)}

@@ -141,7 +141,7 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
     """
     noted = [r for r in geometry.rows if r.has_changed or r.is_beyond_expected]
     if not noted:
-        noted = [r for r in geometry.rows if r.quantity in USUAL and r.is_determined]
+        noted = [r for r in geometry.rows if _is_usual(r) and r.is_determined]
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
     lines = [_line(r) for r in by_size[:NOTED]]
     told = [
@@ -161,6 +161,12 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
             "beyond chance",
         )
     return told
+
+
+def _is_usual(row: GeometryRow) -> bool:
+    """Whether a reader asks for it first; of a rotary axis that is where it stands."""
+    is_positioning = row.quantity is Quantity.ROTARY_MOTION and row.symbol[1] == row.axes[0][0]
+    return row.quantity in USUAL or is_positioning
 
 
 def ladder_sentence(geometry: LearntGeometry) -> str:

@@ -52,6 +52,8 @@ def named_value(reported: Reported) -> tuple[str, str]:
         return words, span(reported.value)
     if reported.quantity == "length" and not reported.unit:
         return words, f"{reported.value:.0%} of the travel"
+    if reported.quantity == "harmonic":
+        return words, f"{reported.value:g} a turn"
     return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))
 
 

@@ -108,6 +108,9 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         placed, moved = aligned(stated)
         run = replace(placed, deviation=stated.deviation)
     remarks += [columns.moved_setup(m) for m in moved]
+    if head.instrument.reads_angle:
+        arm = float(np.median(np.linalg.norm(stated.touches.point, axis=1)))
+        remarks.append(f"deviations are angles times {arm:g} mm: 1 µm is {1000.0 / arm:.3g} µrad")
     try:
         run = checked_run(run, table, remarks)
     except BadFile as refusal:
