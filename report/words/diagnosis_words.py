@@ -20,6 +20,7 @@ _WORDS = {
     "peak_to_valley": "peak to valley",
     "length": "correlation length",
     "tau": "time constant",
+    "step": "per step of",
 }
 
 PERIODS_TOLD = 4

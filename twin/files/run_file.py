@@ -109,8 +109,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         run = replace(placed, deviation=stated.deviation)
     remarks += [columns.moved_setup(m) for m in moved]
     if head.instrument.reads_angle:
-        arm = float(np.median(np.linalg.norm(stated.touches.point, axis=1)))
-        remarks.append(f"deviations are angles times {arm:g} mm: 1 µm is {1000.0 / arm:.3g} µrad")
+        remarks.append(columns.angles_told(stated.touches.point))
     try:
         run = checked_run(run, table, remarks)
     except BadFile as refusal:
