@@ -1,4 +1,4 @@
-"""How near the tool comes to anything at the touches of emitted programs, by a checker from outside.
+"""How near the tool comes to anything at the touches of emitted programs, from outside.
 
     python benchmarks/emitted_gaps.py OUT [--wide]
 
