@@ -19,10 +19,14 @@ _WORDS = {
     "rms": "rms that it alone explains",
     "length": "correlation length",
     "tau": "time constant",
+    "step": "per step of",
 }
 
 PERIODS_TOLD = 4
 """Periods that look alike that are told one by one, the longest ones."""
+
+WITHIN = 0.1
+"""Excess over stated noise below which nothing stands out of it: half a per cent of its size."""
 
 ALL_TOLD = 7
 """Numbers of an effect that are told one by one; of more only the size is."""
@@ -104,6 +108,14 @@ def excess(fit: Fit) -> float:
     """Root mean square of what is left beyond the stated noise, mm."""
     stated = stated_noise(fit.run)
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
+
+
+def _left(fit: Fit) -> str:
+    """How much a fit leaves, as a clause: beyond the stated noise, or within it."""
+    beyond, stated = excess(fit), stated_noise(fit.run)
+    if beyond < WITHIN * stated:
+        return f"{microns(fit.rms)} rms, within the stated noise of {microns(stated)}"
+    return f"{microns(beyond)} rms beyond the stated noise of {microns(stated)}"
 
 
 def region_words(conditions: Sequence[Condition]) -> str:
@@ -216,8 +228,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
         return (
             f"Something is left that no effect of the library accounts for: "
-            f"{microns(excess(diagnosis.fit))} rms beyond the stated noise of "
-            f"{microns(stated_noise(diagnosis.run))}. It is not noise: "
+            f"{_left(diagnosis.fit)}. It is not noise: "
             f"{words or 'it varies with nothing that was recorded'}.{what}"
         )
     fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""

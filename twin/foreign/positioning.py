@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from twin.errors import BadFile
-from twin.foreign.axis_log import strokes, temperatures
+from twin.foreign.axis_log import approaches, strokes, temperatures
 from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column, unit_of_time
 from twin.frames import Array
 from twin.machine import Axis, Chain, make_chain, tip
@@ -32,13 +32,21 @@ ALL_BUT = 0.1
 ENOUGH_CYCLES = 4
 """Cycles from which one can be held out: of fewer it would be more than a quarter of the test."""
 
-_TARGET = re.compile(r"target|soll|nominal|command|position|\bp_?i\b", re.IGNORECASE)
+_TARGET = re.compile(
+    r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|\bp_?i\b", re.IGNORECASE
+)
 _ACTUAL = re.compile(r"actual|measured|ist\b|istwert", re.IGNORECASE)
+_REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)
+"""The better instrument, in tables of two; a `reference position` is a target to others."""
 _DEVIATION = re.compile(r"dev|error|abweich|fehler|\bx_?ij\b", re.IGNORECASE)
 _CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
 _DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
-_UP = re.compile(r"up|↑|\+|pos|fwd|forward|vor", re.IGNORECASE)
-_DOWN = re.compile(r"down|dn|↓|-|−|neg|rev|back|rück|ruck|zur", re.IGNORECASE)
+_DOWN = re.compile(
+    r"down|\bdn\b|dwn|↓|-|−|\bneg|\brev|\bb(ack|wd|kw)|rück|ruck|zur|\bret", re.IGNORECASE
+)
+_UP = re.compile(r"\bup|↑|\+|\bpos(itive?)?\b|\bf(wd|or)|\bvor|\bhin\b|\baller", re.IGNORECASE)
+_WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
+_WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+")
 
@@ -56,6 +64,7 @@ class PositioningTest:
         line: Line of the file, (N,).
         time: Since the start of a log, (N,), s; zeros of a table.
         temperature: By sensor, each (N,), degC; of a log.
+        is_by_order: Whether directions are those in which the rows follow each other.
     """
 
     axis: str
@@ -66,6 +75,7 @@ class PositioningTest:
     line: IntArray
     time: Array = field(default_factory=lambda: np.zeros(0))
     temperature: Mapping[str, Array] = field(default_factory=dict)
+    is_by_order: bool = False
 
 
 def read_positioning(
@@ -76,7 +86,8 @@ def read_positioning(
     Two layouts are understood: a row a reading (columns target, cycle, direction, and deviation or
     actual position), and a row a target with a column a cycle and direction (`1 up`, `1 down`, or
     the cycle in one header row and the direction in the next). With a column of times the first is
-    a log: cycles are its strokes, directions those of its motion.
+    a log: cycles are its strokes, directions those of its motion. Without columns of directions or
+    cycles the order of the rows tells them.
 
     Args:
         axis: Letter of the axis, which says whether it turns (A B C).
@@ -99,6 +110,8 @@ def read_positioning(
     values, actual = _only(names, _DEVIATION), _only(names, _ACTUAL)
     if named[1]:
         values, actual = None, sheet.column(named[1])
+    elif values is None and actual is None:
+        actual = _only(names, _REFERENCE)
     if values is None and actual is None:
         return _wide(sheet, axis, target, at, unit, base)
     cycle, direction = _only(names, _CYCLE), _only(names, _DIRECTION)
@@ -109,10 +122,14 @@ def read_positioning(
         assert actual is not None
         deviation = sheet.numbers(actual) * base[_unit(sheet, actual, base, unit)] - at
     n = len(sheet)
-    time, sign, stroke = np.zeros(n), np.zeros(n, dtype=np.int64), np.ones(n, dtype=np.int64)
+    time = np.zeros(n)
     if clock is not None:
         time = sheet.numbers(clock) * unit_of_time(sheet.columns[clock])
         sign, stroke = strokes(at)
+    else:
+        sign, stroke = approaches(at)
+        parted = _ways_of_parts(sheet)
+        sign = parted if np.any(parted) else sign
     return _present(
         PositioningTest(
             axis=axis,
@@ -123,6 +140,7 @@ def read_positioning(
             line=np.array(sheet.lines),
             time=time,
             temperature=temperatures(sheet) if clock is not None else {},
+            is_by_order=direction is None and bool(np.any(sign < 0)),
         )
     )
 
@@ -131,7 +149,8 @@ def _wide(
     sheet: Sheet, axis: str, target: int, at: Array, unit: str | None, base: dict[str, float]
 ) -> PositioningTest:
     """A row a target, a column a cycle and direction."""
-    parts = []
+    parts, signs = [], {}
+    parted = _ways_of_parts(sheet)
     for i, name in enumerate(sheet.columns):
         number = _NUMBER.search(name)
         if i == target or number is None:
@@ -140,10 +159,16 @@ def _wide(
         sign = 1 if _UP.search(rest) else -1 if _DOWN.search(rest) else 0
         values = _deviations(sheet, i, target, at, unit, base)
         whole = np.ones(len(sheet), dtype=np.int64)
-        parts.append((at, values, int(number.group(0)) * whole, sign * whole, sheet.lines))
+        ways = sign * whole if sign else parted
+        parts.append((at, values, int(number.group(0)) * whole, ways, sheet.lines))
+        signs[name] = sign
     if not parts:
         expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
         raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
+    unsaid = next((name for name, sign in signs.items() if sign == 0), None)
+    if unsaid is not None and any(signs.values()):
+        expected = "up or down (fwd, bwd, +, -) in its name, as in others"
+        raise BadFile(sheet.path, "header", f"column {unsaid!r}", expected)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     return _present(
         PositioningTest(
@@ -155,6 +180,13 @@ def _wide(
             line=columns[4],
         )
     )
+
+
+def _ways_of_parts(sheet: Sheet) -> IntArray:
+    """Signs of directions as the words above the parts of a table say, 0 where they do not."""
+    ways = [1 if _WAY_OUT.search(a) else -1 if _WAY_BACK.search(a) else 0 for a in sheet.above]
+    both = {1, -1} <= set(ways)
+    return np.array(ways if both else np.zeros(len(sheet)), dtype=np.int64)
 
 
 def _deviations(
@@ -191,6 +223,7 @@ def _present(test: PositioningTest) -> PositioningTest:
         line=test.line[rows],
         time=test.time[rows] if len(test.time) else np.zeros(int(rows.sum())),
         temperature={name: values[rows] for name, values in test.temperature.items()},
+        is_by_order=test.is_by_order,
     )
 
 

@@ -27,6 +27,9 @@ _SEPARATORS = (";", "\t", ",", "|")
 MOSTLY = 0.6
 """Share of rows with a number from which a column is one of numbers."""
 
+_RULE = re.compile(r":?-{2,}:?\Z|\Z")
+"""Cells of a line that rules off the header, as in tables of a wiki."""
+
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?\Z")
 _DECIMAL_POINT = re.compile(r"[+-]?\d+\.\d*([eE][+-]?\d+)?\Z")
 _UNIT = re.compile(r"\s*[\[(]\s*([^\])]+?)\s*[\])]\s*\Z|[_\s/]+([A-Za-zµμ°]+)\Z")
@@ -50,6 +53,8 @@ class Sheet:
         lines: Line or row of the file that each of them stands in.
         title: What stands above the header.
         left_out: Lines below the header that hold no row of numbers.
+        above: For each row what stands between it and the last row of numbers before its block: a
+            table in two parts says there which is which.
     """
 
     path: Path
@@ -58,6 +63,7 @@ class Sheet:
     lines: tuple[int, ...]
     title: tuple[str, ...]
     left_out: tuple[int, ...]
+    above: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -196,6 +202,7 @@ def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
     separator = next((s for s in _SEPARATORS if counts[s] >= 1), ",")
     reader = csv.reader(io.StringIO(text), delimiter=separator)
     rows = [(reader.line_num, [c.strip() for c in row]) for row in reader]
+    rows = [(line, row) for line, row in rows if not all(_RULE.match(c) for c in row)]
     mark = _decimal_mark(path, rows)
     return [(line, [_number(c, mark) for c in row]) for line, row in rows]
 
@@ -239,6 +246,7 @@ def _table(path: Path, rows: Sequence[tuple[int, Sequence[str | float]]]) -> She
     header = _header([list(rows[i][1]) for i in above[-3:]], width)
     data, others = _data_rows(rows[above[-1] + 1 :])
     title = [" ".join(str(c) for c in row if c != "") for _, row in rows[: above[-1]]]
+    blocks = _blocks(rows, {line for line, _ in data})
     return Sheet(
         path=path,
         columns=header,
@@ -246,7 +254,22 @@ def _table(path: Path, rows: Sequence[tuple[int, Sequence[str | float]]]) -> She
         lines=tuple(line for line, _ in data),
         title=tuple(title),
         left_out=tuple(others),
+        above=tuple(blocks[line] for line, _ in data),
     )
+
+
+def _blocks(rows: Sequence[tuple[int, Sequence[str | float]]], data: set[int]) -> dict[int, str]:
+    """What stands above the block of each row of numbers, by its line."""
+    out: dict[int, str] = {}
+    words: list[str] = []
+    block = ""
+    for line, row in rows:
+        if line in data:
+            block, words = "\n".join(words) if words else block, []
+            out[line] = block
+        else:
+            words.append(" ".join(str(c) for c in row if c != ""))
+    return out
 
 
 def _data_rows(
