@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.choice import offered
+from diagnosis.choice import candidate_effects
 from diagnosis.faults import faults_of_refused
 from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
@@ -183,7 +183,7 @@ def candidates(only: Sequence[str], without: Sequence[str], run: Run) -> list[Ef
     """
     if not only and not without:
         return None
-    everything = offered(run.touches)
+    everything = candidate_effects(run.touches)
     words = {k.word for k in kinds()}
     names = {_plain(e.name) for e in everything}
     for option, given in (("--only", only), ("--without", without)):

@@ -49,10 +49,10 @@ def _noise_remembers(r: NoiseRemembers) -> str:
 
 
 def _chosen(r: ChosenByPrediction) -> str:
-    ways = "; ".join(f"{name} {error / UM:.2f} µm" for name, error in r.ways)
+    tried = "; ".join(f"{name} {error / UM:.2f} µm" for name, error in r.tried)
     return (
         f"chosen by prediction: {r.chosen}. Plain error of {r.blocks} blocks left out in turn, the "
-        f"choice made anew without each: {ways}"
+        f"choice made anew without each: {tried}"
     )
 
 
