@@ -16,7 +16,8 @@ from twin.units import UM
 from twin.words import listed
 
 _WORDS = {
-    "rms": "rms that it alone explains",
+    "rms": "rms that it explains",
+    "peak_to_valley": "peak to valley",
     "length": "correlation length",
     "tau": "time constant",
     "step": "per step of",
@@ -55,6 +56,8 @@ def named_value(reported: Reported) -> tuple[str, str]:
         return words, span(reported.value)
     if reported.quantity == "length" and not reported.unit:
         return words, f"{reported.value:.0%} of the travel"
+    if reported.quantity == "harmonic":
+        return words, f"{reported.value:g} a turn"
     return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))
 
 
@@ -72,7 +75,8 @@ def values(step: Step) -> list[tuple[str, str]]:
 def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
     """The same of the numbers themselves, as a model file keeps them."""
     told = sorted(reported, key=lambda r: _ORDER.index(r.role))
-    if len(told) > ALL_TOLD:
+    is_curve = any(r.quantity == "peak_to_valley" for r in told)
+    if is_curve or len(told) > ALL_TOLD:
         told = [r for r in told if r.role is not Role.COEFFICIENT]
     return [named_value(r) for r in told]
 
