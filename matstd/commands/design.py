@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     from artefact.reach import standing_remarks
     from matstd.console import say, say_assumed
     from matstd.folder import results_folder
-    from matstd.from_project import dialect
+    from matstd.from_project import dialect, feeds
     from matstd.workers import connected
     from report.words import design_lines, proof_line
 
@@ -80,6 +80,7 @@ def run(args: argparse.Namespace) -> int:
     ):
         from matstd.design import design
         from matstd.progress import stages
+        from probe_paths.emit import make_dry_run
         from report.pages import write_design_page, write_setup_page
 
         with stages() as progress, connected(args.scheduler) as workers:
@@ -87,7 +88,9 @@ def run(args: argparse.Namespace) -> int:
             progress("report", 0, 1)
             remarks = write_design_page(made, folder)
             print_report(folder, printed_by)
-            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, dialect(project))
+            words, raised = dialect(project), project.workshop.dry_run_mm
+            dry_run = make_dry_run(made.plan, raised, words, feeds(project))
+            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, dry_run, words)
             print_report(sheet.parent, printed_by, sheet.stem)
     for remark in remarks:
         say(f"- {remark}")

@@ -23,6 +23,9 @@ _WORDS = {
     "step": "per step of",
 }
 
+_GROUPS = ("feature", "pose", "setup")
+"""Columns that only tell rows apart: nothing grows with them."""
+
 PERIODS_TOLD = 4
 """Periods that look alike that are told one by one, the longest ones."""
 
@@ -140,6 +143,8 @@ def structure_words(found: Structure) -> str:
     names = listed([noun(name) for name in found.variables])
     along = "the normal" if found.direction == "normal" else found.direction
     match found.shape:
+        case Shape.SMOOTH if found.variables[0] in _GROUPS:
+            return f"differs from {names} to {names}, along {along}"
         case Shape.SMOOTH:
             return f"varies with {names}, along {along}"
         case Shape.WAVE:

@@ -49,6 +49,7 @@ _WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
 _WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+")
+_LONGEST = 9  # digits of the number of a cycle
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,9 +126,9 @@ def read_positioning(
     time = np.zeros(n)
     if clock is not None:
         time = seconds(sheet, clock)
-        sign, stroke = strokes(at)
+        sign, stroke = strokes(_held(at))
     else:
-        sign, stroke = approaches(at)
+        sign, stroke = approaches(_held(at))
         parted = _ways_of_parts(sheet)
         sign = parted if np.any(parted) else sign
     return _present(
@@ -145,6 +146,14 @@ def read_positioning(
     )
 
 
+def _held(at: Array) -> Array:
+    """Targets with those that are missing taken for the last one before them, or the first."""
+    there = np.isfinite(at)
+    last = np.maximum.accumulate(np.where(there, np.arange(len(at)), np.argmax(there)))
+    held: Array = at[last]
+    return held
+
+
 def _wide(
     sheet: Sheet, axis: str, target: int, at: Array, unit: str | None, base: dict[str, float]
 ) -> PositioningTest:
@@ -155,6 +164,8 @@ def _wide(
         number = _NUMBER.search(name)
         if i == target or number is None:
             continue
+        if len(number.group(0)) > _LONGEST:
+            raise BadFile(sheet.path, "header", f"column {name[:40]!r}", "the number of a cycle")
         rest = bare(name).replace(number.group(0), "", 1)
         sign = 1 if _UP.search(rest) else -1 if _DOWN.search(rest) else 0
         values = _deviations(sheet, i, target, at, unit, base)

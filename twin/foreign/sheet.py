@@ -41,6 +41,8 @@ ANGLES = {"deg": math.pi / 180.0, "°": math.pi / 180.0, "rad": 1.0, "mrad": 1e-
 """Units of angles in files of others, rad."""
 SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 """Units of time in files of others, s."""
+LARGEST = 1e15
+"""What a cell may hold: more than milliseconds of a clock, and far from where squares overflow."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +83,8 @@ class Sheet:
                 expected = "a number" if "," not in cell else "one decimal mark in the whole file"
                 raise self.bad(i, column, repr(cell), expected)
             if cell != "" and cell != missing:
+                if abs(float(cell)) > LARGEST:
+                    raise self.bad(i, column, f"{cell:g}", f"{LARGEST:g} at most")
                 out[i] = cell
         return out
 
