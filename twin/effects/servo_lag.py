@@ -8,7 +8,7 @@ import numpy as np
 from twin.frames import Array
 from twin.machine import Chain
 from twin.model import Kind, Parameter, Term, Title, Where, check_count, checked_axis, moving_axes
-from twin.record import Touches
+from twin.record import IntArray, Labels, Touches
 
 STATED = "v{axis}_mm_s"
 """Column of the user's own (`V_vX_mm_s`) that states the speed of an axis, mm/s."""
@@ -80,10 +80,10 @@ def speed(touches: Touches, axis: str) -> Array:
     return out
 
 
-def _motions(touches: Touches) -> list[Array]:
+def _motions(touches: Touches) -> list[IntArray]:
     """Rows of every motion without a stop, in the order of time."""
     groups = np.unique(np.column_stack([touches.setup, _numbers(touches.feature)]), axis=0)
-    out = []
+    out: list[IntArray] = []
     for setup, feature in groups:
         rows = np.flatnonzero((touches.setup == setup) & (_numbers(touches.feature) == feature))
         rows = rows[np.argsort(touches.time[rows], kind="stable")]
@@ -94,8 +94,8 @@ def _motions(touches: Touches) -> list[Array]:
     return out
 
 
-def _numbers(feature: Array) -> Array:
-    return np.unique(feature, return_inverse=True)[1].reshape(-1)
+def _numbers(feature: Labels) -> IntArray:
+    return np.unique(feature, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> ServoLag:
