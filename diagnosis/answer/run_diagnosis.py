@@ -23,8 +23,8 @@ from diagnosis.choice import (
     chosen_by_prediction,
     field_shares,
     followed,
+    found_in,
     offered,
-    remembered,
     ways_tried,
 )
 from diagnosis.evidence import (
@@ -50,7 +50,6 @@ from diagnosis.search import (
     SearchState,
     most_evident,
     refined_named,
-    search_until_stable,
 )
 from twin.compute import one_blas_thread
 from twin.library import ordinary_model
@@ -115,8 +114,7 @@ def _diagnosed(
     known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
-    final = search_until_stable(task, added, single, progress)
-    task, final = remembered(task, added, final, single, progress)
+    task, final = found_in(task, added, single, progress)
     choice = chosen_by_prediction(task, added, final, library, progress)
     if choice is not None:
         task, final = followed(task, added, final, choice, single, progress)

@@ -221,7 +221,7 @@ def named(
     for _ in range(2):
         library = Library.of(complement, [*candidates, *more])
         budgets.append(Budget(SETS))
-        chosen = searched(library, [s.effect.name for s in found], budgets[-1])
+        chosen = searched(library, found, budgets[-1])
         found = list(refined_set(complement, chosen))
         more = [a for s in found if (a := again(s.effect)) is not None]
         if not more:

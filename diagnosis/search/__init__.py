@@ -7,7 +7,7 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 """
 
 from diagnosis.search.refine import refined, refined_set, with_moved_points
-from diagnosis.search.screening import Library
+from diagnosis.search.screening import WHOLE_BELOW, Library
 from diagnosis.search.search_loop import (
     FREEDOM,
     DiagnosisTask,
@@ -33,6 +33,7 @@ __all__ = [
     "FREEDOM",
     "LISTED",
     "MOST_SETS",
+    "WHOLE_BELOW",
     "WORTH",
     "Budget",
     "DiagnosisTask",

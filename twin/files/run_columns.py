@@ -12,7 +12,7 @@ from twin.files.pose_file import FARTHEST
 from twin.files.table import CsvTable
 from twin.frames import Array
 from twin.machine import Chain
-from twin.record import IntArray, Labels, Moved, linear_approach
+from twin.record import IntArray, Labels, Moved, Touches, implied_approach
 from twin.units import DEG, UM
 
 BoolArray = NDArray[np.bool_]
@@ -239,10 +239,10 @@ def poses(table: CsvTable, chain: Chain, q: Array, setup: IntArray) -> IntArray:
     return np.unique(key, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
-def approach(table: CsvTable, chain: Chain, q: Array, normal_table: Array) -> Array:
-    """Signs of the last motion of every axis, (N, A)."""
-    out = linear_approach(chain, q, normal_table)
-    for i, axis in enumerate(chain.axes):
+def approach(table: CsvTable, touches: Touches) -> Array:
+    """Signs of the last motion of every axis, (N, A): as stated, else as implied."""
+    out = implied_approach(touches)
+    for i, axis in enumerate(touches.chain.axes):
         column = f"dir{axis}"
         if column in table:
             out[:, i] = signs = table.numbers(column)

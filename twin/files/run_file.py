@@ -181,8 +181,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         pose=columns.poses(table, chain, q, setup),
         value=columns.own_columns(table, time, remarks),
     )
-    signs = columns.approach(table, chain, q, touches.normal_table)
-    touches = replace(touches, approach=signs)
+    touches = replace(touches, approach=columns.approach(table, touches))
     return Run(
         touches=touches,
         deviation=table.numbers("dev_um") * UM
