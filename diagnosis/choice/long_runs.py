@@ -2,8 +2,8 @@
 
 The cost of a search is rows times trials, and ten thousand rows tell hardly more of which effects
 there are than three thousand do. So the whole search, with everything that has to settle, is made
-in an even choice of the rows. All rows then say what the choice was too small for: the memory of the
-noise from row to row, inner parameters to the last digit, small effects beside the large ones.
+in an even choice of the rows. All rows then say what the choice was too small for: the memory of
+the noise from row to row, inner parameters to the last digit, small effects beside large ones.
 """
 
 from collections.abc import Sequence
@@ -46,7 +46,7 @@ def found_in(
 
 
 def chosen_rows(run: Run) -> Run:
-    """`CHOSEN` rows of a run, one at random of every stretch: even steps would alias short waves."""
+    """`CHOSEN` rows of a run, one at random of every stretch: even steps alias short waves."""
     edges = np.linspace(0, len(run), CHOSEN + 1).astype(np.int64)
     rows = np.random.default_rng(0).integers(edges[:-1], edges[1:])
     order = np.argsort(run.touches.time, kind="stable")

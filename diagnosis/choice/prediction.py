@@ -21,7 +21,15 @@ from diagnosis.choice.remembering import memory_of
 from diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
 from diagnosis.fit import Fit
 from diagnosis.regression import CLEARLY, GrossErrors, Memory
-from diagnosis.search import Budget, DiagnosisTask, Library, SearchState, refined_set, searched
+from diagnosis.search import (
+    Budget,
+    DiagnosisTask,
+    Library,
+    SearchState,
+    best_set,
+    refined_set,
+    scaled,
+)
 from twin.effects import again
 from twin.frames import Array
 from twin.library import proposals
@@ -221,7 +229,7 @@ def named(
     for _ in range(2):
         library = Library.of(complement, [*candidates, *more])
         budgets.append(Budget(SETS))
-        chosen = searched(library, found, budgets[-1])
+        chosen = scaled(best_set(library, found, budgets[-1])[1])
         found = list(refined_set(complement, chosen))
         more = [a for s in found if (a := again(s.effect)) is not None]
         if not more:

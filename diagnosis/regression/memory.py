@@ -5,7 +5,7 @@ correlation ``a_i`` to the touch before, ``z_i = (e_i - a_i e_before) / sqrt(1 -
 again; columns and deviations are filtered alike, and every test downstream holds as it stands.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -98,6 +98,16 @@ class Whitener:
         shape = (-1,) + (1,) * (M.ndim - 1)
         kept, alone = self.kept.reshape(shape), self.alone.reshape(shape)
         return np.asarray((M - kept * M[np.maximum(self.before, 0)]) / alone)
+
+    def picked(self, values: Callable[[IntArray], Array], rows: IntArray) -> Array:
+        """Values over their uncertainty at some of the rows, (R, K), made white.
+
+        Args:
+            values: Of rows by number; asked for these, and for those before them.
+            rows: By number, (R,).
+        """
+        before = values(np.maximum(self.before[rows], 0))
+        return (values(rows) - self.kept[rows, None] * before) / self.alone[rows, None]
 
     def coloured(self, z: Array) -> Array:
         """Values (n,) of which white ones are the filter's result."""

@@ -7,6 +7,7 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 """
 
 from diagnosis.search.refine import refined, refined_set, with_moved_points
+from diagnosis.search.screened import best_set, scaled
 from diagnosis.search.screening import WHOLE_BELOW, Library
 from diagnosis.search.search_loop import (
     FREEDOM,
@@ -15,7 +16,6 @@ from diagnosis.search.search_loop import (
     most_evident,
     refined_named,
     search_until_stable,
-    searched,
 )
 from diagnosis.search.selection import (
     CHANCE,
@@ -42,11 +42,12 @@ __all__ = [
     "Search",
     "SearchState",
     "Verified",
+    "best_set",
     "most_evident",
     "refined",
     "refined_named",
     "refined_set",
+    "scaled",
     "search_until_stable",
-    "searched",
     "with_moved_points",
 ]

@@ -34,10 +34,10 @@ from diagnosis.fit import Fit, Prior, fit_run
 from diagnosis.regression import GrossErrors, Memory
 from diagnosis.residual import Structure, find_structure
 from diagnosis.search.edges import unexplained_near_slip, without
-from diagnosis.search.refine import refined_set, with_moved_points
-from diagnosis.search.regrid import regridded
-from diagnosis.search.screening import Library, joined_shortlists
-from diagnosis.search.selection import Budget, EffectSubset, Member, Search
+from diagnosis.search.refine import refined_set
+from diagnosis.search.screened import best_set, scaled
+from diagnosis.search.screening import Library
+from diagnosis.search.selection import Budget, EffectSubset, Search
 from twin.effects import Again, again
 from twin.frames import Array
 from twin.model import Effect, Model
@@ -60,9 +60,6 @@ NAMELESS = 3
 CLEARLY = 15.0
 """Log odds by which one pattern without a name must beat all library effects together to say that
 they only imitate it."""
-
-SCREENINGS = 3
-"""Most screenings of the library in one round of a long run."""
 
 STRETCHES = 5
 """Stretches of time that are left out to weigh patterns against named effects."""
@@ -268,8 +265,8 @@ def _until_gross_errors_stay(
     budget = Budget()
     for remaining in reversed(range(ROUNDS)):
         library = Library.of(ResidualSpace.of(base), candidates, progress)
-        search, chosen = _searched(library, found, budget, progress)
-        effects = refined_set(library.complement, _scaled(chosen))
+        search, chosen = best_set(library, found, budget, progress)
+        effects = refined_set(library.complement, scaled(chosen))
         whole = task.fit((*added, *effects))
         further = unexplained_near_slip(touches, whole.gross, effects) & ~tried & (remaining > 1)
         is_same = np.array_equal(whole.gross.rows, base.gross.rows) and not further.any()
@@ -311,7 +308,7 @@ def _with_structure(
         library=library,
         search=search,
         chosen=chosen,
-        effects=tuple(refined_set(library.complement, _scaled(chosen))),
+        effects=tuple(refined_set(library.complement, scaled(chosen))),
         at_start=tuple(at_start),
         left=tuple(left),
         nameless=tuple(nameless),
@@ -337,68 +334,6 @@ def _by_stretches(effects: EffectSet) -> float:
     order = np.argsort(complement.touches.time[complement.used], kind="stable")
     groups = tuple(np.array_split(order, STRETCHES))
     return EffectSet(replace(complement, groups=groups), effects.A).held_out.rms
-
-
-def _scaled(chosen: EffectSubset) -> list[ScaledEffect]:
-    return [ScaledEffect(m.effect, m.scale) for m in chosen.members]
-
-
-def _searched(
-    library: Library, found: Sequence[ScaledEffect], budget: Budget, progress: Progress
-) -> tuple[Search, EffectSubset]:
-    """The best set of effects; of a long run among those that screenings let through."""
-    complement = library.complement
-    begun = EffectSet(complement, projected(complement, found))
-    shortlist = library.shortlist(found, begun)
-    for _ in range(SCREENINGS):
-        search, start = _begun(Search(library.pool(shortlist), None, progress, budget), found)
-        search, chosen = regridded(search, search.run(start))
-        if library.is_whole or _found_again(chosen, found):
-            break
-        further = library.shortlist(_scaled(chosen), chosen.effects)
-        if joined_shortlists(shortlist, further) == dict(shortlist):
-            break
-        shortlist = joined_shortlists(shortlist, further)
-        found = _scaled(chosen)
-    return search, chosen
-
-
-def _begun(search: Search, found: Sequence[ScaledEffect]) -> tuple[Search, list[Member]]:
-    """A search with the effects of an earlier one at their own points of the grids, and these."""
-    nothing = search.evaluate(())
-    best = {search.name_of(v): v for v in search.ranking(nothing)}
-    known = [s for s in found if s.effect.name in best]
-    pool = with_moved_points(search.pool, {best[s.effect.name]: s.effect for s in known})
-    search = Search(pool, search.fixed, search.progress, search.budget)
-    places = [best[s.effect.name] for s in known]
-    owners = [int(pool.owner[v]) for v in places]
-    return search, [
-        Member(v, owner, s.effect, s.scale)
-        for v, owner, s in zip(places, owners, known, strict=True)
-    ]
-
-
-def searched(
-    library: Library,
-    found: Sequence[ScaledEffect],
-    budget: Budget,
-    progress: Progress = quiet,
-) -> list[ScaledEffect]:
-    """Effects of the best set, without a look at patterns or at gross errors.
-
-    Args:
-        library: Candidates.
-        found: Effects to begin with.
-        budget: Sets that may be tried.
-        progress: Told of every step.
-    """
-    return _scaled(_searched(library, found, budget, progress)[1])
-
-
-def _found_again(chosen: EffectSubset, found: Sequence[ScaledEffect]) -> bool:
-    """Whether a search among more candidates found what was found before."""
-    names = {m.effect.name for m in chosen.members}
-    return bool(names) and names == {s.effect.name for s in found}
 
 
 def most_evident(found: Sequence[Structure]) -> Structure:

@@ -8,8 +8,6 @@ import pytest
 from diagnosis.answer.ambiguity import CONFUSED, confusion_class, plausibility
 from diagnosis.evidence.effect_signatures import (
     ResidualSpace,
-    ScaledEffect,
-    projected,
     signatures,
     whole_grids,
 )
@@ -112,7 +110,7 @@ def test_refinement_leaves_the_grid_for_the_true_time_constant(planted) -> None:
     empty = EffectSet(space, np.zeros((len(space.residual), 0)))
 
     def evidence(tau):
-        return addition(empty, projected(space, [ScaledEffect(start.tuned(tau))]))[0]
+        return addition(empty, start.tuned(tau))[0]
 
     found, top = refined(empty, nearest)
     (tau,) = found.effect.tuning.values()
