@@ -1,6 +1,6 @@
-"""Effects that a user adds together and that these touches cannot tell apart, or tell at all."""
+"""Effects that these touches cannot tell apart, or tell at all: added by a user, or found."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -8,6 +8,7 @@ from diagnosis.answer.verdict import Step
 from diagnosis.evidence import SAME, ResidualSpace, ScaledEffect
 from diagnosis.fit import Reported, Role
 from diagnosis.remarks import NotSignificant
+from diagnosis.search import CHANCE
 from twin.errors import DesignError
 from twin.frames import Array
 
@@ -70,6 +71,27 @@ def not_significant(steps: Sequence[Step]) -> tuple[NotSignificant, ...]:
                 )
             )
     return tuple(out)
+
+
+def weakest(steps: Sequence[Step], chances: Collection[str]) -> str | None:
+    """Name of the found effect that says least, if it is no more than chance or uncertainty.
+
+    Args:
+        steps: Of found effects.
+        chances: Names of those whose probability rests on few blocks left out, and is never small.
+    """
+    out = None
+    least = SIGNIFICANT
+    for step in steps:
+        size = _size(step.reported)
+        if step.effect is None:
+            continue
+        worth = np.inf if size is None or not size.u else abs(size.value) / size.u
+        if step.effect.name not in chances and step.p_value >= CHANCE:
+            worth = 0.0
+        if worth < least:
+            out, least = step.effect.name, worth
+    return out
 
 
 def _size(numbers: Sequence[Reported]) -> Reported | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.answer.alike import period_value
 from diagnosis.answer.ambiguity import ConfusionClass
-from diagnosis.answer.collinear import check_distinct, not_significant
+from diagnosis.answer.collinear import check_distinct, not_significant, weakest
 from diagnosis.answer.detectable import detectable
 from diagnosis.answer.next_measurement import (
     Plan,
@@ -15,7 +15,7 @@ from diagnosis.answer.next_measurement import (
     candidate_touches,
     plan,
 )
-from diagnosis.answer.one_set import ToldSet, told_set
+from diagnosis.answer.one_set import ToldSet, told_set, without
 from diagnosis.answer.several import settled
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
@@ -135,9 +135,8 @@ def _result(
 ) -> Diagnosis:
     """Everything that is told of the last round."""
     progress(0.5, "what cannot be told apart")
-    tested = told_set(final)
+    tested, steps = _told(task, added, final)
     final, classes, gross = tested.state, tested.classes, final.base.gross
-    steps = _steps(task, added, tested, gross)
     unexplained = bool(final.nameless or final.left)
     verdict = (
         Verdict.UNEXPLAINED
@@ -170,6 +169,23 @@ def _result(
         faults=description_faults(steps[0].fit, progress),
         remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
     )
+
+
+def _told(
+    task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
+) -> tuple[ToldSet, tuple[Step, ...]]:
+    """The set that is told, every member beyond chance and of a size beyond its uncertainty.
+
+    A search weighs an effect beside a machine as it is expected to be; a size that rests on the
+    touches alone may be nothing, and such an effect is not told. The weakest goes first.
+    """
+    while True:
+        tested = told_set(final)
+        steps = _steps(task, added, tested, final.base.gross)
+        weak = weakest(steps[1 + len(added) :], tested.state.chances)
+        if weak is None:
+            return tested, steps
+        final = without(tested.state, weak)
 
 
 def _remarks(fit: Fit, final: SearchState) -> tuple[Remark, ...]:

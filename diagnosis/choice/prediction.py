@@ -51,6 +51,14 @@ PLAINLY = 0.97
 few, and 3 % are well inside their scatter."""
 
 
+LOUD = 1.3
+"""Noise with memory over stated noise from which it may be a cause that drives something."""
+
+REMEMBERED = 0.85
+"""Share of the error of a set in noise with memory that a way must reach to take its place: that
+set was found with all rows in sight, and noise that remembers is the simpler cause."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Way:
     """A way of choosing, judged.
@@ -105,8 +113,8 @@ def chosen_by_prediction(
 ) -> Choice | None:
     """The way that predicts best, or None where there is nothing to choose.
 
-    There is where structure is left, what is left is slow, and the run recorded something that may
-    drive it.
+    There is where structure is left, or noise with memory that is larger than stated, what is left
+    is slow, and the run recorded something that may drive it.
 
     Args:
         added: Effects that the user added.
@@ -114,8 +122,13 @@ def chosen_by_prediction(
         candidates: Effects that may be found, fields among them.
         progress: Told of every block.
     """
-    if not (final.left or final.nameless) or not drives(task.run.touches):
+    remembers = task.memory is not None
+    is_open = bool(final.left or final.nameless)
+    if remembers:
+        is_open = task.fit((*added, *final.effects), final.base.gross).noise.factor > LOUD
+    if not is_open or not drives(task.run.touches):
         return None
+    task = replace(task, memory=None)
     fit = task.fit((*added, *final.effects), final.base.gross)
     memory, gain = memory_of(fit)
     if gain < CLEARLY or memory.per_independent < SLOW:
@@ -135,6 +148,10 @@ def chosen_by_prediction(
     for way in ways[1:]:
         if way.error < PLAINLY * best.error:
             best = way
+    if remembers:
+        errors = _errors(task, added, gross, groups, lambda task, gross: final.effects)
+        if best.error > REMEMBERED * replace(best, errors=errors).error:
+            return None
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(
         ways=tuple(ways),

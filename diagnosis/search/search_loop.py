@@ -178,8 +178,7 @@ def search_until_stable(
     progress: Progress = quiet,
     start: Sequence[ScaledEffect] = (),
 ) -> SearchState:
-    """Search among laws, and if they leave something with tables, which say where an axis is wrong
-    and not why.
+    """Search among laws, then with tables, which say where an axis is wrong and not why.
 
     A table is followed only where it predicts plainly better than what the laws came to: it can
     imitate any of them.
@@ -190,11 +189,11 @@ def search_until_stable(
         progress: Told of every stage.
         start: A set to begin with, inner parameters refined, as a choice of the rows gave it: what
             tables there are, it holds.
-    """  # noqa: D205
+    """
     begun = {s.effect.name for s in start}
     laws = [e for e in candidates if not getattr(e, "is_table", False) or e.name in begun]
     state = _with_further_periods(task, added, laws, progress, start)
-    if start or len(laws) == len(candidates) or not (state.left or state.nameless):
+    if start or len(laws) == len(candidates):
         return state
     other = _with_further_periods(task, added, candidates, progress, ())
     return other if _held_out(other) < BETTER * _held_out(state) else state

@@ -100,10 +100,25 @@ def noise_words(fit: Fit) -> str:
     return f"{microns(stated)}{after}"
 
 
+BEYOND = 1.02
+"""Noise over stated noise from which something lies beyond it: below, a pattern that lies within
+says more than a hundredth that may be chance."""
+
+
 def excess(fit: Fit) -> float:
     """Root mean square of what is left beyond the stated noise, mm."""
     stated = stated_noise(fit.run)
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
+
+
+def left_words(diagnosis: Diagnosis) -> str:
+    """How much is left that is no noise: beyond the stated noise, or a pattern within it."""
+    fit, stated = diagnosis.fit, stated_noise(diagnosis.run)
+    if fit.noise.factor > BEYOND or not diagnosis.left:
+        return f"{microns(excess(fit))} rms beyond the stated noise of {microns(stated)}"
+    share = min(max(s.share for s in diagnosis.left), 1.0)
+    size = microns(stated * fit.noise.factor * math.sqrt(share))
+    return f"{size} rms, within the stated noise of {microns(stated)}"
 
 
 def region_words(conditions: Sequence[Condition]) -> str:
@@ -216,8 +231,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
         return (
             f"Something is left that no effect of the library accounts for: "
-            f"{microns(excess(diagnosis.fit))} rms beyond the stated noise of "
-            f"{microns(stated_noise(diagnosis.run))}. It is not noise: "
+            f"{left_words(diagnosis)}. It is not noise: "
             f"{words or 'it varies with nothing that was recorded'}.{what}"
         )
     fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""
