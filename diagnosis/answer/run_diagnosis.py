@@ -182,7 +182,7 @@ def _told(
     while True:
         tested = told_set(final)
         steps = _steps(task, added, tested, final.base.gross)
-        weak = weakest(steps[1 + len(added) :], tested.state.chances)
+        weak = weakest(steps[1 + len(added) :], final.is_weighed)
         if weak is None:
             return tested, steps
         final = without(tested.state, weak)
