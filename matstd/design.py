@@ -24,7 +24,7 @@ from matstd.from_project import (
     probe,
     probe_reach,
 )
-from matstd.reach import check_reach
+from matstd.reach import check_reach, check_room
 from matstd.streams import streams
 from probe_paths.campaign import VirtualMachine, simulate
 from probe_paths.emit import make_programs
@@ -62,6 +62,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     rng = streams(project.seed)
     progress("reach", 0, 1)
     poses = check_reach(project, folder)
+    check_room(project, folder, poses)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)

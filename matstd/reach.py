@@ -1,4 +1,4 @@
-"""What of the wanted standard the machine reaches, looked at before anything else is done.
+"""What of the wanted standard fits and is reached, looked at before anything else is done.
 
 A refusal says which travel or angle binds, and the nearest wish that could be met.
 """
@@ -11,18 +11,29 @@ import numpy as np
 
 from artefact.body import DatumSphere, Standard
 from artefact.brief import Project
+from artefact.place import room_for
 from artefact.reach import (
     ANGLE,
     Limit,
     PlacesInReach,
     ProbeReach,
+    hangs,
     places_on,
     reach_of,
+    seat_height,
     spread_poses,
+    table_face,
     turned,
 )
 from artefact.worth import poses_within
-from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
+from matstd.from_project import (
+    blank,
+    placement_options,
+    plan_options,
+    probe,
+    probe_reach,
+    workshop,
+)
 from probe_paths.plan import (
     home_readings,
     readings_at,
@@ -30,10 +41,10 @@ from probe_paths.plan import (
     swing_height,
     top_height,
 )
-from report.plots import draw_reach
+from report.plots import draw_reach, draw_room
 from report.style import save
-from twin.errors import NotReachable
-from twin.frames import Array
+from twin.errors import BadFile, NotBuildable, NotReachable
+from twin.frames import Array, fixed_xyz_angles
 from twin.machine import linear_directions
 from twin.record import Setup
 from twin.units import DEG
@@ -41,6 +52,11 @@ from twin.units import DEG
 PICTURE = "reach.png"
 """File of the picture in a folder of results."""
 
+ROOM_PICTURE = "room.png"
+"""Of the patches that fit on the blank; only a refusal draws it."""
+
+_RISER = 300.0  # mm above the table's face that a wish may lift a standard
+_SUNK = 1.0  # mm by which a seat may lie below the table's face: set-ups are measured
 _POSES = 60  # table poses that are tried
 _PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer no choice of patches was ever found
 _SHIFTS = (20.0, 50.0, 100.0, 200.0, 400.0)  # mm
@@ -83,8 +99,10 @@ def check_reach(project: Project, folder: Path) -> Array:
         Table poses to choose from, (K, R), rad: those at which Z can rise above the standard.
 
     Raises:
+        BadFile: A standard that stands in the table or hangs under it.
         NotReachable: Fewer places than a standard needs; which limit binds, the nearest wish.
     """
+    _check_standing(project)
     wanted, rotary = probe_reach(project), _rotary(project)
     poses = poses_within(project.chain, rotary, placement_options(project).choice.poses)
     places, enough = places_on(blank(project)), _enough(project)
@@ -118,6 +136,52 @@ def check_reach(project: Project, folder: Path) -> Array:
     raise NotReachable(f"{project.path}: {against}; {nearest}")
 
 
+def _check_standing(project: Project) -> None:
+    setup, face = project.setup, workshop(project).table.high
+    key, T = f"setup.{setup.name}", setup.T_table_artefact
+    above = seat_height(T, blank(project).base.half_size) - face
+    if above < -_SUNK:
+        raise BadFile(
+            project.path,
+            f"{key}.origin_mm",
+            T[:3, 3].tolist(),
+            f"a seat on the table's face or above it: its lowest corner lies {-above:.1f} mm below",
+        )
+    if hangs(project.chain, T):
+        raise BadFile(
+            project.path,
+            f"{key}.rotation_deg",
+            np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 6).tolist(),
+            "a standard that looks towards the tool with every axis at zero: its seat does",
+        )
+
+
+def check_room(project: Project, folder: Path, poses: Array) -> None:
+    """Refuse more patches than stand side by side, with a picture of those that do.
+
+    Args:
+        project: What is wanted.
+        folder: For the picture.
+        poses: Table poses to choose from, (K, R), rad.
+
+    Raises:
+        NotBuildable: How many fit (fact `fitting`), the gap with which all would (`gap`, mm).
+    """
+    made, options = blank(project), placement_options(project)
+    patches, limits = options.patches, made.limits
+    room = room_for(patches, probe_reach(project), made, poses, options.sites, project.seed)
+    if len(room.sites) >= patches:
+        return
+    save(draw_room(room.sites, patches, made), folder / ROOM_PICTURE)
+    raise NotBuildable(
+        f"only {len(room.sites)} of {patches} patches fit on the blank side by side, of "
+        f"{room.tried} places tried; between them the ball of radius {limits.ball_radius:g} mm has "
+        f"to pass with a gap of {limits.gap:g} mm",
+        fitting=len(room.sites),
+        gap=room.gap,
+    )
+
+
 def _enough(project: Project) -> int:
     return _PLACES_A_PATCH * placement_options(project).patches
 
@@ -132,7 +196,7 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
 
     By what every standard has: its base, and its highest sphere, taken over the middle.
     """
-    made, options, chain = blank(project), plan_options(project), project.chain
+    made, options, chain = blank(project), plan_options(project), wanted.chain
     fit, top = made.fittings, made.base.thickness
     middle = np.array([0.0, 0.0, max(fit.sphere_heights)])
     ball = DatumSphere(
@@ -159,23 +223,47 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
     retract = chain.link("Z").range[1] - options.retract
     to_rise = top_height(chain, poses, solid, tool) + options.clearance
     turns = np.flatnonzero(to_rise <= retract)  # the way to the others is of no use
-    home = home_readings(chain)
-    ways = [swing_height(chain, np.stack([home, poses[i]]), solid, tool)[0] for i in turns]
+    home, ends = home_readings(chain), _beyond(project, poses, options.overshoot)
+    ways = [swing_height(chain, np.stack([home, ends[i]]), solid, tool)[0] for i in turns]
     turning = np.array(ways) + 0.5 * options.clearance
     to_rise[turns] = np.maximum(to_rise[turns], turning)
     return to_rise, retract
 
 
+def _beyond(project: Project, poses: Array, overshoot: float) -> Array:
+    """Poses (K, R) with the way beyond them from which they may be approached, where it exists."""
+    travels = [project.chain.link(a).range for a in project.chain.rotary_axes]
+    low, high = np.array(travels).reshape(-1, 2).T
+    home = home_readings(project.chain)
+    out = poses + overshoot * np.where(poses >= home, 1.0, -1.0)
+    beyond: Array = np.where((out >= low) & (out <= high), out, poses)
+    return beyond
+
+
 def _fits(project: Project, wish: Wish) -> bool:
     """Whether a changed project is within reach; by few places and poses first."""
+    T, made = wish.reach.setup.T_table_artefact, blank(project)
+    sunk = seat_height(T, made.base.half_size) < wish.reach.workshop.table.high - _SUNK
+    if sunk or hangs(wish.reach.chain, T) or _beside(project, T):
+        return False
     grid = poses_within(project.chain, wish.rotary, placement_options(project).choice.poses)
     for some, step in ((spread_poses(grid, _ROUGH), 3), (spread_poses(grid, _POSES), 1)):
-        point, normal = (v[::step] for v in places_on(blank(project)))
+        point, normal = (v[::step] for v in places_on(made))
         if reach_of(wish.reach, point, normal, some).places * step < _enough(project):
             return False
     to_rise, retract = _to_rise(project, wish.reach, some)
     good = some[to_rise <= retract]
     return reach_of(wish.reach, point, normal, good).places >= _enough(project)
+
+
+def _beside(project: Project, T_table_artefact: Array) -> bool:
+    """Whether a standard stands further beside the table, or higher above it, than it does now."""
+    up = table_face(T_table_artefact)[:3, 2]
+    old, new = project.setup.T_table_artefact[:3, 3], T_table_artefact[:3, 3]
+    aside = [float(np.linalg.norm(place - (place @ up) * up)) for place in (old, new)]
+    return aside[1] > max(project.table_radius, aside[0]) or bool(
+        new @ up > max(_RISER, float(old @ up))
+    )
 
 
 def _asked(limit: Limit, value: float) -> str:
@@ -199,6 +287,7 @@ def _nearest(
         *_wider(wanted, rotary),
         *_longer(wanted, rotary),
         *_turned(wanted, rotary),
+        *_mirrored(wanted, rotary),
     ]
     for wish in sorted(wishes, key=lambda w: w.size):
         try:
@@ -274,5 +363,23 @@ def _turned(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
             size=90.0,
             kind="turn",
             reach=replace(wanted, setup=setup),
+            rotary=rotary,
+        )
+
+
+def _mirrored(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+    """Travels of axes that carry the workpiece, entered as motions of the table."""
+    links = wanted.chain.links
+    carried = [k for k in links if k.kind == "linear" and k.carries_workpiece]
+    for some in [*([k] for k in carried), *[carried] * (len(carried) > 1)]:
+        ends = {k.name: (-k.range[1] + 0.0, -k.range[0] + 0.0) for k in some}
+        mirrored = tuple(replace(k, range=ends.get(k.name, k.range)) for k in links)
+        words = [f"axis.{name}.range = [{low:g}, {high:g}]" for name, (low, high) in ends.items()]
+        yield Wish(
+            words=f"{' with '.join(words)} of the machine (readings move the tool relative to the "
+            "workpiece)",
+            size=1.0,
+            kind="sign",
+            reach=replace(wanted, chain=replace(wanted.chain, links=mirrored)),
             rotary=rotary,
         )

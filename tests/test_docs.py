@@ -17,6 +17,7 @@ ROOMS = (
     "diagnosis",
     "cad_out",
     "probe_paths",
+    "compensation",
     "report",
     "matstd",
 )

@@ -19,6 +19,7 @@ BELOW = {
     "diagnosis": {"twin", "information"},
     "cad_out": {"twin", "artefact"},
     "probe_paths": {"twin", "artefact"},
+    "compensation": {"twin", "diagnosis"},
 }
 ALLOWED = BELOW | {
     "report": set(BELOW),
@@ -64,6 +65,7 @@ EXCUSED = {
     "artefact/place/placement.py": "what a refusal appends to the limit that binds",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
+    "compensation/tables/iso_csv.py": "comment in the head of a file that is written",
     "diagnosis/fit/unit_mistakes.py": "refusal, and the same where it is only suspected",
 }
 """Files below `report` with units in prose outside a `raise` all the same, and why."""

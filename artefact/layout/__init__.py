@@ -9,11 +9,11 @@ from artefact.layout.candidates import (
     RINGS,
     STEEPEST,
     TALLEST,
-    neighbours_fit,
     random_sites,
     strength,
 )
 from artefact.layout.rival_artefacts import rivals, with_spheres
+from artefact.layout.side_by_side import most_side_by_side, neighbour_gaps
 from artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard_from_sites
 
 __all__ = [
@@ -24,7 +24,8 @@ __all__ = [
     "Blank",
     "Fittings",
     "Site",
-    "neighbours_fit",
+    "most_side_by_side",
+    "neighbour_gaps",
     "patch_of_site",
     "random_sites",
     "rivals",

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from artefact.body import Base, Limits, graph_patch, overhang
 from artefact.layout.sites import Blank, Site, patch_of_site
@@ -184,43 +183,3 @@ def _is_within(site: Site, base: Base) -> bool:
         return overhang(patch_of_site("trial", site, base), base) <= 0.0
     except NotBuildable:  # it meets neither base nor core
         return False
-
-
-def neighbours_fit(sites: list[Site], blank: Blank) -> NDArray[np.bool_]:
-    """Which sites can stand beside each other, (S, S).
-
-    The ball must have room over every face before the other column, taken as a box as tall as the
-    tallest shape. Columns may grow together behind the faces. The finished standard is measured on
-    its exact bodies afterwards.
-
-    Args:
-        sites: S sites.
-        blank: Base, ball radius and gap.
-    """
-    limits = blank.limits
-    needed = 2.0 * limits.ball_radius + limits.gap + 2.0
-    faces = np.stack([_face(site, limits.ball_radius) for site in sites])  # (S, K, 3)
-    out = np.ones((len(sites), len(sites)), dtype=bool)
-    for j, site in enumerate(sites):
-        T = site.T_artefact_patch
-        local = (faces - T[:3, 3]) @ T[:3, :3]
-        top, depth = float(site.heights.max()), patch_of_site("trial", site, blank.base).depth
-        middle = np.array([0.0, 0.0, 0.5 * (top - depth)])
-        half = np.array([*site.half_size, 0.5 * (top + depth)])
-        beyond = np.abs(local - middle) - half
-        outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
-        gap = (outside + np.minimum(beyond.max(axis=-1), 0.0)).min(axis=1)
-        fits = gap >= needed
-        out[:, j] &= fits
-        out[j, :] &= fits
-    np.fill_diagonal(out, val=False)
-    return out
-
-
-def _face(site: Site, radius: float) -> Array:
-    """Ball centres over a coarse grid of the face at the mean height, artefact frame, (25, 3)."""
-    grid = np.linspace(-1.0, 1.0, 5)
-    u, v = np.meshgrid(site.half_size[0] * grid, site.half_size[1] * grid, indexing="ij")
-    local = np.stack([u.ravel(), v.ravel(), np.full(u.size, radius)], axis=-1)
-    T = site.T_artefact_patch
-    return local @ T[:3, :3].T + T[:3, 3]

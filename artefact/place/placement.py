@@ -17,7 +17,8 @@ from artefact.compare import Rival, compare, evaluated, prior_rms, random_lots
 from artefact.layout import (
     Blank,
     Site,
-    neighbours_fit,
+    most_side_by_side,
+    neighbour_gaps,
     patch_of_site,
     random_sites,
     standard_from_sites,
@@ -47,6 +48,7 @@ from sensitivity.population import Population
 from twin.compute import Progress, silent
 from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
+from twin.record import IntArray
 from twin.units import UM
 
 __all__ = ["Placement", "PlacementOptions", "design_standard"]
@@ -203,7 +205,7 @@ def _standard(
 ) -> Standard:
     """Choose sites until the whole body meets every limit."""
     sites = random_sites(blank, options.sites, rng)
-    fits = neighbours_fit(sites, blank)
+    fits = neighbour_gaps(sites, blank) >= blank.limits.gap
     few = spread_poses(poses, 20)
     wanted = joined([_face_touches(f"{i}", site, blank.base, few) for i, site in enumerate(sites)])
     wanted = wanted[criterion.reach.is_reachable(wanted)]
@@ -221,7 +223,7 @@ def _standard(
     )
     binding: list[str] = []
     for _ in range(_REBUILDS):
-        chosen = best_groups(criterion.objective, W, group, options.patches, take, apart=fits)
+        chosen = _side_by_side(criterion, W, group, options.patches, take, fits)
         if len(chosen) < options.patches:
             raise NotBuildable(
                 f"only {len(chosen)} of {options.patches} patches fit on the blank; {refused}",
@@ -245,6 +247,24 @@ def _standard(
     raise NotBuildable(
         f"no choice of {options.patches} patches meets every limit; {refused}", binding=binding
     )
+
+
+def _side_by_side(
+    criterion: Criterion,
+    W: Array,
+    group: IntArray,
+    count: int,
+    take: int,
+    fits: NDArray[np.bool_],
+) -> list[int]:
+    """The sites that are worth most; if their neighbours run out, begun from some that all fit."""
+    chosen = best_groups(criterion.objective, W, group, count, take, apart=fits)
+    if len(chosen) < count:
+        touched = np.isin(np.arange(len(fits)), group)
+        begin = most_side_by_side(fits & touched & touched[:, None], count)
+        if len(begin) > len(chosen):
+            chosen = best_groups(criterion.objective, W, group, count, take, None, fits, begin)
+    return chosen
 
 
 def _face_touches(name: str, site: Site, base: Base, poses: Array) -> Requests:

@@ -10,8 +10,6 @@ from diagnosis.search.refine import refined, refined_set, with_moved_points
 from diagnosis.search.screened import best_set, scaled
 from diagnosis.search.screening import WHOLE_BELOW, Library
 from diagnosis.search.search_loop import (
-    FREEDOM,
-    DiagnosisTask,
     SearchState,
     most_evident,
     refined_named,
@@ -27,6 +25,7 @@ from diagnosis.search.selection import (
     Search,
     Verified,
 )
+from diagnosis.search.task import FREEDOM, DiagnosisTask
 
 __all__ = [
     "CHANCE",

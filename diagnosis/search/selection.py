@@ -195,7 +195,8 @@ class Search:
         """Put a set into the projection; the budget is charged for it."""
         members = tuple(members)
         effects = effect_set(self.complement, self.pool, members, self.fixed)
-        self.budget.spend(*effects.A.shape, self.pool.C.shape[1])
+        rows, own = effects.A.shape
+        self.budget.spend(rows, own, self.pool.C.shape[1])
         return EffectSubset(members, effects)
 
     def member(self, chosen: EffectSubset, variant: int) -> Member:

@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from twin.foreign import Sheet
+    from twin.foreign import PositioningTest, Sheet
     from twin.machine import Chain
     from twin.record import Run
 
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
     "dev_um = -(actual - target) along the direction of motion",
+    "circle": "a radial deviation (actual - nominal) is where the tool really went; in the run it "
+    "stands as dev_um = -(actual - nominal) along the radius outwards",
     "arm": "the tracker says where the reflector really is, the readings where the controller "
     "believes it; in the run stands dev_um = believed - measured along x, y and z of the tracker",
     "part": "measured - nominal is where the tool really went; in the run it stands as "
@@ -36,6 +38,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     kind = parser.add_mutually_exclusive_group(required=True)
     kind.add_argument(
         "--positioning", metavar="AXIS", help="ISO 230-2 table of this axis: targets, cycles"
+    )
+    kind.add_argument(
+        "--circle",
+        metavar="PLANE",
+        help="circular test (ISO 230-4, ball bar) in XY, YZ or ZX: angles, radial deviations",
     )
     kind.add_argument(
         "--part", action="store_true", help="nominal/measured list of a part this machine made"
@@ -67,6 +74,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs=3,
         help="with --arm: place of the reflector, mm, in the tool frame, or with --dh in the frame "
         "of the flange; found from the data where it is not stated",
+    )
+    parser.add_argument("--radius", type=float, help="with --circle: nominal radius, mm")
+    parser.add_argument(
+        "--feed", type=float, help="with --circle: mm/min, from which times and speeds follow"
+    )
+    parser.add_argument(
+        "--centre",
+        metavar=("X", "Y", "Z"),
+        type=float,
+        nargs=3,
+        default=(0.0, 0.0, 0.0),
+        help="with --circle: readings at its centre, mm (0 0 0)",
     )
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
     parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
@@ -101,7 +120,7 @@ def run(args: argparse.Namespace) -> int:
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
     sheets = [read_sheet(path, args.sheet) for path in args.files]
-    if len(sheets) > 1 and (args.map or args.positioning or args.arm):
+    if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:
         if sheet.left_out:
@@ -124,7 +143,7 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     from twin.files import read_machine, read_run, write_whole
     from twin.foreign import mapped_run
 
-    text = mapped_run(sheet, args.map)
+    text, left_out = mapped_run(sheet, args.map)
     with tempfile.TemporaryDirectory() as folder:
         trial = Path(folder) / output.name
         write_whole(trial, text)
@@ -137,6 +156,9 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
             raise BadFile(args.map, where, facts["found"], str(facts["expected"])) from error
     write_whole(output, text)
     say(f"{output}: {len(found)} readings by {args.map}")
+    if left_out:
+        readings = "1 reading" if left_out == 1 else f"{left_out} readings"
+        say(f"- {readings} left out: no deviation stands there")
     for remark in found.remarks:
         say(f"- {remark}")
 
@@ -168,6 +190,8 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     meaning = next(m for m in _SIGN if getattr(args, m))
     if args.positioning:
         measured, chain = _positioning(args, sheets[0])
+    elif args.circle:
+        measured, chain = _circle(args, sheets[0])
     elif args.arm:
         measured, chain = _arm(args, sheets[0])
     else:
@@ -188,13 +212,10 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
 def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A positioning test as a run."""
-    import numpy as np
-
-    from matstd.console import say
     from twin.errors import DesignError
     from twin.files import read_machine
     from twin.foreign import one_axis_machine, positioning_run, read_positioning
-    from twin.units import DEG, UM, URAD
+    from twin.units import UM, URAD
 
     axis = args.positioning
     if axis not in tuple("XYZABC"):
@@ -202,17 +223,67 @@ def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     turns = axis in "ABC"
     u = _uncertainty(args, "u_urad", URAD) if turns else _uncertainty(args, "u_um", UM)
     test = read_positioning(sheet, axis, args.unit, (args.target, args.actual))
-    low, high = (
-        v / (DEG if axis in "ABC" else 1.0) for v in (test.target.min(), test.target.max())
-    )
+    _say_positioning(test)
+    chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
+    return positioning_run(test, chain, u), chain
+
+
+def _say_positioning(test: PositioningTest) -> None:
+    """Targets, directions, and the figures of the standard, which no model makes."""
+    import numpy as np
+
+    from matstd.console import say
+    from twin.foreign import positioning_figures
+    from twin.units import DEG, UM, URAD
+
+    turns = test.axis in "ABC"
+    low, high = (v / (DEG if turns else 1.0) for v in (test.target.min(), test.target.max()))
     up, down = (int((test.direction == s).sum()) for s in (1, -1))
     say(
         f"- {len(np.unique(test.target))} targets from {low:g} to {high:g}, "
-        f"{len(np.unique(test.cycle))} cycles or strokes; {up} readings with {axis} growing, "
-        f"{down} with it falling"
+        f"{len(np.unique(test.cycle))} cycles or strokes; {up} readings with {test.axis} growing, "
+        f"{down} with it falling{', by the order of the rows' if test.is_by_order else ''}"
     )
-    chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
-    return positioning_run(test, chain, u), chain
+    if not up and not down:
+        say("- no direction of approach is stated (columns up and down): no reversal can be found")
+    found = None if np.any(test.time) else positioning_figures(test)
+    if found is not None:
+        unit, name = (URAD, "µrad") if turns else (UM, "µm")
+        say(
+            f"- ISO 230-2: reversal B {found.reversal / unit:.3g} {name} "
+            f"(mean {found.mean_reversal / unit:.3g}), M {found.mean_range / unit:.3g}, "
+            f"E {found.systematic / unit:.3g}, R {found.repeatability / unit:.3g}, "
+            f"A {found.accuracy / unit:.3g} {name}"
+        )
+
+
+def _circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
+    """A circular test as a run."""
+    from matstd.console import say
+    from twin.errors import DesignError
+    from twin.files import read_machine
+    from twin.foreign import circle_machine, circle_run, read_circle
+    from twin.units import UM
+
+    plane = args.circle.upper()
+    if plane not in ("XY", "YZ", "ZX", "YX", "ZY", "XZ"):
+        raise DesignError(f"--circle {args.circle}: expected two axes such as XY, YZ or ZX")
+    for option, value in (("--radius", args.radius), ("--feed", args.feed)):
+        if value is None and option == "--feed":
+            continue
+        if value is None or not 0.0 < value < 1e6:
+            found = "not given" if value is None else f"{value:g}"
+            raise DesignError(f"{option}: {found}; expected a number above 0")
+    test = read_circle(sheet, plane, args.radius, args.unit)
+    for run in dict.fromkeys(test.run):
+        rows = test.run == run
+        way = "from the first axis to the second" if test.sense[rows][0] > 0 else "the other way"
+        say(f"- {run}: {int(rows.sum())} readings, {way}")
+    if args.feed is None:
+        say("- without --feed nothing is known of speeds: a servo lag cannot be told")
+    chain = read_machine(args.machine) if args.machine else circle_machine(plane, args.radius)
+    u = _uncertainty(args, "u_um", UM)
+    return circle_run(test, chain, u, args.centre, args.feed), chain
 
 
 def _arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:

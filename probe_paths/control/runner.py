@@ -14,6 +14,7 @@ from probe_paths.language import (
     Block,
     Interlock,
     Kind,
+    Label,
     MaskLine,
     Q,
     head_mask,
@@ -77,6 +78,7 @@ class Runner:
         self.readable = {_shape(parse_mask(text, path)) for text in texts}
         self.touches: list[ProbeStep] = []
         self.logged: set[int] = set()
+        self.branches = 0  # within each other, at this moment
 
     def run(self, start: int, state: State, is_branch: bool = False) -> list[Step]:
         """Steps from one block to the end of the program."""
@@ -118,6 +120,8 @@ class Runner:
             return self._jump(i, block, state)
         if block.kind in _SILENT:
             return i + 1
+        if block.kind is Kind.LABEL and Label.is_behind(int(block.word("label"))):
+            return i + 1
         step = self._execute(i, block, state)
         if step is not None:
             steps.append(step)
@@ -126,7 +130,10 @@ class Runner:
     def _jump(self, i: int, block: Block, state: State) -> int:
         """FN 11, 12: a number decides at once; a touch's status is taken as good, and as missed."""
         is_less = block.words["q"] is not None
-        value = state.value(block, int(block.word("q" if is_less else "q_greater")))
+        q = int(block.word("q" if is_less else "q_greater"))
+        value = state.value(block, q)
+        if q == Q.START or Label.is_behind(int(block.word("label"))):
+            self._check_skip(i, block, state)
         target, limit = self.places[int(block.word("label"))] + 1, block.number("limit")
         if not isinstance(value, Result):
             return target if (value < limit if is_less else value > limit) else i + 1
@@ -134,8 +141,28 @@ class Runner:
             raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
         state.untested = None
         missed = state.copied()
+        self.branches += 1
+        if self.branches > MAX_CALLS:  # a branch that comes back to its own touch
+            raise state.refusal(block, "a loop without end", "a program that comes to M30")
         self.touches[value.touch].on_miss.extend(self.run(target, missed, is_branch=True))
+        self.branches -= 1
         return i + 1
+
+    def _check_skip(self, i: int, block: Block, state: State) -> None:
+        """A visit is skipped after its turn and all tests, up to the retract of the next one."""
+        state.check_is_as_planned(block)
+        label = int(block.word("label"))
+        place = self.places[label]
+        after = next(b for b in self.blocks[place + 1 :] if b.kind is not Kind.STRUCTURE)
+        is_retract = after.kind is Kind.LINE and "M91" in after.word("functions")
+        is_start = block.words["q_greater"] == str(int(Q.START)) and Label.is_behind(label)
+        if not (is_start and place > i and is_retract and state.is_retracted):
+            raise state.refusal(
+                block,
+                repr(block.text),
+                f"Q{Q.START:d} GT, a label behind the visit, a retract ({state.says.retract}) "
+                "before it and there",
+            )
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
         """Every block that changes the state or does something."""

@@ -16,13 +16,21 @@ from twin.units import UM
 from twin.words import listed
 
 _WORDS = {
-    "rms": "rms that it alone explains",
+    "rms": "rms that it explains",
+    "peak_to_valley": "peak to valley",
     "length": "correlation length",
     "tau": "time constant",
+    "step": "per step of",
 }
+
+_GROUPS = ("feature", "pose", "setup")
+"""Columns that only tell rows apart: nothing grows with them."""
 
 PERIODS_TOLD = 4
 """Periods that look alike that are told one by one, the longest ones."""
+
+WITHIN = 0.1
+"""Excess over stated noise below which nothing stands out of it: half a per cent of its size."""
 
 ALL_TOLD = 7
 """Numbers of an effect that are told one by one; of more only the size is."""
@@ -51,6 +59,8 @@ def named_value(reported: Reported) -> tuple[str, str]:
         return words, span(reported.value)
     if reported.quantity == "length" and not reported.unit:
         return words, f"{reported.value:.0%} of the travel"
+    if reported.quantity == "harmonic":
+        return words, f"{reported.value:g} a turn"
     return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))
 
 
@@ -68,7 +78,8 @@ def values(step: Step) -> list[tuple[str, str]]:
 def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
     """The same of the numbers themselves, as a model file keeps them."""
     told = sorted(reported, key=lambda r: _ORDER.index(r.role))
-    if len(told) > ALL_TOLD:
+    is_curve = any(r.quantity == "peak_to_valley" for r in told)
+    if is_curve or len(told) > ALL_TOLD:
         told = [r for r in told if r.role is not Role.COEFFICIENT]
     return [named_value(r) for r in told]
 
@@ -100,25 +111,21 @@ def noise_words(fit: Fit) -> str:
     return f"{microns(stated)}{after}"
 
 
-BEYOND = 1.02
-"""Noise over stated noise from which something lies beyond it: below, a pattern that lies within
-says more than a hundredth that may be chance."""
-
-
 def excess(fit: Fit) -> float:
     """Root mean square of what is left beyond the stated noise, mm."""
     stated = stated_noise(fit.run)
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
 
 
-def left_words(diagnosis: Diagnosis) -> str:
-    """How much is left that is no noise: beyond the stated noise, or a pattern within it."""
+def _left(diagnosis: Diagnosis) -> str:
+    """How much is left that is no noise, as a clause: beyond the stated noise, or within it."""
     fit, stated = diagnosis.fit, stated_noise(diagnosis.run)
-    if fit.noise.factor > BEYOND or not diagnosis.left:
-        return f"{microns(excess(fit))} rms beyond the stated noise of {microns(stated)}"
-    share = min(max(s.share for s in diagnosis.left), 1.0)
-    size = microns(stated * fit.noise.factor * math.sqrt(share))
-    return f"{size} rms, within the stated noise of {microns(stated)}"
+    beyond = excess(fit)
+    if beyond < WITHIN * stated and diagnosis.left:
+        share = min(max(s.share for s in diagnosis.left), 1.0)
+        size = microns(stated * fit.noise.factor * math.sqrt(share))
+        return f"{size} rms, within the stated noise of {microns(stated)}"
+    return f"{microns(beyond)} rms beyond the stated noise of {microns(stated)}"
 
 
 def region_words(conditions: Sequence[Condition]) -> str:
@@ -139,6 +146,8 @@ def structure_words(found: Structure) -> str:
     names = listed([noun(name) for name in found.variables])
     along = "the normal" if found.direction == "normal" else found.direction
     match found.shape:
+        case Shape.SMOOTH if found.variables[0] in _GROUPS:
+            return f"differs from {names} to {names}, along {along}"
         case Shape.SMOOTH:
             return f"varies with {names}, along {along}"
         case Shape.WAVE:
@@ -231,7 +240,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
         return (
             f"Something is left that no effect of the library accounts for: "
-            f"{left_words(diagnosis)}. It is not noise: "
+            f"{_left(diagnosis)}. It is not noise: "
             f"{words or 'it varies with nothing that was recorded'}.{what}"
         )
     fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""

@@ -13,6 +13,7 @@ from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from twin.errors import BadFile
 from twin.files.run_file import read_run
+from twin.foreign.circle import read_circle
 from twin.foreign.points import linear_machine, points_run, read_points
 from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
 from twin.foreign.serial_arm import arm_from_dh
@@ -138,7 +139,7 @@ def test_equal_readings_of_two_cycles_are_no_copies(tmp_path):
 
 
 def test_a_rotary_axis_that_turns_too_far(tmp_path):
-    """ECC grows by 100 µrad over 90 degrees: the tool point at 100 mm moves 10 µm in its sense."""
+    """ECC grows by 100 µrad over 90 degrees: at 1 m that is 100 µm in its sense."""
     angles = np.linspace(0.0, 90.0, 13)
     rows = [f"{a},{1e-4 * a / 90.0 / (DEG / 3600.0)}" for a in angles]
     text = "target [deg],deviation [arcsec]\n" + "\n".join(rows) + "\n"
@@ -146,8 +147,8 @@ def test_a_rotary_axis_that_turns_too_far(tmp_path):
     assert test.deviation[-1] == pytest.approx(100.0 * URAD)
     chain = one_axis_machine("C", test.target)
     run = positioning_run(test, chain, 1.0 * URAD)
-    assert run.deviation[-1] / UM == pytest.approx(-10.0)
-    assert run.u[0] / UM == pytest.approx(0.1)
+    assert run.deviation[-1] / UM == pytest.approx(-100.0)
+    assert run.u[0] / UM == pytest.approx(1.0)
     moved = np.diff(run.touches.point, axis=0)
     along = np.einsum("ni,ni->n", moved, run.touches.normal[:-1])
     assert np.all(along > 0.0), "the direction is that of growing readings"
@@ -317,7 +318,8 @@ def blocks_of_the_page(language: str) -> list[str]:
 
 
 def test_the_examples_of_the_page_are_read(tmp_path):
-    positioning, plate = blocks_of_the_page("csv")
+    positioning, circle, plate = blocks_of_the_page("csv")
+    assert len(read_circle(read_sheet(saved(tmp_path, circle)), "XY", 150.0).angle) == 6
     assert len(read_positioning(read_sheet(saved(tmp_path, positioning)), "X").target) == 12
     assert len(read_points(read_sheet(saved(tmp_path, plate))).nominal) == 3
     log, report, dh = blocks_of_the_page("text")

@@ -40,6 +40,10 @@ RESTARTS = 3
 LATEST = 1e11
 """Times (s) beyond this, three thousand years, are in another unit."""
 
+MOMENTS = 0.05
+"""Share of rows with a direction 0 up to which an axis stood for a moment: a quadrant of a circle;
+with more the file does not know."""
+
 FINEST, COARSEST = 1e-6, 1e4
 """Standard uncertainties of a touch (µm) lie between: a picometre, and the largest deviation that
 is a measurement."""
@@ -254,6 +258,36 @@ def approach(table: CsvTable, touches: Touches) -> Array:
     return out
 
 
+def standing(table: CsvTable, approach: Array, touches: Touches, remarks: list[str]) -> Array:
+    """Signs of the last motion where an axis stands for a moment amid known ones, (N, A).
+
+    A logger that writes the sign of the speed writes 0 where an axis turns round; the motion before
+    is still its last one. Rows stand in the order of time within a feature.
+
+    Args:
+        table: Of the file; what it does not state stays.
+        approach: As the file has it, (N, A).
+        touches: The rows.
+        remarks: What was noticed; more is added.
+    """
+    out = approach.copy()
+    stroke = np.unique(touches.feature, return_inverse=True)[1].reshape(-1)
+    for i, axis in enumerate(touches.chain.axes):
+        still = (out[:, i] == 0.0) & (f"dir{axis}" in table)
+        if not still.any() or still.mean() > MOMENTS or np.ptp(touches.q[:, i]) == 0.0:
+            continue
+        for k in range(stroke.max() + 1):
+            rows = np.flatnonzero(stroke == k)
+            known = np.flatnonzero(~still[rows])
+            if len(known):
+                place = np.searchsorted(known, np.arange(len(rows)), "right") - 1
+                out[rows, i] = out[rows[known[np.maximum(place, 0)]], i]
+        remarks.append(
+            f"dir{axis} is 0 in {int(still.sum())} rows amid a motion: the sign before is taken"
+        )
+    return out
+
+
 def uncertainties(table: CsvTable, common: float | None) -> Array:
     """Standard uncertainty of every row, (N,), mm: its own, else the head's (µm)."""
     if common is None and "u_um" not in table:
@@ -299,3 +333,9 @@ def moved_setup(moved: Moved) -> str:
         f"set-up {moved.name} stands {moved.shift:.2f} mm and {moved.turn / DEG:.2f}° from where "
         "the head says, as its touches tell; it is taken there"
     )
+
+
+def angles_told(points: Array) -> str:
+    """How an instrument of angles puts them into deviations."""
+    arm = float(np.median(np.linalg.norm(points, axis=1)))
+    return f"deviations are angles times {arm:g} mm: 1 µm is {1000.0 / arm:.3g} µrad"

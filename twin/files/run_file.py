@@ -108,6 +108,8 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         placed, moved = aligned(stated)
         run = replace(placed, deviation=stated.deviation)
     remarks += [columns.moved_setup(m) for m in moved]
+    if head.instrument.reads_angle:
+        remarks.append(columns.angles_told(stated.touches.point))
     try:
         run = checked_run(run, table, remarks)
     except BadFile as refusal:
@@ -181,7 +183,10 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         pose=columns.poses(table, chain, q, setup),
         value=columns.own_columns(table, time, remarks),
     )
-    touches = replace(touches, approach=columns.approach(table, touches))
+    signs = columns.approach(table, touches)
+    if not head.instrument.is_ball_on_standard:
+        signs = columns.standing(table, signs, touches, remarks)
+    touches = replace(touches, approach=signs)
     return Run(
         touches=touches,
         deviation=table.numbers("dev_um") * UM

@@ -1,4 +1,4 @@
-"""Tables of others made run files: positioning, points, arms under a tracker, any by a mapping.
+"""Tables of others made runs: positioning, circles, points, arms, any other by a mapping.
 
 In go workbooks and text as instruments and CMMs write them, with the words of their headers, their
 units, separators and decimal marks; out come a `Run` (or its text) and, where no machine file is
@@ -6,18 +6,28 @@ there, a machine whose travels are those of the data. The sign of a deviation is
 and said to the user: what a machine did wrong is the negative of what its controller sees.
 """
 
+from twin.foreign.acceptance import positioning_figures
+from twin.foreign.circle import circle_machine, circle_run, read_circle
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
 from twin.foreign.points import joined_points, linear_machine, points_run, read_points
-from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
+from twin.foreign.positioning import (
+    PositioningTest,
+    one_axis_machine,
+    positioning_run,
+    read_positioning,
+)
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
 from twin.foreign.sheet import ANGLES, MM, Sheet, read_sheet
 
 __all__ = [
     "ANGLES",
     "MM",
+    "PositioningTest",
     "Sheet",
     "arm_from_dh",
+    "circle_machine",
+    "circle_run",
     "joined_points",
     "joint_readings",
     "linear_machine",
@@ -25,7 +35,9 @@ __all__ = [
     "mapped_run",
     "one_axis_machine",
     "points_run",
+    "positioning_figures",
     "positioning_run",
+    "read_circle",
     "read_points",
     "read_positioning",
     "read_sheet",

@@ -1,0 +1,45 @@
+"""Compensation: the model of a machine goes back to its control.
+
+In: a `SavedModel`, or a machine with errors that are known, and the `State` that it works in. Out:
+tables of controls (`write_tables`) and what they leave (`Played`), each with the uncertainty that
+the model has.
+
+    errors = MachineErrors.of_model(read_model("model.toml"))
+    datum = datum_of(errors.chain, {"Z": -200.0}, 160.0)
+    corrects = partial(correction, errors)
+    result_of(errors, corrects, workspace(errors.chain, {}), datum)
+
+Every compensation ends in one thing, readings that are added (`Corrects`), and is judged in one
+way: played on the exact twin (`played`). `field` has the errors and their inverse, `tables` what
+controls hold.
+"""
+
+from compensation.field import (
+    Datum,
+    MachineErrors,
+    Result,
+    State,
+    correction,
+    datum_of,
+    result_of,
+    workspace,
+)
+from compensation.tables import FORMATS, Played, play_tables, write_tables
+
+PARTS = ("field", "tables")
+"""From bottom to top: each imports only from those before it."""
+
+__all__ = [
+    "FORMATS",
+    "Datum",
+    "MachineErrors",
+    "Played",
+    "Result",
+    "State",
+    "correction",
+    "datum_of",
+    "play_tables",
+    "result_of",
+    "workspace",
+    "write_tables",
+]

@@ -1,0 +1,126 @@
+"""`matstd compensate`: the identified model goes back to the control."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from twin.errors import DesignError
+
+if TYPE_CHECKING:
+    from compensation.tables import Played
+    from matstd.compensation.job import Job
+
+OURS = ("*/*", "report.html", "tables.xlsx", "tables/*.csv", "pictures/*.png", "compensation.json")
+"""Results that not every compensation leaves."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
+    parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
+    parser.add_argument("--tables", metavar="DIR", help="write tables of controls into it")
+    parser.add_argument(
+        "--control",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="only tables of this control: iso230, heidenhain, sinumerik, linuxcnc",
+    )
+    parser.add_argument(
+        "--opposite",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="turn the sign of the values in the tables of this control",
+    )
+    parser.add_argument(
+        "--datum",
+        metavar="AXIS=READING",
+        nargs="+",
+        default=[],
+        help="readings (mm, degrees) where the preset is taken; others are zero",
+    )
+    parser.add_argument("--tool-length", metavar="MM", type=float, default=0.0)
+    parser.add_argument(
+        "--within",
+        metavar="AXIS=LOW:HIGH",
+        nargs="+",
+        default=[],
+        help="workspace that is judged (mm, degrees); others over their travel",
+    )
+    parser.add_argument(
+        "--after", metavar="MIN", type=float, default=0.0, help="minutes since switching on"
+    )
+    parser.add_argument("--temperature", metavar="SENSOR=DEGC", nargs="+", default=[])
+    parser.add_argument("--rpm", type=float, help="spindle speed since switching on")
+    parser.add_argument(
+        "--switch",
+        metavar="WORD=FACTOR",
+        nargs="+",
+        default=[],
+        help="scale errors, 0 is off: by symbol, effect, kind, class, axis or all",
+    )
+    parser.add_argument(
+        "--active",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="a table that is active on the control",
+    )
+    parser.add_argument("--effects", metavar="FILE.py", action="append", default=[])
+    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write what is asked for; a folder appears whole or not at all."""
+    from matstd.compensation.job import read_job
+
+    if args.tables is None:
+        raise DesignError("nothing to write: expected --tables DIR")
+    job = read_job(args)
+    return _tables(args, job)
+
+
+def _tables(args: argparse.Namespace, job: Job) -> int:
+    """Tables of every control, read back and played."""
+    from compensation.tables import FORMATS, play_tables, write_table_results, write_tables
+    from matstd.folder import results_folder
+    from matstd.progress import stages
+    from report.compensation import write_compensation_page
+
+    names = _controls(args.control) or list(FORMATS)
+    opposite = _controls(args.opposite)
+    done = []
+    with results_folder(args.tables, args.force, OURS) as folder, stages() as show:
+        for k, name in enumerate(names):
+            show("tables", k, len(names))
+            place, head = folder / name, job.header(-1 if name in opposite else 1)
+            write_tables(FORMATS[name], place, job.errors, job.datum, head, job.poses)
+            done.append(play_tables(FORMATS[name], place, job.errors, job.datum, head, job.poses))
+        head = job.header(1)
+        write_table_results(folder / "compensation.json", job.errors, head, done)
+        write_compensation_page(folder, job.errors, head, done, Path(args.model).name)
+    _tell(args, done)
+    return 0
+
+
+def _controls(names: list[str]) -> list[str]:
+    from compensation.tables import FORMATS
+
+    for name in names:
+        if name not in FORMATS:
+            raise DesignError(f"control {name}: expected one of {', '.join(FORMATS)}")
+    return list(dict.fromkeys(names))
+
+
+def _tell(args: argparse.Namespace, done: list[Played]) -> None:
+    """Every control in a line, and what it cannot hold in another."""
+    from matstd.console import say
+    from report.compensation import table_lines
+
+    for played in done:
+        for line, is_first in table_lines(played):
+            say(line, style="bold" if is_first else None)
+    say(f"{args.tables}: look at report.html, compensation.json")
