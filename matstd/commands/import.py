@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,6 +35,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="csv, txt, xlsx, xls or ods; of several lists of points each is a set-up of its own",
     )
+    _add_kinds(parser)
+    _add_details(parser)
+    parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
+    parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
+    parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
+    parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
+    parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
+    parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
+    parser.add_argument("--force", action="store_true", help="overwrite the outputs")
+
+
+def _add_kinds(parser: argparse.ArgumentParser) -> None:
+    """What the files are: one of them."""
     kind = parser.add_mutually_exclusive_group(required=True)
     kind.add_argument(
         "--positioning", metavar="AXIS", help="ISO 230-2 table of this axis: targets, cycles"
@@ -58,54 +71,46 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="serial arm under a tracker: columns j1, j2 ... of joints and x, y, z of a reflector",
     )
     kind.add_argument("--map", metavar="MAP.toml", help="any other table, by a mapping file")
-    parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
-    parser.add_argument(
-        "--dh",
-        metavar="DH.csv",
-        help="with --arm, for --machine: Denavit and Hartenberg's a alpha d theta, a row a joint",
-    )
-    parser.add_argument(
-        "--modified", action="store_true", help="the parameters of --dh are modified ones (Craig)"
-    )
-    parser.add_argument(
-        "--reflector",
-        metavar=("X", "Y", "Z"),
-        type=float,
-        nargs=3,
-        help="with --arm: place of the reflector, mm, in the tool frame, or with --dh in the frame "
-        "of the flange; found from the data where it is not stated",
-    )
-    parser.add_argument("--radius", type=float, help="with --circle: nominal radius, mm")
-    parser.add_argument(
-        "--feed", type=float, help="with --circle: mm/min, from which times and speeds follow"
-    )
-    parser.add_argument(
-        "--centre",
-        metavar=("X", "Y", "Z"),
-        type=float,
-        nargs=3,
-        default=(0.0, 0.0, 0.0),
-        help="with --circle: readings at its centre, mm (0 0 0)",
-    )
-    parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
-    parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
-    parser.add_argument(
+
+
+def _add_details(parser: argparse.ArgumentParser) -> None:
+    """What only one kind of file needs."""
+    test = parser.add_argument_group("with --positioning")
+    test.add_argument(
         "--target",
         metavar="COLUMN",
         default="",
-        help="with --positioning: where the axis was told to go, if the header does not say; of "
-        "two encoders the one that the control believes",
+        help="where the axis was told to go, if the header does not say; of two encoders the one "
+        "that the control believes",
     )
-    parser.add_argument(
+    test.add_argument(
         "--actual",
         metavar="COLUMN",
         default="",
-        help="with --positioning: where the axis really was, by the better instrument",
+        help="where the axis really was, by the better instrument",
     )
-    parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
-    parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
-    parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
-    parser.add_argument("--force", action="store_true", help="overwrite the outputs")
+    circle = parser.add_argument_group("with --circle")
+    circle.add_argument("--radius", type=float, help="nominal radius, mm")
+    circle.add_argument("--feed", type=float, help="mm/min, from which times and speeds follow")
+    place: dict[str, Any] = {"metavar": ("X", "Y", "Z"), "type": float, "nargs": 3}
+    circle.add_argument(
+        "--centre", default=(0.0, 0.0, 0.0), help="readings at its centre, mm (0 0 0)", **place
+    )
+    arm = parser.add_argument_group("with --arm")
+    arm.add_argument(
+        "--dh",
+        metavar="DH.csv",
+        help="for --machine: Denavit and Hartenberg's a alpha d theta, a row a joint",
+    )
+    arm.add_argument(
+        "--modified", action="store_true", help="the parameters of --dh are modified ones (Craig)"
+    )
+    arm.add_argument(
+        "--reflector",
+        help="place of the reflector, mm, in the tool frame, or with --dh in the frame of the "
+        "flange; found from the data where it is not stated",
+        **place,
+    )
 
 
 def run(args: argparse.Namespace) -> int:
