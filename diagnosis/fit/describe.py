@@ -26,7 +26,7 @@ ALIKE = 1e-6
 SEEN = 0.1
 """Share of the largest lever below which a row says little of a curve, and noise would tell."""
 
-_HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
+_HEADS = {"mm": ("um", UM), "rad": ("urad", URAD), "s": ("ms", 1e-3)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
 
 

@@ -184,6 +184,8 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         value=columns.own_columns(table, time, remarks),
     )
     signs = columns.approach(table, chain, q, touches.normal_table)
+    if not head.instrument.is_ball_on_standard:
+        signs = columns.standing(signs, touches, remarks)
     touches = replace(touches, approach=signs)
     return Run(
         touches=touches,

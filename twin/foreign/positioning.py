@@ -17,7 +17,8 @@ import numpy as np
 
 from twin.errors import BadFile
 from twin.foreign.axis_log import approaches, strokes, temperatures
-from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column, unit_of_time
+from twin.foreign.clock import seconds
+from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
 from twin.frames import Array, pose
 from twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
 from twin.record import Instrument, IntArray, Run, Setup, Touches
@@ -124,7 +125,7 @@ def read_positioning(
     n = len(sheet)
     time = np.zeros(n)
     if clock is not None:
-        time = sheet.numbers(clock) * unit_of_time(sheet.columns[clock])
+        time = seconds(sheet, clock)
         sign, stroke = strokes(_held(at))
     else:
         sign, stroke = approaches(_held(at))
