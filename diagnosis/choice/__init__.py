@@ -7,8 +7,8 @@ are correlated: poses, set-ups, stretches of time longer than the memory of what
 """
 
 from diagnosis.choice.following import choice_remarks, field_shares, followed
+from diagnosis.choice.long_runs import found_in
 from diagnosis.choice.prediction import Choice, ChoiceRule, candidate_effects, chosen_by_prediction
-from diagnosis.choice.remembering import remembered
 
 __all__ = [
     "Choice",
@@ -18,5 +18,5 @@ __all__ = [
     "chosen_by_prediction",
     "field_shares",
     "followed",
-    "remembered",
+    "found_in",
 ]
