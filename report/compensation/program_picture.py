@@ -24,7 +24,6 @@ def draw_program(path: str | Path, done: Compensated) -> None:
         done: The program and its compensation.
     """
     rows = np.unique(np.linspace(0, len(done.q) - 1, min(len(done.q), POINTS)).astype(int))
-    rows = rows[~_rapid(done)[rows]] if not _rapid(done).all() else rows
     drawn = figure(4.2)
     left, right = drawn.subplots(1, 2)
     _path(left, done, rows)
@@ -47,14 +46,14 @@ def draw_program(path: str | Path, done: Compensated) -> None:
     save(drawn, path)
 
 
-def _rapid(done: Compensated) -> np.ndarray:
-    return np.array([m.is_rapid for m in done.program.motions])[done.motion]
-
-
 def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:
     """Nominal, actual and compensated path in the plane in which it is widest."""
     points = done.nominal[rows]
     wide = np.ptp(points, axis=0)
+    is_rapid = np.array([m.is_rapid for m in done.program.motions])[done.motion[rows]]
+    if not is_rapid.all():  # what cuts nothing would cross the picture
+        points = np.where(is_rapid[:, None], np.nan, points)
+        wide = np.nanmax(points, axis=0) - np.nanmin(points, axis=0)
     i, j = sorted(np.argsort(-wide)[:2])
     worst = max(float(np.linalg.norm(done.before[rows], axis=1).max()), 1e-9)
     gain = SHOWN * max(float(wide.max()), 1.0) / worst
