@@ -17,7 +17,8 @@ import numpy as np
 
 from twin.errors import BadFile
 from twin.foreign.axis_log import approaches, strokes, temperatures
-from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column, unit_of_time
+from twin.foreign.clock import seconds
+from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
 from twin.frames import Array, pose
 from twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
 from twin.record import Instrument, IntArray, Run, Setup, Touches
@@ -124,13 +125,14 @@ def read_positioning(
     n = len(sheet)
     time = np.zeros(n)
     if clock is not None:
-        time = sheet.numbers(clock) * unit_of_time(sheet.columns[clock])
+        time = seconds(sheet, clock)
         sign, stroke = strokes(_held(at))
     else:
         sign, stroke = approaches(_held(at))
         parted = _ways_of_parts(sheet)
         sign = parted if np.any(parted) else sign
     return _present(
+        sheet,
         PositioningTest(
             axis=axis,
             target=at,
@@ -141,7 +143,7 @@ def read_positioning(
             time=time,
             temperature=temperatures(sheet) if clock is not None else {},
             is_by_order=direction is None and bool(np.any(sign < 0)),
-        )
+        ),
     )
 
 
@@ -181,6 +183,7 @@ def _wide(
         raise BadFile(sheet.path, "header", f"column {unsaid!r}", expected)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     return _present(
+        sheet,
         PositioningTest(
             axis=axis,
             target=columns[0],
@@ -188,7 +191,7 @@ def _wide(
             cycle=columns[2],
             direction=columns[3],
             line=columns[4],
-        )
+        ),
     )
 
 
@@ -221,9 +224,11 @@ def _is_position(values: Array, at: Array) -> bool:
     return abs(float(slope) - 1.0) < ALL_BUT
 
 
-def _present(test: PositioningTest) -> PositioningTest:
+def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
     """Without readings that are not there."""
     rows = np.isfinite(test.target) & np.isfinite(test.deviation)
+    if not rows.any():
+        raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
     return PositioningTest(
         axis=test.axis,
         target=test.target[rows],
