@@ -324,7 +324,8 @@ def _points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tupl
     from twin.foreign import joined_points, linear_machine, points_run, read_points
     from twin.units import UM
 
-    points = joined_points([read_points(sheet, args.unit) for sheet in sheets])
+    lists = [read_points(sheet, args.unit) for sheet in sheets]
+    points = joined_points(lists, [sheet.path.stem for sheet in sheets])
     chain = read_machine(args.machine) if args.machine else linear_machine(points)
     u = _uncertainty(args, "u_um", UM)
     return points_run(points, "part" if meaning == "part" else "standard", chain, u), chain

@@ -66,8 +66,9 @@ def _field_shares(r: FieldShares) -> str:
 
 def _few_touches(r: FewTouches) -> str:
     return (
-        f"{r.touches} touches for {r.parameters} parameters: the prior decides the rest; single "
-        "parameters are not known, only what they do together where it was probed"
+        f"{r.touches} touches for {r.parameters} errors that the machine may have there: what is "
+        "usual decides the rest; single ones are not known, only what they do together where it "
+        "was probed"
     )
 
 

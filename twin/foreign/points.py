@@ -11,7 +11,7 @@ Both compare where a point is with where it should be, and mean opposite things:
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
 
@@ -43,6 +43,7 @@ class PointList:
         deviation: Measured minus nominal, (N, 3), mm; not a number where it was not measured.
         feature: Names of the points, (N,).
         setup: Which part or set-up a point belongs to, (N,).
+        run: Which list it stands in where there are several, (N,); "" of one.
         line: Line of the file, (N,).
     """
 
@@ -51,6 +52,7 @@ class PointList:
     feature: Labels
     setup: Labels
     line: IntArray
+    run: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
 
 
 def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
@@ -143,16 +145,20 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
     )
 
 
-def joined_points(lists: Sequence[PointList]) -> PointList:
-    """Several lists as one; each is a set-up of its own, named by its place in the order."""
+def joined_points(lists: Sequence[PointList], names: Sequence[str] = ()) -> PointList:
+    """Several lists as one; each is a run of its own, with set-ups that bear its name."""
     if len(lists) == 1:
         return lists[0]
+    if len(set(names)) < len(names):
+        names = [f"{name}-{i + 1}" for i, name in enumerate(names)]
+    of = list(zip(lists, names, strict=True))
     return PointList(
         nominal=np.concatenate([p.nominal for p in lists]),
         deviation=np.concatenate([p.deviation for p in lists]),
         feature=np.concatenate([p.feature for p in lists]),
-        setup=np.concatenate([[f"list{i + 1}_{s}" for s in p.setup] for i, p in enumerate(lists)]),
+        setup=np.concatenate([[f"{name}_{s}" for s in p.setup] for p, name in of]),
         line=np.concatenate([p.line for p in lists]),
+        run=np.concatenate([np.full(len(p.line), name) for p, name in of]),
     )
 
 
@@ -236,7 +242,13 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
     length = np.zeros(len(rows))
     q = _readings(chain, place, length)
     normal = np.eye(3)[axis]
-    names, setup = np.unique(points.setup, return_inverse=True)
+    labels = list(dict.fromkeys(points.setup.tolist()))  # in the order of the lists
+    setup = np.array([labels.index(label) for label in points.setup], dtype=np.int64)
+    of = (
+        dict(zip(points.setup.tolist(), points.run.tolist(), strict=True))
+        if len(points.run)
+        else {}
+    )
     sign = -1.0 if meaning == "part" else 1.0
     touches = Touches(
         chain=chain,
@@ -245,8 +257,8 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
         radius=np.zeros(len(rows)),
         point=place,
         normal=normal,
-        setups=tuple(Setup(_key(str(name))) for name in names),
-        setup=setup.reshape(-1)[rows].astype(np.int64),
+        setups=tuple(Setup(_key(label), run=of.get(label, "")) for label in labels),
+        setup=setup[rows],
         time=np.zeros(len(rows)),
         approach=np.zeros(q.shape),
         feature=points.feature[rows],
