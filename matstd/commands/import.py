@@ -201,6 +201,9 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
         measured, chain = _arm(args, sheets[0])
     else:
         measured, chain = _points(args, sheets, meaning)
+    for sheet in sheets:
+        if sheet.unused:
+            say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
     machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
     if not args.machine:
         refuse_to_overwrite(machine, args.force)
