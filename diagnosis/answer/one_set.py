@@ -14,6 +14,7 @@ import numpy as np
 from diagnosis.answer.alike import periods_alike
 from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
 from diagnosis.evidence import EffectSet, ScaledEffect, projected
+from diagnosis.residual import find_structure
 from diagnosis.search import (
     Member,
     Search,
@@ -147,3 +148,13 @@ def _by_name(state: SearchState) -> dict[str, Verified]:
 
 def _stands(tests: Mapping[str, Verified]) -> bool:
     return all(v.stands for v in tests.values())
+
+
+def without(state: SearchState, name: str) -> SearchState:
+    """The state less one effect of its set; what it explained is left to be explained."""
+    kept = [i for i, s in enumerate(state.effects) if s.effect.name != name]
+    chosen = state.search.evaluate(state.chosen.members[i] for i in kept)
+    effects = tuple(state.effects[i] for i in kept)
+    return replace(
+        state, chosen=chosen, effects=effects, left=tuple(find_structure(chosen.effects))
+    )

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.answer.alike import period_value
 from diagnosis.answer.ambiguity import ConfusionClass
-from diagnosis.answer.collinear import check_distinct, not_significant
+from diagnosis.answer.collinear import check_distinct, not_significant, weakest
 from diagnosis.answer.detectable import detectable
 from diagnosis.answer.next_measurement import (
     Plan,
@@ -15,7 +15,7 @@ from diagnosis.answer.next_measurement import (
     candidate_touches,
     plan,
 )
-from diagnosis.answer.one_set import ToldSet, told_set
+from diagnosis.answer.one_set import ToldSet, told_set, without
 from diagnosis.answer.several import settled
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
@@ -23,8 +23,8 @@ from diagnosis.choice import (
     chosen_by_prediction,
     field_shares,
     followed,
+    found_in,
     offered,
-    remembered,
     ways_tried,
 )
 from diagnosis.evidence import (
@@ -50,7 +50,6 @@ from diagnosis.search import (
     SearchState,
     most_evident,
     refined_named,
-    search_until_stable,
 )
 from twin.compute import one_blas_thread
 from twin.library import ordinary_model
@@ -115,8 +114,7 @@ def _diagnosed(
     known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
-    final = search_until_stable(task, added, single, progress)
-    task, final = remembered(task, added, final, single, progress)
+    task, final = found_in(task, added, single, progress)
     if task.model.chain.is_serial_arm:  # whose lines bend like what it lacks
         task = task.suited((*added, *final.effects))
     choice = chosen_by_prediction(task, added, final, library, progress)
@@ -139,9 +137,8 @@ def _result(
 ) -> Diagnosis:
     """Everything that is told of the last round."""
     progress(0.5, "what cannot be told apart")
-    tested = told_set(final)
+    tested, steps = _told(task, added, final)
     final, classes, gross = tested.state, tested.classes, final.base.gross
-    steps = _steps(task, added, tested, gross)
     unexplained = bool(final.nameless or final.left)
     verdict = (
         Verdict.UNEXPLAINED
@@ -174,6 +171,23 @@ def _result(
         faults=description_faults(steps[0].fit, progress),
         remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
     )
+
+
+def _told(
+    task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
+) -> tuple[ToldSet, tuple[Step, ...]]:
+    """The set that is told, every member beyond chance and of a size beyond its uncertainty.
+
+    A search weighs an effect beside a machine as it is expected to be; a size that rests on the
+    touches alone may be nothing, and such an effect is not told. The weakest goes first.
+    """
+    while True:
+        tested = told_set(final)
+        steps = _steps(task, added, tested, final.base.gross)
+        weak = weakest(steps[1 + len(added) :], final.is_weighed)
+        if weak is None:
+            return tested, steps
+        final = without(tested.state, weak)
 
 
 def _remarks(fit: Fit, final: SearchState) -> tuple[Remark, ...]:

@@ -7,8 +7,8 @@ are correlated: poses, set-ups, stretches of time longer than the memory of what
 """
 
 from diagnosis.choice.following import field_shares, followed, ways_tried
+from diagnosis.choice.long_runs import found_in
 from diagnosis.choice.prediction import Choice, Way, chosen_by_prediction, offered
-from diagnosis.choice.remembering import remembered
 
 __all__ = [
     "Choice",
@@ -16,7 +16,7 @@ __all__ = [
     "chosen_by_prediction",
     "field_shares",
     "followed",
+    "found_in",
     "offered",
-    "remembered",
     "ways_tried",
 ]

@@ -51,6 +51,7 @@ def followed(
         progress: Told of every stage.
     """
     gross, best = final.base.gross, choice.best
+    task = replace(task, memory=None)
     plain = task.fit((*added, *best.effects), gross)
     task = replace(task, memory=_slow(choice.memory, int(plain.used.sum())))
     base = task.fit(added, gross)

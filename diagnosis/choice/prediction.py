@@ -21,7 +21,15 @@ from diagnosis.choice.remembering import memory_of
 from diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
 from diagnosis.fit import Fit
 from diagnosis.regression import CLEARLY, GrossErrors, Memory
-from diagnosis.search import Budget, DiagnosisTask, Library, SearchState, refined_set, searched
+from diagnosis.search import (
+    Budget,
+    DiagnosisTask,
+    Library,
+    SearchState,
+    best_set,
+    refined_set,
+    scaled,
+)
 from twin.effects import again
 from twin.frames import Array
 from twin.library import proposals
@@ -41,6 +49,14 @@ MOST_ROWS = 4000
 PLAINLY = 0.97
 """Share of the error of the simpler way that another way must reach to be preferred: blocks are
 few, and 3 % are well inside their scatter."""
+
+
+LOUD = 1.3
+"""Noise with memory over stated noise from which it may be a cause that drives something."""
+
+REMEMBERED = 0.85
+"""Share of the error of a set in noise with memory that a way must reach to take its place: that
+set was found with all rows in sight, and noise that remembers is the simpler cause."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,8 +113,8 @@ def chosen_by_prediction(
 ) -> Choice | None:
     """The way that predicts best, or None where there is nothing to choose.
 
-    There is where structure is left, what is left is slow, and the run recorded something that may
-    drive it.
+    There is where structure is left, or noise with memory that is larger than stated, what is left
+    is slow, and the run recorded something that may drive it.
 
     Args:
         added: Effects that the user added.
@@ -106,8 +122,13 @@ def chosen_by_prediction(
         candidates: Effects that may be found, fields among them.
         progress: Told of every block.
     """
-    if not (final.left or final.nameless) or not drives(task.run.touches):
+    remembers = task.memory is not None
+    is_open = bool(final.left or final.nameless)
+    if remembers:
+        is_open = task.fit((*added, *final.effects), final.base.gross).noise.factor > LOUD
+    if not is_open or not drives(task.run.touches):
         return None
+    task = replace(task, memory=None)
     fit = task.fit((*added, *final.effects), final.base.gross)
     memory, gain = memory_of(fit)
     if gain < CLEARLY or memory.per_independent < SLOW:
@@ -127,6 +148,10 @@ def chosen_by_prediction(
     for way in ways[1:]:
         if way.error < PLAINLY * best.error:
             best = way
+    if remembers:
+        errors = _errors(task, added, gross, groups, lambda task, gross: final.effects)
+        if best.error > REMEMBERED * replace(best, errors=errors).error:
+            return None
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(
         ways=tuple(ways),
@@ -221,7 +246,7 @@ def named(
     for _ in range(2):
         library = Library.of(complement, [*candidates, *more])
         budgets.append(Budget(SETS))
-        chosen = searched(library, [s.effect.name for s in found], budgets[-1])
+        chosen = scaled(best_set(library, found, budgets[-1])[1])
         found = list(refined_set(complement, chosen))
         more = [a for s in found if (a := again(s.effect)) is not None]
         if not more:

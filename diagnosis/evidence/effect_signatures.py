@@ -125,7 +125,7 @@ class ResidualSpace:
     def project(self, C: Array) -> Array:
         """Columns (N, K) freed of what the model can imitate, (N + P, K)."""
         n = len(C)
-        out = -self.Q @ (self.Q[:n].T @ C)
+        out = self.Q @ -(self.Q[:n].T @ C)
         out[:n] += C
         return out
 

@@ -184,9 +184,9 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         pose=columns.poses(table, chain, q, setup),
         value=columns.own_columns(table, time, remarks),
     )
-    signs = columns.approach(table, chain, q, touches.normal_table)
+    signs = columns.approach(table, touches)
     if not head.instrument.is_ball_on_standard:
-        signs = columns.standing(signs, touches, remarks)
+        signs = columns.standing(table, signs, touches, remarks)
     touches = replace(touches, approach=signs)
     return Run(
         touches=touches,

@@ -129,6 +129,7 @@ def read_positioning(
         parted = _ways_of_parts(sheet)
         sign = parted if np.any(parted) else sign
     return _present(
+        sheet,
         PositioningTest(
             axis=axis,
             target=at,
@@ -139,7 +140,7 @@ def read_positioning(
             time=time,
             temperature=temperatures(sheet) if clock is not None else {},
             is_by_order=direction is None and bool(np.any(sign < 0)),
-        )
+        ),
     )
 
 
@@ -179,6 +180,7 @@ def _wide(
         raise BadFile(sheet.path, "header", f"column {unsaid!r}", expected)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     return _present(
+        sheet,
         PositioningTest(
             axis=axis,
             target=columns[0],
@@ -186,7 +188,7 @@ def _wide(
             cycle=columns[2],
             direction=columns[3],
             line=columns[4],
-        )
+        ),
     )
 
 
@@ -219,9 +221,11 @@ def _is_position(values: Array, at: Array) -> bool:
     return abs(float(slope) - 1.0) < ALL_BUT
 
 
-def _present(test: PositioningTest) -> PositioningTest:
+def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
     """Without readings that are not there."""
     rows = np.isfinite(test.target) & np.isfinite(test.deviation)
+    if not rows.any():
+        raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
     return PositioningTest(
         axis=test.axis,
         target=test.target[rows],
