@@ -135,7 +135,7 @@ class ChosenByPrediction:
 
     chosen: str
     blocks: int
-    ways: tuple[tuple[str, float], ...]
+    tried: tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True, slots=True)

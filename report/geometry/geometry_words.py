@@ -129,7 +129,7 @@ def shown_unit(unit: str) -> tuple[str, float]:
     return _UNITS[unit]
 
 
-def sized(estimate: Estimate, unit: str) -> str:
+def estimate_words(estimate: Estimate, unit: str) -> str:
     """`41.0 ± 2.0 µrad`, from an estimate in a base unit."""
     shown, factor = _UNITS[unit]
     return _value(estimate.value, estimate.u, factor, shown)
