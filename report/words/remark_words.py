@@ -124,8 +124,9 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.ChosenByPrediction: _chosen,
     noticed.FieldShares: _field_shares,
     noticed.ReaderRemark: "{r.text}",
-    noticed.FewTouches: "{r.touches} touches for {r.parameters} parameters: the prior decides the "
-    "rest; single parameters are not known, only what they do together where it was probed",
+    noticed.FewTouches: "{r.touches} touches for {r.parameters} errors that the machine may have "
+    "there: what is usual decides the rest; single ones are not known, only what they do together "
+    "where it was probed",
     noticed.FewDegreesOfFreedom: "{r.dof:.0f} degrees of freedom are left for the noise: only "
     "large effects can be seen, and the stated uncertainty is relied on",
     noticed.HeldOutInDoubt: "the error of held-out touches is {r.ratio:.1f} times the stated "
