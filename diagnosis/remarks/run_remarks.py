@@ -15,6 +15,10 @@ FEW_DOF = 30.0
 DOUBTFUL = 2.0
 """Error of held-out touches over the stated noise from which few touches leave all open."""
 
+FELT = 1e-3
+"""Effect of a parameter of its expected size on all touches together, over the noise, below which
+they do not feel it: a rotary axis that stands still."""
+
 FEWEST_REPLICATES = 10
 """Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
 
@@ -28,7 +32,7 @@ class ReaderRemark:
 
 @dataclass(frozen=True, slots=True)
 class FewTouches:
-    """Fewer touches than parameters: the prior decides the rest."""
+    """Fewer touches than parameters that they feel: the prior decides the rest."""
 
     touches: int
     parameters: int
@@ -131,7 +135,7 @@ class ChosenByPrediction:
 
     chosen: str
     blocks: int
-    ways: tuple[tuple[str, float], ...]
+    tried: tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,7 +201,8 @@ def remarks(fit: Fit) -> tuple[Remark, ...]:
 def _touches(fit: Fit) -> list[Remark]:
     """Too few touches or poses."""
     out: list[Remark] = []
-    n, p = int(fit.used.sum()), len(fit.parameters)
+    n, felt = int(fit.used.sum()), np.linalg.norm(fit.X[fit.used], axis=0) > FELT
+    p = int(felt.sum())
     if n < p:
         out.append(FewTouches(n, p))
     if fit.solution.dof < FEW_DOF:

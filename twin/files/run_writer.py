@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from twin.files.pose_file import reading_columns
 from twin.files.run_columns import FORCE, NORMAL, POINT, TARGET
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
-from twin.record import Instrument, Run, linear_approach
+from twin.record import Instrument, Run, implied_approach
 from twin.units import DEG, UM
 
 
@@ -47,6 +48,8 @@ def run_text(run: Run, machine: str) -> str:
         out.write(f"# [setup.{setup.name}]\n")
         out.write(f"# origin_mm = [{', '.join(f'{v:.9f}' for v in T[:3, 3])}]\n")
         out.write(f"# rotation_deg = [{', '.join(f'{v:.10f}' for v in angles)}]\n")
+        if setup.run:
+            out.write(f"# run = {json.dumps(setup.run, ensure_ascii=False)}\n")
     columns = _columns_out(run, common_u)
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(columns)
@@ -94,7 +97,7 @@ def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
 def _stated_directions(run: Run) -> list[str]:
     """Axes whose last motion the reader would not know: rotary ones, and of instruments others."""
     t = run.touches
-    implied = linear_approach(t.chain, t.q, t.normal_table)
+    implied = implied_approach(t)
     differs = np.any(implied != t.approach, axis=0)
     return [a for i, a in enumerate(t.chain.axes) if a in t.chain.rotary_axes or differs[i]]
 
