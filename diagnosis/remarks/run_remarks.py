@@ -88,10 +88,12 @@ class OutliersLeftOut:
     Attributes:
         lines: Of the run file, what stands out most first.
         largest: Largest distance from what the other touches predict, outwards positive, mm.
+        runs: Names of the runs that the lines stand in, one each; empty for a single run.
     """
 
     lines: tuple[int, ...]
     largest: float
+    runs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,4 +260,6 @@ def _outliers(fit: Fit) -> list[Remark]:
         return []
     rows = rows[np.argsort(-np.abs(gross.score[rows]))]
     largest = float(fit.residual[rows[np.argmax(np.abs(fit.residual[rows]))]])
-    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest)]
+    t = fit.run.touches
+    of = tuple(t.runs[k] for k in t.run[rows]) if len(t.runs) > 1 else ()
+    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest, of)]

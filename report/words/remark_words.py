@@ -70,12 +70,18 @@ def _outliers_left_out(r: noticed.OutliersLeftOut) -> str:
     count = len(r.lines)
     several = count > 1
     side = "outside" if r.largest > 0 else "inside"
-    lines = ", ".join(str(line) for line in r.lines[:LISTED])
+    shown: dict[str, list[int]] = {}
+    for line, run in zip(r.lines[:LISTED], r.runs or ("",) * count, strict=False):
+        shown.setdefault(run, []).append(line)
+    lines = "; ".join(
+        f"line{'s' if len(some) > 1 else ''} {', '.join(map(str, some))}" + (run and f" of {run}")
+        for run, some in shown.items()
+    )
     more = f" and {count - LISTED} more" if count > LISTED else ""
     return (
         f"{count} gross error{'s were' if several else ' was'} left out, "
         f"{'the largest ' if several else ''}{abs(r.largest) / UM:.1f} µm {side} what the other "
-        f"touches predict: line{'s' if several else ''} {lines}{more}"
+        f"touches predict: {lines}{more}"
     )
 
 
