@@ -253,7 +253,7 @@ def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets(
 
 @pytest.mark.parametrize("seed", [0, 2])
 def test_the_true_period_is_named_or_listed_where_targets_are_few_and_uneven(seed: int) -> None:
-    """Lines of a spectrum of eleven targets are as wide as their distance; every period is tried."""
+    """Every period is tried: eleven targets know little of a spectrum."""
     targets = np.array([3.7, 41.3, 78.2, 127.9, 161.4, 209.6, 242.1, 291.8, 328.3, 372.7, 397.9])
     found = diagnose(positioning(targets, 10.0, 2.1 * UM, seed))
     (step,) = found.steps[1:]
