@@ -72,11 +72,11 @@ def _refined(final: SearchState) -> tuple[SearchState, Mapping[str, Verified]]:
     if final.is_weighed:
         return final, _by_name(final)
     grid = tuple(ScaledEffect(m.effect, m.scale) for m in final.chosen.members)
-    state = placed(final, final.effects)
+    state = with_members(final, final.effects)
     tests = _by_name(state)
     if _stands(tests):
         return state, tests
-    state = placed(state, grid)
+    state = with_members(state, grid)
     return state, _by_name(state)
 
 
@@ -85,14 +85,14 @@ def _tried(
 ) -> tuple[SearchState, Mapping[str, Verified]]:
     """The set with another effect for one of it where all stand then, else as it was."""
     before = state.effects
-    other = placed(state, (*before[:i], sized, *before[i + 1 :]))
+    other = with_members(state, (*before[:i], sized, *before[i + 1 :]))
     others_tests = _by_name(other)
     if state.is_weighed or _stands(others_tests):
         return other, others_tests
-    return placed(other, before), tests
+    return with_members(other, before), tests
 
 
-def placed(state: SearchState, effects: Sequence[ScaledEffect]) -> SearchState:
+def with_members(state: SearchState, effects: Sequence[ScaledEffect]) -> SearchState:
     """The state with other effects for its members, one for one, and their points of the grids.
 
     The signatures are changed in place, so the state that was given is lost.

@@ -16,16 +16,16 @@ from diagnosis.answer.next_measurement import (
     plan,
 )
 from diagnosis.answer.one_set import ToldSet, told_set, without
-from diagnosis.answer.several import settled
+from diagnosis.answer.several import with_trend
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from diagnosis.choice import (
+    candidate_effects,
+    choice_remarks,
     chosen_by_prediction,
     field_shares,
     followed,
     found_in,
-    offered,
-    ways_tried,
 )
 from diagnosis.evidence import (
     EffectSet,
@@ -95,7 +95,7 @@ def diagnose(
     start = model or ordinary_model(run.touches.chain)
     belief = prior_for(run, start) if prior is None else prior
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
-    return settled(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
+    return with_trend(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
 
 
 def _diagnosed(
@@ -107,7 +107,7 @@ def _diagnosed(
 ) -> Diagnosis:
     """What a task lacks; arguments as of `diagnose`."""
     touches = task.run.touches
-    library = offered(touches) if candidates is None else list(candidates)
+    library = candidate_effects(touches) if candidates is None else list(candidates)
     added = refined_named(task, named, progress)
     if len(added) > 1:
         check_distinct(ResidualSpace.of(task.fit()), added)
@@ -124,7 +124,10 @@ def _diagnosed(
     if choice is None:
         return result
     fields = [e for e in result.found if isinstance(e, ThermalField)]
-    told: tuple[Remark, ...] = (*ways_tried(choice), *(field_shares(result.fit, e) for e in fields))
+    told: tuple[Remark, ...] = (
+        *choice_remarks(choice),
+        *(field_shares(result.fit, e) for e in fields),
+    )
     return replace(result, choice=choice, remarks=(*told, *result.remarks))
 
 

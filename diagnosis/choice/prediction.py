@@ -60,8 +60,8 @@ set was found with all rows in sight, and noise that remembers is the simpler ca
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Way:
-    """A way of choosing, judged.
+class ChoiceRule:
+    """A way of choosing effects, judged.
 
     Attributes:
         name: `nothing`, `two time constants`, `single effects`, `thermal field`.
@@ -87,15 +87,15 @@ class Choice:
     """The result of a choice by prediction.
 
     Attributes:
-        ways: All that were judged, the simplest first.
+        rules: All that were judged, the simplest first.
         best: The one to follow.
         blocks: Number of blocks that were left out, one after the other.
         memory: Of what is left with it; None where it is white.
         is_ended: Whether a search for single effects was ended by its limit, `SETS`.
     """
 
-    ways: tuple[Way, ...]
-    best: Way
+    rules: tuple[ChoiceRule, ...]
+    best: ChoiceRule
     blocks: int
     memory: Memory | None
     is_ended: bool = False
@@ -139,22 +139,23 @@ def chosen_by_prediction(
     budgets: list[Budget] = []
     choosers = _choosers(added, candidates, groups, budgets)
     gross = final.base.gross
-    ways = []
+    rules = []
     for done, (name, chooser) in enumerate(choosers.items()):
         progress(done / len(choosers), "choice by prediction")
         errors = _errors(task, added, gross, groups, chooser)
-        ways.append(Way(name, chooser(task, gross), errors, np.array([len(g) for g in groups])))
-    best = ways[0]
-    for way in ways[1:]:
-        if way.error < PLAINLY * best.error:
-            best = way
+        counts = np.array([len(g) for g in groups])
+        rules.append(ChoiceRule(name, chooser(task, gross), errors, counts))
+    best = rules[0]
+    for rule in rules[1:]:
+        if rule.error < PLAINLY * best.error:
+            best = rule
     if remembers:
         errors = _errors(task, added, gross, groups, lambda task, gross: final.effects)
         if best.error > REMEMBERED * replace(best, errors=errors).error:
             return None
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(
-        ways=tuple(ways),
+        rules=tuple(rules),
         best=best,
         blocks=len(groups),
         memory=left[0] if left[1] >= CLEARLY else None,
@@ -162,7 +163,7 @@ def chosen_by_prediction(
     )
 
 
-def offered(touches: Touches) -> list[Effect]:
+def candidate_effects(touches: Touches) -> list[Effect]:
     """All that a diagnosis may find in a run: proposals of the library and the field of drives."""
     warm = field(touches)
     return [*proposals(touches), *([warm] if warm is not None else [])]

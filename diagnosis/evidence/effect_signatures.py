@@ -248,12 +248,6 @@ class Grid:
     tries: int
 
 
-def whole_grids(candidates: Sequence[Effect], touches: Touches) -> list[Grid]:
-    """Candidates at every point of their grids."""
-    variants = [tuple(tuned_variants(effect, touches)) for effect in candidates]
-    return [Grid(e, v, len(v)) for e, v in zip(candidates, variants, strict=True)]
-
-
 def blocks(variants: Sequence[Effect]) -> list[tuple[int, int]]:
     """First and last variant of blocks of about `BLOCK` columns."""
     width = np.cumsum([len(e.parameters) for e in variants])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from matstd.options import add_output, seen_from
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -41,9 +43,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
     parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
     parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
+    parser.add_argument(
+        "--columns", metavar="NAME,...", help="names of the columns of a table without a header"
+    )
     parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
-    parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
-    parser.add_argument("--force", action="store_true", help="overwrite the outputs")
+    add_output(parser, "RUN.csv", "overwrite the outputs")
 
 
 def _add_kinds(parser: argparse.ArgumentParser) -> None:
@@ -124,7 +128,8 @@ def run(args: argparse.Namespace) -> int:
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
-    sheets = [read_sheet(path, args.sheet) for path in args.files]
+    names = [n.strip() for n in args.columns.split(",")] if args.columns else ()
+    sheets = [read_sheet(path, args.sheet, names) for path in args.files]
     if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:
@@ -143,7 +148,7 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     import tempfile
     from pathlib import Path
 
-    from matstd.console import say
+    from matstd.console import say, say_each
     from twin.errors import BadFile
     from twin.files import read_machine, read_run, write_whole
     from twin.foreign import mapped_run
@@ -164,8 +169,7 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     if left_out:
         readings = "1 reading" if left_out == 1 else f"{left_out} readings"
         say(f"- {readings} left out: no deviation stands there")
-    for remark in found.remarks:
-        say(f"- {remark}")
+    say_each(found.remarks)
 
 
 def _named_machine(args: argparse.Namespace, text: str, output: Path) -> Chain:
@@ -182,7 +186,6 @@ def _named_machine(args: argparse.Namespace, text: str, output: Path) -> Chain:
 
 def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> None:
     """A positioning test or a list of points."""
-    import os
     from pathlib import Path
 
     import numpy as np
@@ -201,13 +204,15 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
         measured, chain = _arm(args, sheets[0])
     else:
         measured, chain = _points(args, sheets, meaning)
+    for sheet in sheets:
+        if sheet.unused:
+            say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
     machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
     if not args.machine:
         refuse_to_overwrite(machine, args.force)
         source = ", ".join(s.path.name for s in sheets)
         write_whole(machine, machine_text(chain, source, is_known=args.arm))
-    relative = Path(os.path.relpath(machine, output.resolve().parent)).as_posix()
-    write_run(output, measured, relative)
+    write_run(output, measured, seen_from(output.parent, machine))
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
     say(f"{output}: {len(measured)} readings, deviations {rms:.3f} µm rms")
     say(f"- sign: {_SIGN[meaning]}")
@@ -324,7 +329,8 @@ def _points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tupl
     from twin.foreign import joined_points, linear_machine, points_run, read_points
     from twin.units import UM
 
-    points = joined_points([read_points(sheet, args.unit) for sheet in sheets])
+    lists = [read_points(sheet, args.unit) for sheet in sheets]
+    points = joined_points(lists, [sheet.path.stem for sheet in sheets])
     chain = read_machine(args.machine) if args.machine else linear_machine(points)
     u = _uncertainty(args, "u_um", UM)
     return points_run(points, "part" if meaning == "part" else "standard", chain, u), chain

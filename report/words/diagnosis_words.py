@@ -166,7 +166,7 @@ def structure_clause(found: Structure) -> str:
 
 def _fall(diagnosis: Diagnosis) -> str:
     if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
-        first, best = diagnosis.choice.ways[0], diagnosis.choice.best
+        first, best = diagnosis.choice.rules[0], diagnosis.choice.best
         return (
             f"the plain error of blocks left out, the choice made anew without each, falls from "
             f"{microns(first.error)} to {microns(best.error)}"

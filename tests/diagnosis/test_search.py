@@ -7,9 +7,10 @@ import pytest
 
 from diagnosis.answer.ambiguity import CONFUSED, confusion_class, plausibility
 from diagnosis.evidence.effect_signatures import (
+    Grid,
     ResidualSpace,
     signatures,
-    whole_grids,
+    tuned_variants,
 )
 from diagnosis.evidence.evidence import EffectSet, addition
 from diagnosis.fit.identification import fit_run
@@ -58,7 +59,9 @@ def library(space, names=NAMES):
 
 
 def search_in(space, names=NAMES):
-    grids = whole_grids(library(space, names), space.touches)
+    effects = library(space, names)
+    variants = [tuple(tuned_variants(effect, space.touches)) for effect in effects]
+    grids = [Grid(e, v, len(v)) for e, v in zip(effects, variants, strict=True)]
     return Search(signatures(space, grids, len(grids)))
 
 
