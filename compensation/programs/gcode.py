@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.programs.language import ROUND, Reading, numbers, radius_fault
-from compensation.programs.motion import Arc, Motion, angle_between, centre_of
+from compensation.programs.language import Reading, centre_by_radius, checked_arc, numbers
+from compensation.programs.motion import Arc, Motion
 from twin.frames import Array
 
 ENDING = ".ngc"
@@ -186,23 +186,15 @@ def _motion(
 
 def _arc(number: int, end: Array, other: dict[str, float], reading: Reading, modes: _Modes) -> Arc:
     """Circle of a G2 or G3 line."""
-    first, second = (reading.column(number, letter) for letter in modes.plane)
-    plane = [first, second]
-    start, stop = reading.at[plane], end[plane]
+    plane = [reading.column(number, letter) for letter in modes.plane]
     positive = modes.motion == 3.0
     if "R" in other:
-        centre = centre_of(start, stop, other["R"] * reading.unit, positive)
-        if centre is None:
-            found = f"R{other['R']:g} for ends {np.hypot(*(stop - start)):.4f} mm apart"
-            raise reading.refusal(number, found, "half of that at least, and two ends")
+        radius = other["R"] * reading.unit
+        centre = centre_by_radius(reading, number, plane, end, radius, positive)
     else:
         named = [other.get(_CENTRES[letter], 0.0) * reading.unit for letter in modes.plane]
-        centre = np.array(named) + (0.0 if modes.centres_absolute else start)
-    off = radius_fault(start, stop, centre)
-    if off > ROUND:
-        raise reading.refusal(number, f"an end {off:.4f} mm off the circle", f"{ROUND} mm at most")
-    angle = angle_between(start, stop, centre, positive, int(other.get("P", 1)))
-    return Arc((first, second), centre, angle)
+        centre = np.array(named) + (0.0 if modes.centres_absolute else reading.at[plane])
+    return checked_arc(reading, number, plane, end, centre, positive, int(other.get("P", 1)))
 
 
 def begin() -> list[str]:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.programs.language import NUMBER, ROUND, Reading, radius_fault
-from compensation.programs.motion import Arc, Motion, angle_between, centre_of
+from compensation.programs.language import NUMBER, Reading, centre_by_radius, checked_arc
+from compensation.programs.motion import Arc, Motion
 from twin.frames import Array
 
 ENDING = ".H"
@@ -236,20 +236,13 @@ def _arc(said: _Words, reading: Reading, modes: _Modes) -> Arc:
     if not plane:
         raise reading.refusal(number, repr(bare), "CC with two of X, Y and Z before it")
     columns = [reading.column(number, letter) for letter in plane]
-    start, stop, positive = reading.at[columns], said.end[columns], said.sense == "+"
+    positive = said.sense == "+"
     if said.kind == "C":
         centre = np.array([modes.pole[letter] for letter in plane])
     else:
-        found = centre_of(start, stop, float(said.radius or 0.0), positive)
-        if found is None:
-            apart = f"R{said.radius} for ends {np.hypot(*(stop - start)):.4f} mm apart"
-            raise reading.refusal(number, apart, "half of that at least, and two ends")
-        centre = found
-    off = radius_fault(start, stop, centre)
-    if off > ROUND:
-        raise reading.refusal(number, f"an end {off:.4f} mm off the circle", f"{ROUND} mm at most")
-    angle = angle_between(start, stop, centre, positive)
-    return Arc((columns[0], columns[1]), centre, angle)
+        radius = float(said.radius or 0.0)
+        centre = centre_by_radius(reading, number, columns, said.end, radius, positive)
+    return checked_arc(reading, number, columns, said.end, centre, positive)
 
 
 def begin() -> list[str]:

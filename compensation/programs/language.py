@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from compensation.programs.frame import Frame
-from compensation.programs.motion import Item, Keep, Motion
+from compensation.programs.motion import Arc, Item, Keep, Motion, angle_between, centre_of
 from twin.errors import BadFile
 from twin.frames import Array
 from twin.machine import Chain
@@ -105,14 +105,51 @@ class Reading:
         self.at = motion.end
 
 
-def radius_fault(start: Array, end: Array, centre: Array) -> float:
-    """By how much an arc's end lies off its circle, mm."""
-    return float(abs(np.hypot(*(end - centre)) - np.hypot(*(start - centre))))
-
-
 ROUND = 0.02
 """An arc's end may lie off its circle by so much, mm: coordinates are rounded to micrometres,
 inches to ten of them."""
+
+
+def centre_by_radius(
+    reading: Reading, line: int, plane: list[int], end: Array, radius: float, positive: bool
+) -> Array:
+    """Centre of an arc that is given by its radius, (2,), mm.
+
+    Raises:
+        BadFile: Ends that no such circle joins.
+    """
+    start, stop = reading.at[plane], end[plane]
+    centre = centre_of(start, stop, radius, positive)
+    if centre is None:
+        apart = float(np.hypot(*(stop - start)))
+        raise reading.refusal(
+            line,
+            f"R{radius:g} for ends {apart:.4f} mm apart",
+            "half of that at least, and two ends",
+        )
+    return centre
+
+
+def checked_arc(
+    reading: Reading,
+    line: int,
+    plane: list[int],
+    end: Array,
+    centre: Array,
+    positive: bool,
+    turns: int = 1,
+) -> Arc:
+    """Arc from where the axes stand about a centre.
+
+    Raises:
+        BadFile: An end that lies off the circle.
+    """
+    start, stop = reading.at[plane], end[plane]
+    off = float(abs(np.hypot(*(stop - centre)) - np.hypot(*(start - centre))))
+    if off > ROUND:
+        raise reading.refusal(line, f"an end {off:.4f} mm off the circle", f"{ROUND} mm at most")
+    angle = angle_between(start, stop, centre, positive, turns)
+    return Arc((plane[0], plane[1]), centre, angle)
 
 
 _WORD = re.compile(rf"([A-Z])({NUMBER})")
