@@ -25,6 +25,7 @@ from diagnosis.evidence import (
     score_all,
 )
 from twin.frames import Array
+from twin.machine import Symbol
 from twin.model import Effect
 
 CHANCE = 1e-3
@@ -166,6 +167,12 @@ def effect_set(
     return EffectSet(complement, np.hstack(blocks) if blocks else np.zeros((rows, 0)))
 
 
+def _table(effect: Effect) -> str | None:
+    """Component error that a table is of; None of an effect that is no table."""
+    symbol: Symbol | None = getattr(effect, "symbol", None)
+    return symbol.name if symbol and getattr(effect, "is_table", False) else None
+
+
 class Search:
     """Search among sets of effects of one pool.
 
@@ -245,12 +252,22 @@ class Search:
         ranked = order[np.sort(first)]
         return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
 
+    def additions(self, chosen: EffectSubset) -> list[int]:
+        """The same without tables by direction of what has a table: they would hold it."""
+        tables = {_table(m.effect) for m in chosen.members} - {None}
+        variants = self.pool.variants
+        return [
+            v
+            for v in self.ranking(chosen)
+            if not (getattr(variants[v], "by_direction", False) and _table(variants[v]) in tables)
+        ]
+
     def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""
         out: list[EffectSubset] = []
         directions: list[Array] = []
         scores = self.scores(chosen)
-        for variant in self.ranking(chosen)[: 12 * most]:
+        for variant in self.additions(chosen)[: 12 * most]:
             if len(out) >= most or scores.evidence[variant] <= chosen.effects.evidence:
                 break
             direction = self.explained(chosen, variant)
@@ -277,7 +294,8 @@ class Search:
             improved = False
             for i in range(len(chosen.members)):
                 others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
-                best = self.ranking(others)[0]
+                ranked = self.additions(others)
+                best = ranked[0] if ranked else chosen.members[i].variant
                 gain = self.scores(others).evidence[best] - chosen.effects.evidence
                 if gain > 1e-6:
                     members = list(chosen.members)
