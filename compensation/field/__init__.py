@@ -10,6 +10,7 @@ from compensation.field.machine_errors import (
     Corrects,
     Disturbance,
     MachineErrors,
+    actual_tip,
     deviation,
     group_of,
 )
@@ -32,6 +33,7 @@ __all__ = [
     "MachineErrors",
     "Result",
     "State",
+    "actual_tip",
     "aligned",
     "correction",
     "datum_of",

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensation.field.machine_errors import Disturbance, MachineErrors, deviation
+from compensation.field.machine_errors import Disturbance, MachineErrors, actual_tip, deviation
 from twin.errors import NotReachable
 from twin.frames import Array
 from twin.machine import Chain, linear_directions, tip
@@ -14,8 +14,8 @@ from twin.units import NM
 MOST = 6
 """Steps of the inverse: each leaves some 1e-4 of what was there, so two or three do."""
 
-CLOSE = 0.1 * NM
-"""A correction that moves by less is found, mm."""
+CLOSE = 2.0 * NM
+"""Of a step, mm: the next one would be some thousandth of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,16 +61,17 @@ def correction(
         NotReachable: The steps do not close: the errors are too large for a machine.
     """
     chain, length = disturbance.chain, touches.target
-    columns = [chain.axis_index(name) for name in chain.linear_axes]
+    columns = np.array([chain.axis_index(name) for name in chain.linear_axes], dtype=np.int64)
     wanted = tip(chain, touches.q, length) + (0.0 if aim is None else aim)
     across = np.linalg.pinv(linear_directions(chain, touches.q))  # (N, M, 3)
     out = np.zeros_like(touches.q) if start is None else start.copy()
+    rows = np.arange(len(out))
     for _ in range(MOST):
-        moved = shifted(touches, out)
-        left = deviation(disturbance, moved) + tip(chain, moved.q, length) - wanted
-        step = np.einsum("nmi,ni->nm", across, left)
-        out[:, columns] -= step
-        if float(np.abs(step).max(initial=0.0)) < CLOSE:
+        left = actual_tip(disturbance, shifted(touches[rows], out[rows])) - wanted[rows]
+        step = np.einsum("nmi,ni->nm", across[rows], left)
+        out[np.ix_(rows, columns)] -= step
+        rows = rows[np.abs(step).max(axis=1, initial=0.0) > CLOSE]
+        if not len(rows):
             return out
     raise NotReachable(f"the correction does not close on machine {chain.name}: errors too large")
 
@@ -89,8 +90,7 @@ def played(errors: Disturbance, touches: Touches, added: Array) -> Array:
         added: Readings that the compensation adds, (N, A).
     """
     chain = errors.chain
-    moved = shifted(touches, added)
-    actual = deviation(errors, moved) + tip(chain, moved.q, touches.target)
+    actual = actual_tip(errors, shifted(touches, added))
     return actual - tip(chain, touches.q, touches.target)
 
 

@@ -28,11 +28,15 @@ class Disturbance(Protocol):
         ...
 
 
+def actual_tip(disturbance: Disturbance, touches: Touches) -> Array:
+    """Where the tool point really is in the table frame, (N, 3), mm."""
+    added = disturbance.contribution(touches)
+    return exact_tip(disturbance.chain, touches.q, touches.target, added)
+
+
 def deviation(disturbance: Disturbance, touches: Touches) -> Array:
     """Exact deviation of the tool point in the table frame, actual minus nominal, (N, 3), mm."""
-    chain, target = disturbance.chain, touches.target
-    actual = exact_tip(chain, touches.q, target, disturbance.contribution(touches))
-    return actual - tip(chain, touches.q, target)
+    return actual_tip(disturbance, touches) - tip(disturbance.chain, touches.q, touches.target)
 
 
 @dataclass(frozen=True, eq=False)

@@ -126,7 +126,8 @@ def aligned(points: Array, field: Array) -> Array:
     arm = points - points.mean(axis=0)
     modes = np.concatenate([np.tile(np.eye(3), (len(points), 1, 1)), -skew(arm)], axis=2)
     flat = field.reshape(3 * len(points), -1)
-    basis, _ = np.linalg.qr(modes.reshape(3 * len(points), 6))
+    basis, strength, _ = np.linalg.svd(modes.reshape(3 * len(points), 6), full_matrices=False)
+    basis = basis[:, strength > 1e-9 * strength[0]]  # points on a line turn about it in vain
     return (flat - basis @ (basis.T @ flat)).reshape(field.shape)
 
 

@@ -7,6 +7,7 @@ hold errors by name (`iso230`, `heidenhain`) or corrections over single axes (`s
 """
 
 from compensation.tables.acceptance import Acceptance
+from compensation.tables.by_name import point_spacing
 from compensation.tables.formats import FORMATS, Format, Played, play_tables, write_tables
 from compensation.tables.header import Header, hashed, header_of
 from compensation.tables.result_file import write_table_results
@@ -20,6 +21,7 @@ __all__ = [
     "hashed",
     "header_of",
     "play_tables",
+    "point_spacing",
     "write_table_results",
     "write_tables",
 ]

@@ -123,6 +123,15 @@ def _points(errors: MachineErrors, datum: Datum, axis: str, most: int) -> int:
         count = 2 * count - 1
 
 
+def point_spacing(errors: MachineErrors, datum: Datum) -> dict[str, float]:
+    """Readings over which every axis's errors are straight to some 0.1 µm, mm or rad.
+
+    Twice the distance of points between which interpolation leaves `FINE`, so four times that.
+    """
+    spans = {a: np.ptp(span(errors.chain.link(a))) for a in errors.chain.programmed_axes}
+    return {a: 2.0 * far / (_points(errors, datum, a, 4096) - 1) for a, far in spans.items()}
+
+
 def _missed(between: Array, values: Array, nodes: Array, held: Array) -> Array:
     """Largest difference of every component between points, (6,)."""
     read = np.column_stack([np.interp(between, nodes, held[:, c]) for c in range(6)])

@@ -24,8 +24,8 @@ from diagnosis.evidence import (
     quiet,
     score_all,
 )
+from diagnosis.search.nested import would_hold
 from twin.frames import Array
-from twin.machine import Symbol
 from twin.model import Effect
 
 CHANCE = 1e-3
@@ -167,12 +167,6 @@ def effect_set(
     return EffectSet(complement, np.hstack(blocks) if blocks else np.zeros((rows, 0)))
 
 
-def _table(effect: Effect) -> str | None:
-    """Component error that a table is of; None of an effect that is no table."""
-    symbol: Symbol | None = getattr(effect, "symbol", None)
-    return symbol.name if symbol and getattr(effect, "is_table", False) else None
-
-
 class Search:
     """Search among sets of effects of one pool.
 
@@ -253,14 +247,9 @@ class Search:
         return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
 
     def additions(self, chosen: EffectSubset) -> list[int]:
-        """The same without tables by direction of what has a table: they would hold it."""
-        tables = {_table(m.effect) for m in chosen.members} - {None}
-        variants = self.pool.variants
-        return [
-            v
-            for v in self.ranking(chosen)
-            if not (getattr(variants[v], "by_direction", False) and _table(variants[v]) in tables)
-        ]
+        """The same without what would hold a member."""
+        members, variants = [m.effect for m in chosen.members], self.pool.variants
+        return [v for v in self.ranking(chosen) if not would_hold(variants[v], members)]
 
     def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""

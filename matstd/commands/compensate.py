@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.compensation.options import add_state
 from twin.errors import DesignError
 
 if TYPE_CHECKING:
@@ -21,6 +22,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
     parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
     parser.add_argument("--tables", metavar="DIR", help="write tables of controls into it")
+    parser.add_argument("--program", metavar="IN", help="compensate a part program (.H, .ngc)")
+    parser.add_argument("-o", "--output", metavar="OUT", help="the compensated program")
+    parser.add_argument(
+        "--tolerance",
+        metavar="UM",
+        type=float,
+        help="between a path and the lines it becomes, µm (1)",
+    )
+    parser.add_argument(
+        "--tool",
+        metavar="NUMBER=MM",
+        nargs="+",
+        default=[],
+        help="lengths of tools of the program; others have that of the datum",
+    )
     parser.add_argument(
         "--control",
         metavar="NAME",
@@ -35,41 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="turn the sign of the values in the tables of this control",
     )
-    parser.add_argument(
-        "--datum",
-        metavar="AXIS=READING",
-        nargs="+",
-        default=[],
-        help="readings (mm, degrees) where the preset is taken; others are zero",
-    )
-    parser.add_argument("--tool-length", metavar="MM", type=float, default=0.0)
-    parser.add_argument(
-        "--within",
-        metavar="AXIS=LOW:HIGH",
-        nargs="+",
-        default=[],
-        help="workspace that is judged (mm, degrees); others over their travel",
-    )
-    parser.add_argument(
-        "--after", metavar="MIN", type=float, default=0.0, help="minutes since switching on"
-    )
-    parser.add_argument("--temperature", metavar="SENSOR=DEGC", nargs="+", default=[])
-    parser.add_argument("--rpm", type=float, help="spindle speed since switching on")
-    parser.add_argument(
-        "--switch",
-        metavar="WORD=FACTOR",
-        nargs="+",
-        default=[],
-        help="scale errors, 0 is off: by symbol, effect, kind, class, axis or all",
-    )
-    parser.add_argument(
-        "--active",
-        metavar="FILE",
-        action="append",
-        default=[],
-        help="a table that is active on the control",
-    )
-    parser.add_argument("--effects", metavar="FILE.py", action="append", default=[])
+    add_state(parser)
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
 
@@ -77,10 +59,44 @@ def run(args: argparse.Namespace) -> int:
     """Write what is asked for; a folder appears whole or not at all."""
     from matstd.compensation.job import read_job
 
-    if args.tables is None:
-        raise DesignError("nothing to write: expected --tables DIR")
+    if (args.tables is None) == (args.program is None):
+        raise DesignError("expected one of --tables DIR and --program FILE -o OUT")
+    if (args.program is None) != (args.output is None):
+        raise DesignError("expected -o OUT with --program, and only there")
     job = read_job(args)
-    return _tables(args, job)
+    return _tables(args, job) if args.program is None else _program(args, job)
+
+
+def _program(args: argparse.Namespace, job: Job) -> int:
+    """A compensated program, its points as a table, its picture."""
+    from compensation.programs import (
+        TOLERANCE,
+        Frame,
+        compensated,
+        read_part_program,
+        write_trajectory,
+    )
+    from matstd.compensation.job import tool_lengths
+    from matstd.console import say
+    from report.compensation import draw_program, program_lines
+    from twin.files import refuse_to_overwrite, write_whole
+    from twin.units import UM
+
+    output = Path(args.output)
+    beside = [output.with_suffix(ending) for ending in (".csv", ".png")]
+    for path in (output, *beside):
+        refuse_to_overwrite(path, args.force)
+    frame = Frame(job.errors.chain, job.datum)
+    program = read_part_program(args.program, frame, tool_lengths(args.tool))
+    tolerance = TOLERANCE if args.tolerance is None else args.tolerance * UM
+    done = compensated(program, job.errors, job.header(1), tolerance)
+    write_trajectory(beside[0], done)
+    draw_program(beside[1], done)
+    write_whole(output, done.text)
+    for line, is_first in program_lines(output.name, done):
+        say(line, style="bold" if is_first else None)
+    say(f"{output}: look at {beside[0].name}, {beside[1].name} beside it")
+    return 0
 
 
 def _tables(args: argparse.Namespace, job: Job) -> int:

@@ -200,6 +200,9 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
         measured, chain = _arm(args, sheets[0])
     else:
         measured, chain = _points(args, sheets, meaning)
+    for sheet in sheets:
+        if sheet.unused:
+            say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
     machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
     if not args.machine:
         refuse_to_overwrite(machine, args.force)
@@ -323,7 +326,8 @@ def _points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tupl
     from twin.foreign import joined_points, linear_machine, points_run, read_points
     from twin.units import UM
 
-    points = joined_points([read_points(sheet, args.unit) for sheet in sheets])
+    lists = [read_points(sheet, args.unit) for sheet in sheets]
+    points = joined_points(lists, [sheet.path.stem for sheet in sheets])
     chain = read_machine(args.machine) if args.machine else linear_machine(points)
     u = _uncertainty(args, "u_um", UM)
     return points_run(points, "part" if meaning == "part" else "standard", chain, u), chain

@@ -67,6 +67,16 @@ def read_job(args: argparse.Namespace) -> Job:
     return job
 
 
+def tool_lengths(words: Sequence[str]) -> dict[int, float]:
+    """Lengths of tools by number, mm; raises DesignError."""
+    out = {}
+    for number, length in _numbers("--tool", words):
+        if not number.isdigit():
+            raise DesignError(f"--tool {number}={length:g}: expected a number, such as 3=120")
+        out[int(number)] = length
+    return out
+
+
 def _errors(args: argparse.Namespace, state: State) -> MachineErrors:
     """Of a model, or of a machine file with an error file."""
     if parse_toml(read_text(args.model), args.model).get("format") != "machine/1":

@@ -1,5 +1,7 @@
 """Compensation in words and pictures: what is corrected, what is left, before and after."""
 
+from report.compensation.program_picture import draw_program
+from report.compensation.program_words import program_lines
 from report.compensation.table_page import write_compensation_page
 from report.compensation.table_pictures import draw_errors_left, draw_shares
 from report.compensation.table_words import (
@@ -12,8 +14,10 @@ from report.compensation.table_words import (
 __all__ = [
     "control_title",
     "draw_errors_left",
+    "draw_program",
     "draw_shares",
     "held_words",
+    "program_lines",
     "result_sentence",
     "table_lines",
     "write_compensation_page",

@@ -70,12 +70,18 @@ def _outliers_left_out(r: noticed.OutliersLeftOut) -> str:
     count = len(r.lines)
     several = count > 1
     side = "outside" if r.largest > 0 else "inside"
-    lines = ", ".join(str(line) for line in r.lines[:LISTED])
+    shown: dict[str, list[int]] = {}
+    for line, run in zip(r.lines[:LISTED], r.runs or ("",) * count, strict=False):
+        shown.setdefault(run, []).append(line)
+    lines = "; ".join(
+        f"line{'s' if len(some) > 1 else ''} {', '.join(map(str, some))}" + (run and f" of {run}")
+        for run, some in shown.items()
+    )
     more = f" and {count - LISTED} more" if count > LISTED else ""
     return (
         f"{count} gross error{'s were' if several else ' was'} left out, "
         f"{'the largest ' if several else ''}{abs(r.largest) / UM:.1f} µm {side} what the other "
-        f"touches predict: line{'s' if several else ''} {lines}{more}"
+        f"touches predict: {lines}{more}"
     )
 
 
@@ -124,8 +130,9 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.ChosenByPrediction: _chosen,
     noticed.FieldShares: _field_shares,
     noticed.ReaderRemark: "{r.text}",
-    noticed.FewTouches: "{r.touches} touches for {r.parameters} parameters: the prior decides the "
-    "rest; single parameters are not known, only what they do together where it was probed",
+    noticed.FewTouches: "{r.touches} touches for {r.parameters} errors that the machine may have "
+    "there: what is usual decides the rest; single ones are not known, only what they do together "
+    "where it was probed",
     noticed.FewDegreesOfFreedom: "{r.dof:.0f} degrees of freedom are left for the noise: only "
     "large effects can be seen, and the stated uncertainty is relied on",
     noticed.HeldOutInDoubt: "the error of held-out touches is {r.ratio:.1f} times the stated "

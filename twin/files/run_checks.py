@@ -50,6 +50,10 @@ to where their touches are from 0.3 mm and 1 mrad on, so that at most half of it
 ODD = 20.0
 """Of the usual gap between stated deviations and those of the readings: what a slip is beyond."""
 
+BESIDE = 5.0
+"""Distance (mm) of points from the tool, across the direction that was measured, from which it is
+told: 50 µrad on that arm are 0.25 µm."""
+
 JUMP = 86400.0
 """A pause (s) shorter than a day is a night's rest and needs no word."""
 
@@ -78,6 +82,7 @@ def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     _check_units(run, table)
     _check_offset(run, table)
     _compare_with_readings(run, table, remarks)
+    _compare_places(run, remarks)
     if not run.deviation.any():
         remarks.append("every deviation is zero: nothing was measured")
     return run
@@ -162,6 +167,22 @@ def _compare_with_readings(run: Run, table: CsvTable, remarks: list[str]) -> Non
         remarks.append(
             f"dev_um and the deviations that follow from the readings differ by {gap / UM:.3g} µm "
             "in half of the rows: dev_um is used"
+        )
+
+
+def _compare_places(run: Run, remarks: list[str]) -> None:
+    """Say that an instrument's points are beside where the readings put the tool."""
+    t = run.touches
+    if t.instrument.is_ball_on_standard:  # whose deviations would tell
+        return
+    apart = t.ball_artefact - t.point
+    beside = apart - np.einsum("ni,ni->n", apart, t.normal)[:, None] * t.normal
+    far = float(np.median(np.linalg.norm(beside, axis=1)))
+    if far > BESIDE:
+        remarks.append(
+            f"p stands {far:.3g} mm beside the place of the tool that the readings tell (median): "
+            "lever arms of the machine are those of the tool; length_mm and offset_mm of probe, or "
+            "tx_mm ty_mm tz_mm of each row, say where on the tool was measured"
         )
 
 

@@ -56,11 +56,12 @@ class SetupTable(Table):
 
     origin_mm: Vector = (0.0, 0.0, 0.0)
     rotation_deg: Vector = (0.0, 0.0, 0.0)
+    run: str = ""
 
     def setup(self, name: str) -> Setup:
         """The set-up in base units."""
         rotation = fixed_xyz(np.array(self.rotation_deg) * DEG)
-        return Setup(name, pose(rotation, np.array(self.origin_mm)))
+        return Setup(name, pose(rotation, np.array(self.origin_mm)), self.run)
 
 
 class HeadTable(Table):

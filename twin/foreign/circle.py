@@ -102,7 +102,7 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
 
 def _is_told(sheet: Sheet, column: int, name: str) -> bool:
     """Whether a column says of every row which way round it was taken."""
-    words = {t for t in sheet.text(column) if t}
+    words = {t for t in sheet.looked_at(column) if t}
     return bool(_RUN.search(name)) and bool(words) and all(_sense(w) for w in words)
 
 
