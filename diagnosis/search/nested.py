@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from twin.effects.position_table import PositionTable
+from twin.effects import PositionTable
 from twin.model import Effect
 
 
