@@ -22,12 +22,6 @@ REFUSED = "reach-refused.png"
 NO_ROOM = "room-refused.png"
 """Likewise of the patches that fit side by side."""
 
-SHEET = "setup"
-"""Folder of the set-up sheet."""
-
-SHEET_FILES = (f"{SHEET}/setup.pdf", f"{SHEET}/tables/*.csv")
-"""Of it, what not every run leaves."""
-
 _KEYS = {
     "smallest concave radius": "limits.min_concave_radius_mm (smaller)",
     "slope": "limits.max_slope_deg (larger)",
@@ -62,6 +56,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say, say_assumed
     from matstd.folder import results_folder
     from matstd.from_project import dialect, feeds
+    from matstd.setup_files import SHEET, SHEET_FILES
     from matstd.workers import connected
     from report.words import design_lines, proof_line
 
@@ -80,8 +75,8 @@ def run(args: argparse.Namespace) -> int:
     ):
         from matstd.design import design
         from matstd.progress import stages
-        from probe_paths.emit import make_dry_run
-        from report.pages import write_design_page, write_setup_page
+        from matstd.setup_files import write_setup_files
+        from report.pages import write_design_page
 
         with stages() as progress, connected(args.scheduler) as workers:
             made = design(project, folder, progress, workers)
@@ -89,8 +84,8 @@ def run(args: argparse.Namespace) -> int:
             remarks = write_design_page(made, folder)
             print_report(folder, printed_by)
             words, raised = dialect(project), project.workshop.dry_run_mm
-            dry_run = make_dry_run(made.plan, raised, words, feeds(project))
-            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, dry_run, words)
+            of = (made.plan, made.programs, words, feeds(project), raised)
+            sheet = write_setup_files(folder, *of)
             print_report(sheet.parent, printed_by, sheet.stem)
     for remark in remarks:
         say(f"- {remark}")

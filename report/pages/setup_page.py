@@ -28,19 +28,24 @@ _REMEDY = {
 
 
 def write_setup_page(
-    folder: Path, plan: TouchPlan, programs: ProgramSet, dry_run: ProgramSet, dialect: Dialect
+    folder: Path,
+    plan: TouchPlan,
+    programs: ProgramSet,
+    dry_run: ProgramSet,
+    search: ProgramSet | str,
+    dialect: Dialect,
 ) -> Path:
-    """Write the sheet with its drawing and the dry run; the path of the page.
+    """Write the sheet with its drawing; the path of the page.
 
     Args:
         folder: To be made.
         plan: Of the programs.
         programs: As written.
         dry_run: Of the plan.
+        search: For the standard, or why there is none.
         dialect: Of the control.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    dry_run.write(folder)
     write_setup_picture(folder / PICTURE, plan)
     T = plan.setup.T_table_artefact
     tests = interlocks(LANGUAGES[dialect.language], ProgramFrame(plan.chain, plan.probe))
@@ -71,6 +76,8 @@ def write_setup_page(
         alarms=[(int(t.label), t.what, f"{t.limit:g}", _REMEDY[t.label]) for t in tests],
         dry_run=dry_run.programs[0],
         raised=dry_run.raised,
+        search=search.programs[0] if isinstance(search, ProgramSet) else None,
+        no_search=search if isinstance(search, str) else "",
         start=int(Q.START),
         missed=int(Label.NO_CONTACT),
         tolerance=tolerance,

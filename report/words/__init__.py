@@ -19,7 +19,7 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.probe_words import ordering_words
+from report.words.probe_words import located_lines, ordering_words
 from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (
     dominant_words,
@@ -38,6 +38,7 @@ __all__ = [
     "design_lines",
     "dominant_words",
     "learnt_lines",
+    "located_lines",
     "microns",
     "ordering_words",
     "place_words",
