@@ -18,8 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from artefact.body import read_standard
-from probe_paths.campaign import VirtualMachine, ball_centres
-from probe_paths.campaign.virtual_run import run_program
+from probe_paths.campaign import VirtualMachine, ball_centres, simulate_search
 from probe_paths.control import Move, interpret, read_log, read_program
 from probe_paths.emit import make_search
 from probe_paths.locate import Spread, find_standard, plan_search
@@ -73,8 +72,7 @@ def main() -> int:
         machine = VirtualMachine(
             chain, lambda t, e=errors: contribution(e, t), setup_error=beside, noise=NOISE
         )
-        run = run_program(program, standard, machine, rng)
-        run.check_done()
+        run = simulate_search(program, standard, machine, rng)
         stands = Setup(believed.name, believed.T_table_artefact @ beside)
         room = ToolClearance(chain, standard, stands, probe, first.workshop)
         gap.append(smallest_gap(room, program, run))

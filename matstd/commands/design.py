@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import REPORT_FILES, SHEET, SHEET_FILES, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
 
 if TYPE_CHECKING:
@@ -56,7 +56,6 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say, say_assumed
     from matstd.folder import results_folder
     from matstd.from_project import dialect, feeds
-    from matstd.setup_files import SHEET, SHEET_FILES
     from matstd.workers import connected
     from report.words import design_lines, proof_line
 
@@ -75,8 +74,8 @@ def run(args: argparse.Namespace) -> int:
     ):
         from matstd.design import design
         from matstd.progress import stages
-        from matstd.setup_files import write_setup_files
-        from report.pages import write_design_page
+        from probe_paths.locate import companions
+        from report.pages import write_design_page, write_setup_page
 
         with stages() as progress, connected(args.scheduler) as workers:
             made = design(project, folder, progress, workers)
@@ -84,8 +83,9 @@ def run(args: argparse.Namespace) -> int:
             remarks = write_design_page(made, folder)
             print_report(folder, printed_by)
             words, raised = dialect(project), project.workshop.dry_run_mm
-            of = (made.plan, made.programs, words, feeds(project), raised)
-            sheet = write_setup_files(folder, *of)
+            first = companions(made.plan, words, feeds(project), raised)
+            first.write(folder / SHEET)
+            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, first, words)
             print_report(sheet.parent, printed_by, sheet.stem)
     for remark in remarks:
         say(f"- {remark}")

@@ -7,7 +7,14 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import (
+    REPORT_FILES,
+    SHEET,
+    SHEET_FILES,
+    add_pdf,
+    asked_printer,
+    print_report,
+)
 
 if TYPE_CHECKING:
     from artefact.body import Standard
@@ -54,10 +61,10 @@ def run(args: argparse.Namespace) -> int:
     from artefact.body import read_standard
     from matstd.console import say
     from matstd.folder import results_folder
-    from matstd.setup_files import SHEET, SHEET_FILES, write_setup_files
     from probe_paths.control import read_log, read_program
     from probe_paths.emit import make_programs
-    from probe_paths.locate import Spread, planned_again
+    from probe_paths.locate import Spread, companions, planned_again
+    from report.pages import write_setup_page
     from twin.files import read_machine
     from twin.units import DEG
 
@@ -75,9 +82,12 @@ def run(args: argparse.Namespace) -> int:
     with results_folder(args.output, args.force, ours) as folder:
         for name in ("machine.toml", "standard.toml"):
             shutil.copyfile(design / name, folder / name)
-        made = make_programs(plan, dialect, _feeds(programs))
+        feeds = _feeds(programs)
+        made = make_programs(plan, dialect, feeds)
         made.write(folder / "programs")
-        sheet = write_setup_files(folder, plan, made, dialect, _feeds(programs))
+        others = companions(plan, dialect, feeds)
+        others.write(folder / SHEET)
+        sheet = write_setup_page(folder / SHEET, plan, made, others, dialect)
         print_report(sheet.parent, printed_by, sheet.stem)
     touches = sum(program.touches for program in made.programs)
     say(f"{args.output}: {touches} touches in {len(made.programs)} programs; {SHEET}/setup.html")

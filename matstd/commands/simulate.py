@@ -108,7 +108,7 @@ def _search(
             f"{program.path}: a search for the standard leaves a log and no run file: run it "
             "alone, with --logs FOLDER"
         )
-    for name, text in simulate_search(program, standard, machine, rng).items():
+    for name, text in simulate_search(program, standard, machine, rng).log.items():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
         say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd replan reads it")
     return 0

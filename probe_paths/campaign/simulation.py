@@ -45,8 +45,8 @@ def simulate_search(
     standard: Standard,
     machine: VirtualMachine,
     rng: np.random.Generator,
-) -> Mapping[str, str]:
-    """Logs by name that a search for the standard leaves on the twin.
+) -> VirtualRun:
+    """What a search for the standard does on the twin, with the log that it leaves.
 
     Raises:
         BadFile: A touch that meets nothing, or a tool that comes too near to something, where the
@@ -57,7 +57,7 @@ def simulate_search(
     check_moves(program, standard, machine.chain)
     (run,) = run_programs([program], standard, machine, rng)
     run.check_done()
-    return run.log
+    return run
 
 
 def simulate(

@@ -56,12 +56,10 @@ class ProgramSet:
     Attributes:
         programs: In order.
         masks: That they print through, by file name.
-        raised: Of a dry run, mm.
     """
 
     programs: tuple[Program, ...]
     masks: dict[str, str]
-    raised: float | None = None
 
     @property
     def duration(self) -> float:
@@ -128,7 +126,7 @@ def make_dry_run(
         clock: For its duration.
     """
     made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), raised)
-    return ProgramSet(made.programs([list(range(len(plan.visits)))]), {}, raised)
+    return ProgramSet(made.programs([list(range(len(plan.visits)))]), {})
 
 
 def make_search(

@@ -16,9 +16,10 @@ from probe_paths.locate.search_plan import Spread
 from twin.errors import NotEnoughData
 from twin.frames import Array, apply, fixed_xyz, inverse, pose
 from twin.record import Setup
+from twin.units import DEG
 
-_TRIED = 40_000
-"""Places in the first round: of 200 standards none was missed, with 10 000 four."""
+_TRIED, _FEWEST_TRIED = 40_000, 2_000
+"""Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
 
 _KEPT = 60
 """That are improved on the picture."""
@@ -26,14 +27,19 @@ _KEPT = 60
 _EXACT = 3
 """That are improved on the exact surfaces."""
 
-_ROUNDS, _EXACT_ROUNDS = 25, 15
+_ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
+_SHAKES, _SHAKEN = 6, 24
+_SHAKE = np.array([1.5, 1.5, 0.5, 0.01, 0.01, 0.01])  # mm and rad, round what does not fit yet
 _STEP = np.array([0.5, 0.5, 0.5, 0.005, 0.005, 0.005])  # mm and rad, of differences on the picture
 _FINE = np.array([1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5])  # the same on the surfaces
 _ROBUST = 2.0  # mm: a touch beside an edge of the picture shall not pull more than this
 _SAME = 4.0  # mm: two places within this at every touch are the same
-GOOD = 0.3
-"""Root mean square of the touches beyond which nothing has been found, mm: machine and edges leave
-some 0.05 mm."""
+GOOD = 0.1
+"""Root mean square of the touches beyond which nothing has been found, mm: what a machine bends
+within the 100 mm of a search leaves 0.03 mm."""
+
+_KNOWN, _KNOWN_ANGLE = 0.3, 0.1 * DEG
+"""Largest standard uncertainties of a place that programs are planned for, mm and rad."""
 
 _CLEAR, _ROUGH = 3.0, 0.03
 """Times as well as the next place must the found one fit, and how well any may fit by the errors of
@@ -96,30 +102,31 @@ def find_standard(
     def on_surfaces(theta: Array) -> Array:
         return _lifted_exactly(standard, ball, theta, radius)
 
-    tried = rng.uniform(-limit, limit, (_TRIED, 6))
+    share = (spread.distance / Spread.distance) * (spread.angle / Spread.angle)
+    count = max(int(min(share, 1.0) * _TRIED), _FEWEST_TRIED)
+    tried = rng.uniform(-limit, limit, (count, 6))
     tried[0] = 0.0
-    best = _best(tried, on_picture, _KEPT)
-    for _ in range(_ROUNDS):
-        best = _improved(best, on_picture, _STEP)
+    best = _settled(_best(tried, on_picture, _KEPT), on_picture, _STEP, _ROUNDS)
     few = _distinct(best, on_picture, ball)[:_EXACT]
-    for _ in range(_EXACT_ROUNDS):
-        few = _improved(few, on_surfaces, _FINE)
+    few = _settled(few, on_surfaces, _FINE, _EXACT_ROUNDS)
     few = _distinct(few, on_surfaces, ball)
+    few[:1] = _shaken(few[0], on_surfaces, rng)
     rms = np.sqrt(np.mean(on_surfaces(few) ** 2, axis=1))
-    _check(rms)
     theta = few[0]
+    u = _uncertainty(theta, on_surfaces)
+    _check(rms, u)
     return Found(
         setup=Setup(believed.name, believed.T_table_artefact @ _pose(theta)),
         shift=theta[:3],
         angles=theta[3:],
-        u=_uncertainty(theta, on_surfaces),
+        u=u,
         rms=float(rms[0]),
         next_rms=float(rms[1]) if len(rms) > 1 else np.inf,
     )
 
 
-def _check(rms: Array) -> None:
-    """One place and no other fits."""
+def _check(rms: Array, u: Array) -> None:
+    """One place and no other fits, and it is known well enough to plan touches there."""
     if rms[0] > GOOD:
         raise NotEnoughData(
             f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm; "
@@ -129,6 +136,12 @@ def _check(rms: Array) -> None:
         raise NotEnoughData(
             f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm): align the standard "
             "better and search again"
+        )
+    if u[:3].max() > _KNOWN or u[3:].max() > _KNOWN_ANGLE:
+        raise NotEnoughData(
+            f"the touches tell the place to {u[:3].max():.2f} mm and {u[3:].max() / DEG:.2f} "
+            f"degrees only, expected {_KNOWN:g} mm and {_KNOWN_ANGLE / DEG:g} degrees: align the "
+            "standard better and search again"
         )
 
 
@@ -187,6 +200,30 @@ def _best(tried: Array, lift: Lift, count: int) -> Array:
         tried = _improved(tried[some], lift, _STEP)
         some = np.argsort(_cost(lift(tried)))[: len(some) // 4]
     return tried[some[:count]]
+
+
+def _settled(theta: Array, lift: Lift, step: Array, rounds: int) -> Array:
+    """Places improved until none moves by a hundredth of a step any more."""
+    for _ in range(rounds):
+        better = _improved(theta, lift, step)
+        if np.all(np.abs(better - theta) < 0.01 * step):
+            return better
+        theta = better
+    return theta
+
+
+def _shaken(theta: Array, lift: Lift, rng: np.random.Generator) -> Array:
+    """The best place round one at which edges may have held the steps, (1, 6)."""
+    best = _settled(theta[None], lift, _FINE, _LAST_ROUNDS)
+    for _ in range(_SHAKES):
+        if np.sqrt(np.mean(lift(best) ** 2)) < _ROUGH:
+            break
+        round_it = best + rng.normal(0.0, 1.0, (_SHAKEN, 6)) * _SHAKE
+        near = _settled(round_it, lift, _FINE, 4)
+        near = near[np.argsort(_cost(lift(near)))[:4]]
+        both = np.concatenate([best, _settled(near, lift, _FINE, _EXACT_ROUNDS)])
+        best = both[[np.argmin(_cost(lift(both)))]]
+    return best
 
 
 def _improved(theta: Array, lift: Lift, step: Array) -> Array:
