@@ -14,6 +14,8 @@ is a number in a result.
     plots   plans, proofs, residuals, effects
     scenes  pictures in three dimensions, rendered in a process of their own
     pages   HTML, one template a page in `pages/templates`
+    compensation
+            what compensation corrects and leaves, with its page
 
 A new picture is a function that takes a result and a path (`maps`, `plots` or `scenes`) and is
 called by the page that shows it; a new sentence is a function in `words`.
@@ -49,6 +51,7 @@ PARTS = (
     "plots",
     "scenes",
     "pages",
+    "compensation",
 )
 """From bottom to top: each imports only from those before it."""
 

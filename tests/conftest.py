@@ -8,7 +8,7 @@ import pytest
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-pytest_plugins = ["machines", "standards", "runs"]
+pytest_plugins = ["bench", "machines", "standards", "runs"]
 """Fixtures that the tests of several rooms share, in `tests/fixtures`."""
 
 

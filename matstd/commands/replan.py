@@ -11,6 +11,7 @@ from matstd.options import (
     REPORT_FILES,
     SHEET,
     SHEET_FILES,
+    add_output,
     add_pdf,
     asked_printer,
     print_report,
@@ -50,8 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--within-deg", type=float, default=5.0, help="likewise (5)")
     add_pdf(parser)
-    parser.add_argument("-o", "--output", metavar="NEW", required=True, help="folder to be made")
-    parser.add_argument("--force", action="store_true", help="replace what is in the folder")
+    add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -51,6 +51,9 @@ _LOG = re.compile(r"\(LOG,(.*)\)\Z")
 _APPEND = re.compile(r"\(LOGAPPEND,([A-Z0-9_.]+)\)\Z")
 _VALUE = re.compile(r"#(\d+)")
 
+LONGEST = 255
+"""Characters of a line that LinuxCNC reads."""
+
 _EXPECTED = (
     (r"G[01] |G53", "G53 G0 Z<signed>, G0 <axis><signed> ... or G1 <axis><signed> ... F<whole>"),
     (r"G38", f"probing moves stand in subprogram {g.TOUCH} only"),
@@ -71,10 +74,14 @@ def read_gcode(data: bytes, path: str | Path) -> list[Block]:
         path: Its name, for messages.
 
     Raises:
-        BadFile: A byte outside ASCII, mixed line ends, a last line cut off, another touch than
-            ours, a line that is not in the closed list.
+        BadFile: A byte outside ASCII, mixed line ends, a last line cut off or one that is too long,
+            another touch than ours, a line that is not in the closed list.
     """
     lines = [" ".join(raw.split()) for raw in physical_lines(data, path)]
+    for number, line in enumerate(lines, 1):
+        if len(line) > LONGEST:
+            found = f"{len(line)} characters: {line[:40]!r}..."
+            raise BadFile(path, f"line {number}", found, f"{LONGEST} at most, as LinuxCNC reads")
     blocks = list(_Reader(lines, path).blocks())
     inside: list[Block] = []
     outside: list[Block] = []

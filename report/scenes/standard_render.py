@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch, Standard, read_standard
-from cad_out.build import note_refusal, owners, read_stl
-from report.scenes.standard_scene import PICTURE, STANDARD, STL, VALUES
+from cad_out.build import owners, read_stl
+from report.scenes.renderer import FACTS, STL, screenshot
+from report.scenes.standard_scene import PICTURE, STANDARD
 from report.style import DIVERGING, LINE, series
-from twin.errors import DesignError
 from twin.frames import Array, apply
 
 SIZE = (2000, 860)
@@ -24,19 +24,12 @@ _VIEWS = ((38.0, 33.0), (218.0, 33.0))  # azimuth and elevation of the eye, deg
 
 def draw_body(folder: str) -> None:
     """Two views of the standard, faces and spheres coloured and named."""
-    _answered(Path(folder), coloured=False)
+    _render(Path(folder), coloured=False)
 
 
 def draw_coloured(folder: str) -> None:
     """Two views of the standard, faces coloured by the values of the folder."""
-    _answered(Path(folder), coloured=True)
-
-
-def _answered(place: Path, coloured: bool) -> None:
-    try:
-        _render(place, coloured)
-    except DesignError as refusal:
-        note_refusal(place, refusal)
+    _render(Path(folder), coloured=True)
 
 
 def _render(place: Path, coloured: bool) -> None:
@@ -52,7 +45,7 @@ def _render(place: Path, coloured: bool) -> None:
         window_size=SIZE_WITH_BAR if coloured else SIZE,
         border=False,
     )
-    with np.load(place / VALUES) as values:
+    with np.load(place / FACTS) as values:
         facts = dict(values)
     faces = [_face(patch, facts) for patch in standard.patches]
     for column, view in enumerate(_VIEWS):
@@ -67,12 +60,7 @@ def _render(place: Path, coloured: bool) -> None:
     if coloured:
         plotter.subplot(0, len(_VIEWS))
         _add_bar(plotter, facts)
-    plotter.set_background("white", all_renderers=True)
-    plotter.enable_anti_aliasing("ssaa", all_renderers=True)
-    image = plotter.screenshot(None, return_img=True)
-    if image.std() < 1.0:
-        raise DesignError("no picture: the renderer gives an empty image")
-    plotter.screenshot(str(place / PICTURE))
+    screenshot(plotter, place / PICTURE)
 
 
 def _add_body(

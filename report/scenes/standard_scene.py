@@ -1,20 +1,18 @@
 """Pictures of a standard, drawn without a screen in a process of their own."""
 
 import shutil
-import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from artefact.body import Standard, write_standard
-from cad_out.build import run_apart
-from twin.errors import DesignError, MissingLibrary
+from report.scenes.renderer import render, shared_folder
 from twin.files import written_whole
 from twin.frames import Array
 
-STANDARD, STL, VALUES, PICTURE = "standard.toml", "standard.stl", "values.npz", "picture.png"
-"""Names of the files through which the two processes speak."""
+STANDARD, PICTURE = "standard.toml", "picture.png"
+"""Further files through which the two processes speak."""
 
 
 def draw_standard(standard: Standard, stl: str | Path, path: str | Path) -> None:
@@ -72,33 +70,8 @@ def draw_values(
 
 
 def _draw(standard: Standard, stl: Path, path: Path, task: str, facts: dict[str, Any]) -> None:
-    place = Path(tempfile.mkdtemp(prefix="picture-"))
-    try:
+    with shared_folder(stl, facts) as place:
         write_standard(place / STANDARD, standard)
-        try:
-            shutil.copyfile(stl, place / STL)
-        except OSError as error:
-            raise DesignError(f"{stl}: cannot be read ({error.strerror})") from error
-        np.savez(place / VALUES, **facts)
-        # Without this the renderer looks for an X server and complains when there is none.
-        egl = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
-        ending = run_apart(
-            "report.scenes.standard_render", task, place, timeout=90.0, environment=egl
-        )
-        if ending.refusal:
-            raise DesignError(ending.refusal)
-        if not ending.is_good:
-            raise MissingLibrary(
-                f"no picture: the renderer {_without_line(str(ending))}; it needs OpenGL without "
-                "a screen, on Debian and Ubuntu: apt-get install libegl1 libgl1-mesa-dri",
-                exit_code=ending.code,
-            )
+        render("standard_render", task, place, "picture")
         with written_whole(path) as part:
             shutil.copyfile(place / PICTURE, part)
-    finally:
-        shutil.rmtree(place, ignore_errors=True)
-
-
-def _without_line(text: str) -> str:
-    """The first clause: what follows the colon is the renderer's own log."""
-    return text.split(":", 1)[0]

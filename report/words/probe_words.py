@@ -1,24 +1,11 @@
-"""Words of plans and probing programs."""
+"""Words of where a standard stands."""
 
 import numpy as np
 
-from probe_paths.campaign import Ordering
 from probe_paths.locate import Found
 from twin.frames import fixed_xyz_angles, inverse
 from twin.record import Setup
 from twin.units import DEG
-
-_ORDERINGS = {
-    Ordering.AS_PLANNED: "as planned: mixed, twice, from both sides, anchor touches",
-    Ordering.WITHOUT_ANCHORS: "the same without the anchor touches",
-    Ordering.ONCE: "mixed, every pose once",
-    Ordering.SHORTEST: "shortest ways, every pose once, from whichever side",
-}
-
-
-def ordering_words(ordering: Ordering) -> str:
-    """How touches were put in order, as a row of a table begins."""
-    return _ORDERINGS[ordering]
 
 
 def located_lines(believed: Setup, stands: Setup, found: Found | None = None) -> list[str]:

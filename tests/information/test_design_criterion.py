@@ -18,7 +18,8 @@ from information.criteria.measures import (
     LargestVariance,
     MeanVariance,
 )
-from information.selection.certificate import relaxed, rounded
+from information.selection.certificate import rounded
+from information.selection.relaxation import relaxed
 from information.selection.shares import keeps, largest_sum
 from information.selection.touch_selection import Quota, Selection, exchange, fill
 from twin.errors import DesignError

@@ -9,7 +9,7 @@ import io
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -66,6 +66,7 @@ class Sheet:
     title: tuple[str, ...]
     left_out: tuple[int, ...]
     above: tuple[str, ...] = ()
+    used: set[int] = field(default_factory=set, compare=False, repr=False)
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -76,6 +77,7 @@ class Sheet:
         Raises:
             BadFile: A cell that is no number; its line and what stood there.
         """
+        self.used.add(column)
         out = np.full(len(self), np.nan)
         for i, row in enumerate(self.cells):
             cell = row[column]
@@ -90,6 +92,17 @@ class Sheet:
 
     def text(self, column: int) -> list[str]:
         """Cells of a column as text; whole numbers without a decimal mark."""
+        self.used.add(column)
+        return self.looked_at(column)
+
+    @property
+    def unused(self) -> tuple[str, ...]:
+        """Columns with a name and cells in them of which nothing was taken."""
+        rest = [i for i, name in enumerate(self.columns) if name and i not in self.used]
+        return tuple(self.columns[i] for i in rest if any(self.looked_at(i)))
+
+    def looked_at(self, column: int) -> list[str]:
+        """The same, to see what a column holds; it does not count as used."""
         cells = [row[column] for row in self.cells]
         return [f"{c:g}" if isinstance(c, float) else c for c in cells]
 
