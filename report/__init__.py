@@ -38,7 +38,7 @@ from report.plots import (
     write_proof_picture,
     write_touches_picture,
 )
-from report.scenes import Scene, draw_standard, draw_values, draw_volumes
+from report.scenes import Scene, draw_standard, draw_volumes
 from report.words import comparison_sentence, study_words, verdict_sentence
 
 PARTS = (
@@ -66,7 +66,6 @@ __all__ = [
     "draw_over_variables",
     "draw_path",
     "draw_standard",
-    "draw_values",
     "draw_volumes",
     "study_words",
     "verdict_sentence",

@@ -111,6 +111,7 @@ def _unnumbered(text: str) -> str:
     return "\n".join(line.partition(" ")[2] for line in text.splitlines())
 
 
+@pytest.mark.slow  # tests/cad_out export another one
 def test_06_the_step_file_holds_one_solid_with_every_face_named(tmp_path: Path) -> None:
     result = load(6).main(tmp_path)
     assert result["solids"] == 1
@@ -175,6 +176,7 @@ def test_09_the_hidden_backlash_is_named_and_the_error_falls_to_the_noise() -> N
     assert result["held out, µm"][0] > 1.3
 
 
+@pytest.mark.slow  # the hose of tests/test_examples_diagnosis.py says the same
 def test_10_an_effect_of_ones_own_turns_unexplained_into_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -191,3 +193,14 @@ def test_10_an_effect_of_ones_own_turns_unexplained_into_found(
     # and little more, since no other error knows the side.
     least = 2.0 / np.sqrt(np.sum(after.run.touches.normal[:, 2] ** 2))
     assert 0.95 * least < lift.u < 1.5 * least
+
+
+def test_11_the_plate_is_as_large_as_drawn_and_tables_hold_what_they_can() -> None:
+    found = example(11).main()
+    plate = found["plate"]
+    # 90 µm in 750 mm of X, 300 of them: the plate is 36 µm longer by that alone
+    assert 30 * UM < np.abs(plate.before[:, 0]).max() < 45 * UM
+    assert np.linalg.norm(plate.after, axis=1).max() < 0.02 * UM  # two roundings to 10 nm
+    left = {name: np.abs(found[name].after).max() for name in ("iso230", "sinumerik")}
+    assert left["iso230"] < 0.01 * UM  # linear errors need no points
+    assert left["sinumerik"] > 5 * UM  # pitch far from the datum

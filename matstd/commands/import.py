@@ -43,6 +43,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
     parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
     parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
+    parser.add_argument(
+        "--columns", metavar="NAME,...", help="names of the columns of a table without a header"
+    )
     parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
     add_output(parser, "RUN.csv", "overwrite the outputs")
 
@@ -125,7 +128,8 @@ def run(args: argparse.Namespace) -> int:
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
-    sheets = [read_sheet(path, args.sheet) for path in args.files]
+    names = [n.strip() for n in args.columns.split(",")] if args.columns else ()
+    sheets = [read_sheet(path, args.sheet, names) for path in args.files]
     if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:

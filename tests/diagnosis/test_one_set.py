@@ -175,7 +175,13 @@ def folder(tmp_path_factory):
     return place
 
 
-@pytest.mark.parametrize("option", [["--auto"], ["--add", "backlash(X)"]], ids=["auto", "added"])
+@pytest.mark.parametrize(
+    "option",
+    [
+        pytest.param(["--auto"], id="auto"),
+        pytest.param(["--add", "backlash(X)"], id="added", marks=pytest.mark.slow),
+    ],
+)
 def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, option) -> None:
     run = str(folder / "run.csv")
     narrow = ["--only", "thermal-lag(EXC)", "backlash"]

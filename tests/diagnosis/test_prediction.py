@@ -9,13 +9,14 @@ from scipy.integrate import solve_ivp
 from diagnosis.answer.comparison import compare
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.answer.sizes import sizes
+from diagnosis.answer.verdict import Diagnosis
 from diagnosis.choice import prediction
 from diagnosis.choice.blocks import blocks
 from diagnosis.choice.bodies import bodies
 from diagnosis.choice.field import SIZES, sized_field
 from diagnosis.choice.following import followed
 from diagnosis.choice.needed import needed
-from diagnosis.choice.prediction import Choice, candidate_effects, chosen_by_prediction, without
+from diagnosis.choice.prediction import Choice, candidate_effects, without
 from diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from diagnosis.evidence.evidence import EffectSet
 from diagnosis.fit.identification import fit_run
@@ -205,14 +206,17 @@ def test_a_second_effect_without_a_first_takes_its_name() -> None:
 
 
 @pytest.fixture(scope="module")
-def chosen() -> tuple[DiagnosisTask, Choice]:
-    """A choice with a slow wandering that nothing recorded explains."""
-    task = task_of(record(wander=6.0))
-    single = single_of(task.run)
-    final = search_until_stable(task, (), single)
-    choice = chosen_by_prediction(task, (), final, [*single, field(task.run.touches)])
-    assert choice is not None
-    return task, choice
+def result() -> Diagnosis:
+    """Of a run with a slow wandering that nothing recorded explains."""
+    run = record(wander=6.0)
+    return diagnose(run, candidates=[*single_of(run), field(run.touches)])
+
+
+@pytest.fixture(scope="module")
+def chosen(result) -> tuple[DiagnosisTask, Choice]:
+    """Its choice by prediction."""
+    assert result.choice is not None
+    return task_of(record(wander=6.0)), result.choice
 
 
 def single_of(run: Run) -> list:
@@ -239,9 +243,7 @@ def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
     assert choice.best.error <= 1.05 * min(w.error for w in choice.rules)
 
 
-def test_of_the_set_that_was_weighed_all_is_told_but_what_chance_explains(chosen) -> None:
-    task, _ = chosen
-    result = diagnose(task.run, candidates=[*single_of(task.run), field(task.run.touches)])
+def test_of_the_set_that_was_weighed_all_is_told_but_what_chance_explains(result) -> None:
     assert result.choice is not None
     told = [e.name for e in result.found]
     weighed = {s.effect.name for s in result.choice.best.effects}

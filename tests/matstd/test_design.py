@@ -16,7 +16,7 @@ from artefact.compare import placed_spheres
 from artefact.place.placement import PlacementOptions
 from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
-from matstd import design
+from matstd import design, study_run
 from matstd.cli import main
 from matstd.from_project import blank, placement_options, probe_reach
 from probe_paths.control.interpreter import read_program
@@ -68,7 +68,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(design, "placement_options", fewer)
         patch.setattr(placed_spheres, "_CANDIDATES", 60)
         patch.setattr(placed_spheres, "COUNTS", (4,))
-        patch.setattr(design, "draw_maps", lambda *_: [])
+        patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
     return out

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
+from twin.errors import BadFile
 from twin.files.run_file import read_run
 from twin.foreign.points import read_points
 from twin.foreign.sheet import read_sheet
@@ -63,3 +64,46 @@ def test_lists_of_several_years_are_runs_in_their_order(imported, capsys):
     assert run.touches.feature[run.touches.run == 1].tolist() == [
         f"L{k // 2 + 1}" for k in range(8)
     ]
+
+
+BLANKS = """Plate 17
+Date: 2005-03-15
+
+    Meas X    Meas Y     Nom X     Nom Y     Err X  Round
+   -80.754  -215.282   -80.743  -215.281    -0.011  0.004
+    19.998    99.991    20.000   100.000    -0.002  0.003
+     0.003     0.001     0.000     0.000     0.003  0.004
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        BLANKS,
+        BLANKS.replace("    ", "  "),
+        BLANKS.replace("    Meas", "# Meas", 1).replace("\n", "\r\n"),
+        BLANKS.replace(".", ","),
+        # one blank between the columns, of the header as well
+        "\n".join(
+            " ".join(line.split()) for line in BLANKS.replace("  Round", "  R d").split("\n")
+        ),
+    ],
+)
+def test_a_report_in_columns_of_blanks(tmp_path, text):
+    (tmp_path / "2005.txt").write_text(text)
+    sheet = read_sheet(tmp_path / "2005.txt")
+    points = read_points(sheet)
+    np.testing.assert_allclose(points.nominal[0, :2], [-80.743, -215.281])
+    wanted = [[-11.0, -1.0], [-2.0, -9.0], [3.0, 1.0]]
+    np.testing.assert_allclose(points.deviation[:, :2] / UM, wanted, atol=1e-6)
+    assert "Err X" in sheet.unused
+
+
+def test_a_table_without_a_header_is_told_its_columns(tmp_path):
+    (tmp_path / "log.txt").write_text("1.0e+01 1.00010e+01 0\n2.0e+01 2.00030e+01 0\n")
+    with pytest.raises(BadFile, match="--columns"):
+        read_sheet(tmp_path / "log.txt")
+    sheet = read_sheet(tmp_path / "log.txt", None, ("target [mm]", "actual [mm]", "x"))
+    assert sheet.numbers(1).tolist() == [10.001, 20.003]
+    with pytest.raises(BadFile, match="found 3 columns, expected 2"):
+        read_sheet(tmp_path / "log.txt", None, ("target [mm]", "actual [mm]"))
