@@ -10,6 +10,7 @@ import pytest
 
 from diagnosis.answer.verdict import Verdict
 from twin.library import catalogue as library
+from twin.units import UM
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("ex[0-9][0-9]_*.py"))
@@ -196,7 +197,7 @@ def test_10_an_effect_of_ones_own_turns_unexplained_into_found(
 
 
 def test_11_the_plate_is_as_large_as_drawn_and_tables_hold_what_they_can() -> None:
-    found = example(11).main()
+    found = load(11).main()
     plate = found["plate"]
     # 90 µm in 750 mm of X, 300 of them: the plate is 36 µm longer by that alone
     assert 30 * UM < np.abs(plate.before[:, 0]).max() < 45 * UM
