@@ -50,10 +50,6 @@ BETTER = 2.0
 """Factor by which undoing a mistake must bring down the held-out error or the excess of the
 machine's errors over what is expected."""
 
-GAINS = 0.97
-"""Share of the held-out error to which undoing a wrong number must bring it down: the geometry that
-is learnt beside it takes up much of a wrong number, but what predicts no better is not told."""
-
 ABSURD = 3.0
 """Noise over the stated one, or errors over expected ones, from which axes are suspected."""
 
@@ -278,7 +274,7 @@ def _told(before: Fit, trial: _Trial, right: float, is_absurd: bool) -> Descript
     falls = before.test_rms > BETTER * after.test_rms or before.widened > BETTER * after.widened
     if not suspect.free and (not falls or unit_mistake(after) is not None):
         return None
-    if suspect.free and not falls and after.test_rms > GAINS * before.test_rms:
+    if suspect.free and not falls and after.test_rms > before.test_rms:
         return None
     changed = chain.notation != before.model.chain.notation
     return DescriptionFault(
