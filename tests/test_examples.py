@@ -164,6 +164,7 @@ def test_08_the_residual_is_the_noise_less_what_the_fit_took() -> None:
     assert proof.rms_after * 1e3 > np.sqrt(3.0 * k / n)
 
 
+@pytest.mark.slow  # tests/diagnosis/test_hidden_effects.py hides the same
 def test_09_the_hidden_backlash_is_named_and_the_error_falls_to_the_noise() -> None:
     result = load(9).main()
     assert result["effects"] == ["backlash(C)"]
