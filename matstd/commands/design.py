@@ -97,7 +97,8 @@ def run(args: argparse.Namespace) -> int:
     verdict, *others = design_lines(made.placement)
     say(verdict, style="bold")
     say_each(others)
-    say_each(f"touch dropped: {refusal}" for refusal in made.plan.refused)
+    dropped = dict.fromkeys(map(str, made.plan.refused))  # a pose is visited twice
+    say_each(f"touch dropped: {refusal}" for refusal in dropped)
     say_each(proof_line(m.seed + 1, m.in_workspace, m.proof) for m in made.machines)
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0
