@@ -68,13 +68,21 @@ def _probed(fit: Fit, axis: str) -> tuple[float, float]:
 
 
 def _along_axis(fit: Fit, axis: str) -> Touches:
-    """Poses along an axis over the probed readings: linear axes in the middle, rotary at zero."""
+    """Poses along an axis over the probed readings: linear axes in the middle, rotary at zero.
+
+    Of an axis that was read at few targets these are the targets: what a curve through five of them
+    does in between is in no reading, and no scale of theirs.
+    """
     t = fit.run.touches[fit.used]
     chain = t.chain
-    q = np.zeros((POINTS, len(chain.axes)))
+    low, high = _probed(fit, axis)
+    targets = np.unique(np.round(t.reading(axis), 3))
+    targets = targets[(targets > low - 1e-3) & (targets < high + 1e-3)]
+    along = targets if 2 < len(targets) < POINTS else np.linspace(low, high, POINTS)
+    q = np.zeros((len(along), len(chain.axes)))
     for name in chain.linear_axes:
         q[:, chain.axis_index(name)] = np.mean(_probed(fit, name))
-    q[:, chain.axis_index(axis)] = np.linspace(*_probed(fit, axis), POINTS)
+    q[:, chain.axis_index(axis)] = along
     return at_poses(chain, q, float(np.mean(t.length)))
 
 

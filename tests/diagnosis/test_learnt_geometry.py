@@ -12,7 +12,11 @@ from diagnosis.geometry.learnt import Rung, geometry_rows, learnt_geometry
 from report.geometry.geometry_words import correction_line, noted_lines
 from twin.frames import apply, inverse
 from twin.library.ordinary import ordinary_model
+from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import tip
+from twin.record.instrument import Instrument
+from twin.record.run import Run
+from twin.record.touches import Setup, Touches
 from twin.units import UM, URAD
 
 KEY = (2, "hsm600u")
@@ -140,3 +144,31 @@ def test_the_ladder_begins_with_the_setup_alone(learnt) -> None:
     assert [s.rung for s in steps] == [Rung.SETUP, Rung.GEOMETRY]
     assert steps[0].test_rms > 5.0 * steps[1].test_rms
     assert steps[1].test_rms == fit.test_rms
+
+
+def test_the_scale_of_five_targets_is_the_line_through_them() -> None:
+    """Deviations without a trend, which a curve through five targets makes one of in between."""
+    targets = np.array([-15.0, -10.0, -5.0, 0.0, 5.0])
+    shown = np.array([1.3, 13.9, -20.0, -1.7, 8.3]) * UM
+    chain = make_chain("column", "[w f Z t]", {"Z": Axis((-15.0, 5.0))})
+    z = np.tile(targets, 10)
+    n = len(z)
+    touches = Touches(
+        chain=chain,
+        q=z[:, None],
+        length=np.zeros(n),
+        radius=np.zeros(n),
+        point=np.column_stack([np.zeros((n, 2)), z]),
+        normal=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        setups=(Setup("a"),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=np.zeros(n),
+        approach=np.ones((n, 1)),
+        pose=np.repeat(np.arange(10), 5),
+        instrument=Instrument.LASER,
+    )
+    run = Run(touches, -np.tile(shown, 10), np.full(n, 1.0 * UM))
+    rows = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(chain)))}
+    slope = np.polyfit(targets, shown, 1)[0]
+    assert rows["EZZ"].estimate.value == pytest.approx(slope, abs=3.0 * rows["EZZ"].estimate.u)
+    assert rows["EZZ"].estimate.u < 50e-6
