@@ -11,15 +11,18 @@ from artefact.compare.identifiability import (
     IdentifiabilityReport,
     identifiability_report,
 )
+from artefact.compare.proof_power import Power, proof_power
 
 __all__ = [
     "Alone",
     "Alternative",
     "IdentifiabilityReport",
+    "Power",
     "Rival",
     "compare",
     "evaluated",
     "identifiability_report",
     "prior_rms",
+    "proof_power",
     "random_lots",
 ]

@@ -1,34 +1,36 @@
-"""Standards that could be made on a blank: sites, the body they make, and other artefacts.
+"""Bodies that can be made on a blank: pillars, posts and holes, whole standards, other artefacts.
 
-In: a `Blank` with its limits. Out: `Site` candidates with smooth shapes, which of them stand beside
-each other, and whole standards. A further rival is one more entry in `rivals`.
+In: a `Blank` with its limits. Out: upright candidates with smooth shapes, which of them stand beside
+each other, standards put together from `Site`s by hand, and rivals. A further rival is one more
+entry in `rivals`.
 """
 
-from artefact.layout.candidates import (
-    CONTROL,
-    RINGS,
-    STEEPEST,
-    TALLEST,
-    neighbours_fit,
-    random_sites,
-    strength,
-)
 from artefact.layout.rival_artefacts import rivals, with_spheres
-from artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard_from_sites
+from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
+from artefact.layout.upright import (
+    WALL_GAP,
+    balls_fit,
+    balls_on_posts,
+    beside_holes,
+    faces_beside,
+    faces_fit,
+    freeform_faces,
+    holes_on,
+)
 
 __all__ = [
-    "CONTROL",
-    "RINGS",
-    "STEEPEST",
-    "TALLEST",
+    "WALL_GAP",
     "Blank",
     "Fittings",
     "Site",
-    "neighbours_fit",
-    "patch_of_site",
-    "random_sites",
+    "balls_fit",
+    "balls_on_posts",
+    "beside_holes",
+    "faces_beside",
+    "faces_fit",
+    "freeform_faces",
+    "holes_on",
     "rivals",
     "standard_from_sites",
-    "strength",
     "with_spheres",
 ]

@@ -39,7 +39,9 @@ def best_groups(
     """
     nothing = np.zeros((criterion.size, criterion.size))
     board = _Groups(criterion, W, group, take, nothing if start is None else start)
-    fits = np.ones((board.count, board.count), dtype=bool) if apart is None else apart
+    fits = np.ones((board.count, board.count), dtype=bool)
+    if apart is not None:
+        fits = apart[: board.count, : board.count]  # the last groups may have no row
     chosen: list[int] = []
     while len(chosen) < count:
         best = board.best(chosen, fits)
