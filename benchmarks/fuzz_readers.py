@@ -21,7 +21,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "fixtures")]
 
-from reader_cases import Reader, damage, readers  # noqa: E402  (found through the path above)
+from foreign_cases import foreign_readers  # noqa: E402  (found through the path above)
+from reader_cases import Reader, damage, golden, readers  # noqa: E402
 
 from twin.errors import DesignError  # noqa: E402
 
@@ -70,7 +71,8 @@ def main() -> int:
     args = parser.parse_args()
     warnings.simplefilter("error")
     with tempfile.TemporaryDirectory() as folder:
-        chosen = [r for r in readers(Path(folder)) if args.only in ("", r.name)]
+        every = [*readers(Path(folder)), *foreign_readers(Path(folder), golden())]
+        chosen = [r for r in every if args.only in ("", r.name)]
         faults: Counter[tuple[str, str, str]] = Counter()
         for reader in chosen:
             valid = reader.path.read_text(encoding="utf-8")

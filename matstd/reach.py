@@ -1,4 +1,4 @@
-"""What of the wanted standard the machine reaches, looked at before anything else is done.
+"""What of the wanted standard fits and is reached, looked at before anything else is done.
 
 A refusal says which travel or angle binds, and the nearest wish that could be met.
 """
@@ -11,18 +11,29 @@ import numpy as np
 
 from artefact.body import DatumSphere, Standard
 from artefact.brief import Project
+from artefact.layout import WALL_GAP
+from artefact.place import room_for
 from artefact.reach import (
     ANGLE,
     Limit,
     PlacesInReach,
     ProbeReach,
+    hangs,
     places_on,
     reach_of,
+    seat_height,
     spread_poses,
     turned,
 )
 from artefact.worth import poses_within
-from matstd.from_project import blank, placement_options, plan_options, probe, probe_reach
+from matstd.from_project import (
+    blank,
+    placement_options,
+    plan_options,
+    probe,
+    probe_reach,
+    workshop,
+)
 from probe_paths.plan import (
     home_readings,
     readings_at,
@@ -30,10 +41,10 @@ from probe_paths.plan import (
     swing_height,
     top_height,
 )
-from report.plots import draw_reach
+from report.plots import draw_reach, draw_room
 from report.style import save
-from twin.errors import NotReachable
-from twin.frames import Array
+from twin.errors import BadFile, NotBuildable, NotReachable
+from twin.frames import Array, fixed_xyz_angles
 from twin.machine import linear_directions
 from twin.record import Setup
 from twin.units import DEG
@@ -41,6 +52,10 @@ from twin.units import DEG
 PICTURE = "reach.png"
 """File of the picture in a folder of results."""
 
+ROOM_PICTURE = "room.png"
+"""Of the patches that fit on the blank; only a refusal draws it."""
+
+_SUNK = 1.0  # mm by which a seat may lie below the table's face: set-ups are measured
 _POSES = 60  # table poses that are tried
 _PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer no choice of patches was ever found
 _SHIFTS = (20.0, 50.0, 100.0, 200.0, 400.0)  # mm
@@ -83,8 +98,10 @@ def check_reach(project: Project, folder: Path) -> Array:
         Table poses to choose from, (K, R), rad: those at which Z can rise above the standard.
 
     Raises:
+        BadFile: A standard that stands in the table or hangs under it.
         NotReachable: Fewer places than a standard needs; which limit binds, the nearest wish.
     """
+    _check_standing(project)
     wanted, rotary = probe_reach(project), _rotary(project)
     poses = poses_within(project.chain, rotary, placement_options(project).choice.poses)
     places, enough = places_on(blank(project)), _enough(project)
@@ -116,6 +133,50 @@ def check_reach(project: Project, folder: Path) -> Array:
     found = [wish.words for wish in _nearest(project, wanted, rotary, tried)]
     nearest = f"{' or '.join(found)} would do" if found else f"no other {_TRIED} alone would do"
     raise NotReachable(f"{project.path}: {against}; {nearest}")
+
+
+def _check_standing(project: Project) -> None:
+    setup, face = project.setup, workshop(project).table.high
+    key, T = f"setup.{setup.name}", setup.T_table_artefact
+    above = seat_height(T, blank(project).base.half_size) - face
+    if above < -_SUNK:
+        raise BadFile(
+            project.path,
+            f"{key}.origin_mm",
+            T[:3, 3].tolist(),
+            f"a seat on the table's face or above it: its lowest corner lies {-above:.1f} mm below",
+        )
+    if hangs(project.chain, T):
+        raise BadFile(
+            project.path,
+            f"{key}.rotation_deg",
+            np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 6).tolist(),
+            "a standard that looks towards the tool with every axis at zero: its seat does",
+        )
+
+
+def check_room(project: Project, folder: Path, poses: Array) -> None:
+    """Refuse more patches than stand side by side, with a picture of those that do.
+
+    Args:
+        project: What is wanted.
+        folder: For the picture.
+        poses: Table poses to choose from, (K, R), rad.
+
+    Raises:
+        NotBuildable: How many fit (fact `fitting`).
+    """
+    made, options = blank(project), placement_options(project)
+    patches = options.patches
+    room = room_for(patches, probe_reach(project), made, poses, options.sites, project.seed)
+    if len(room.faces) >= patches:
+        return
+    save(draw_room(room.faces, patches, made), folder / ROOM_PICTURE)
+    raise NotBuildable(
+        f"only {len(room.faces)} of {patches} patches fit on the blank side by side, of "
+        f"{room.tried} places tried; between them a cutter has to pass, {WALL_GAP:g} mm",
+        fitting=len(room.faces),
+    )
 
 
 def _enough(project: Project) -> int:
@@ -159,18 +220,32 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
     retract = chain.link("Z").range[1] - options.retract
     to_rise = top_height(chain, poses, solid, tool) + options.clearance
     turns = np.flatnonzero(to_rise <= retract)  # the way to the others is of no use
-    home = home_readings(chain)
-    ways = [swing_height(chain, np.stack([home, poses[i]]), solid, tool)[0] for i in turns]
+    home, ends = home_readings(chain), _beyond(project, poses, options.overshoot)
+    ways = [swing_height(chain, np.stack([home, ends[i]]), solid, tool)[0] for i in turns]
     turning = np.array(ways) + 0.5 * options.clearance
     to_rise[turns] = np.maximum(to_rise[turns], turning)
     return to_rise, retract
 
 
+def _beyond(project: Project, poses: Array, overshoot: float) -> Array:
+    """Poses (K, R) with the way beyond them from which they may be approached, where it exists."""
+    travels = [project.chain.link(a).range for a in project.chain.rotary_axes]
+    low, high = np.array(travels).reshape(-1, 2).T
+    home = home_readings(project.chain)
+    out = poses + overshoot * np.where(poses >= home, 1.0, -1.0)
+    beyond: Array = np.where((out >= low) & (out <= high), out, poses)
+    return beyond
+
+
 def _fits(project: Project, wish: Wish) -> bool:
     """Whether a changed project is within reach; by few places and poses first."""
+    T, made = wish.reach.setup.T_table_artefact, blank(project)
+    sunk = seat_height(T, made.base.half_size) < wish.reach.workshop.table.high - _SUNK
+    if sunk or hangs(project.chain, T):
+        return False
     grid = poses_within(project.chain, wish.rotary, placement_options(project).choice.poses)
     for some, step in ((spread_poses(grid, _ROUGH), 3), (spread_poses(grid, _POSES), 1)):
-        point, normal = (v[::step] for v in places_on(blank(project)))
+        point, normal = (v[::step] for v in places_on(made))
         if reach_of(wish.reach, point, normal, some).places * step < _enough(project):
             return False
     to_rise, retract = _to_rise(project, wish.reach, some)

@@ -165,7 +165,7 @@ def test_classes_of_errors_are_described_with_their_amplitudes():
     described = tables()["classes of errors"]
     assert set(described) == set(DEFAULT_RANGES)
     for name, told in described.items():
-        is_angle = name.endswith(("_rotation", "_tilt")) or name in ("squareness", "rotary_zero")
+        is_angle = name.endswith(("_rotation", "_tilt", "ry_zero", "arm_zero", "squareness"))
         shown = np.array(DEFAULT_RANGES[name]) / (URAD if is_angle else UM)
         assert json.loads(told.strip("`")) == pytest.approx(shown.tolist())
 

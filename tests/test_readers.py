@@ -5,9 +5,10 @@
 
 import numpy as np
 import pytest
+from foreign_cases import foreign_readers, holes_said, mapped_said
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from reader_cases import NUMBERS, damage, machine_said, poses_said, readers, run_said
+from reader_cases import NUMBERS, damage, golden, machine_said, poses_said, readers, run_said
 
 from twin.errors import DesignError
 
@@ -18,6 +19,12 @@ LONGEST = 900
 NAMES = (
     "machine", "errors", "run", "pose", "sensors", "project", "standard", "model", "log", "program"
 )  # fmt: skip
+
+OTHERS = (
+    "holes", "laser", "encoders", "map", "mapped", "dh", "dialect", "workshop", "several",
+    "gcode log", "gcode",
+)  # fmt: skip
+"""Tables of others, dialects, the workshop of a project, two runs, a second control."""
 
 
 class Cases(dict):
@@ -30,7 +37,8 @@ class Cases(dict):
 @pytest.fixture(scope="module")
 def cases(tmp_path_factory):
     """Every reader with its valid text."""
-    made = readers(tmp_path_factory.mktemp("files"))
+    folder = tmp_path_factory.mktemp("files")
+    made = [*readers(folder), *foreign_readers(folder, golden())]
     return Cases({r.name: (r, r.path.read_text(encoding="utf-8")) for r in made})
 
 
@@ -50,7 +58,7 @@ def check(reader, data: bytes) -> None:
 
 
 def test_every_reader_has_its_file(cases) -> None:
-    assert set(cases) == set(NAMES)
+    assert set(cases) == {*NAMES, *OTHERS}
     for reader, valid in cases.values():
         result = reader.read(reader.path)
         assert reader.said is None or reader.said(valid, result)
@@ -61,6 +69,14 @@ def test_every_reader_has_its_file(cases) -> None:
 @given(seed=st.integers(0, 2**32 - 1))
 def test_damaged_files(cases, name, seed) -> None:
     """One to three things wrong: a number, a key, a line, a cell, bytes, the end."""
+    reader, valid = cases[name]
+    check(reader, damage(np.random.default_rng(seed), valid))
+
+
+@pytest.mark.parametrize("name", OTHERS)
+@settings(max_examples=EACH // 4, deadline=None, suppress_health_check=list(HealthCheck))
+@given(seed=st.integers(0, 2**32 - 1))
+def test_damaged_files_of_others(cases, name, seed) -> None:
     reader, valid = cases[name]
     check(reader, damage(np.random.default_rng(seed), valid))
 
@@ -96,4 +112,12 @@ def test_the_naive_reading_notices_a_wrong_number(cases) -> None:
     reader, text = cases["machine"]
     reader.path.write_text(text, encoding="utf-8")
     assert not machine_said(text.replace("-420.0", "-421.0"), reader.read(reader.path))
+    reader, text = cases["holes"]
+    reader.path.write_text(text, encoding="utf-8")
+    read = reader.read(reader.path)
+    assert holes_said(text, read)
+    assert not holes_said(text.replace("100,003", "100,004"), read)
+    reader, text = cases["mapped"]
+    reader.path.write_text(text, encoding="utf-8")
+    assert not mapped_said(text.replace("-0.4", "-0.41"), reader.read(reader.path))
     assert len(set(NUMBERS)) == len(NUMBERS)

@@ -15,7 +15,6 @@ from artefact.body.limits import (
     max_slope,
     min_concave_radius,
 )
-from artefact.body.post import post_foot, post_stiffness
 from artefact.body.patch import Meeting, Surface, rows, unit
 from artefact.body.solids import Plate
 from artefact.body.standard import STEEL, Base, Core, Material, Standard
@@ -43,8 +42,6 @@ __all__ = [
     "max_slope",
     "min_concave_radius",
     "outline_distance",
-    "post_foot",
-    "post_stiffness",
     "read_standard",
     "rows",
     "unit",

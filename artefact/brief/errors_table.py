@@ -97,7 +97,8 @@ def _ranges(table: ErrorsTable, chain: Chain, path: Path) -> Ranges:
             raise BadFile(
                 path, f"errors.classes.{name}", "an unknown class", f"one of {', '.join(by_class)}"
             )
-        angular = name.split("_")[-1] in ("rotation", "tilt", "squareness") or name == "rotary_zero"
+        is_zero = name in ("rotary_zero", "arm_zero")
+        angular = name.split("_")[-1] in ("rotation", "tilt", "squareness") or is_zero
         by_class[name] = _amplitudes(pair, URAD if angular else UM, path, f"errors.classes.{name}")
     by_name = {}
     for name, pair in table.parameters.items():

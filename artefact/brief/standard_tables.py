@@ -32,10 +32,10 @@ class StandardTable(Table):
     material: str = "X40Cr14 (1.2083), hardened"
     density_kg_m3: float = Field(default=7800.0, gt=0.0)
     expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
-    patches: int = Field(default=5, ge=FEWEST_PATCHES, le=16)
+    patches: int = Field(default=6, ge=FEWEST_PATCHES, le=16)
     balls: int = Field(default=13, ge=3, le=25)
     touches: int = Field(default=480, ge=100, le=2000)
-    proof_touches: int = Field(default=120, ge=30, le=1000)
+    proof_touches: int = Field(default=160, ge=30, le=1000)
     poses: int = Field(default=30, ge=8, le=100)
     criterion: Literal["I", "G", "D", "A", "E"] = "I"
     potential: float = Field(default=0.3, ge=0.0, le=0.95)

@@ -11,9 +11,12 @@ from artefact.compare.identifiability import (
     IdentifiabilityReport,
     identifiability_report,
 )
-from artefact.compare.proof_power import Power, proof_power
+from artefact.compare.proof_power import ERROR, RISK, WANTED, Power, proof_power
 
 __all__ = [
+    "ERROR",
+    "RISK",
+    "WANTED",
     "Alone",
     "Alternative",
     "IdentifiabilityReport",

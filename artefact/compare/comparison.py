@@ -10,6 +10,7 @@ from artefact.reach import Requests, joined
 from artefact.worth import (
     BallPlaces,
     Criterion,
+    Surfaces,
     TouchOptions,
     Visibility,
     chosen_poses,
@@ -168,7 +169,8 @@ def compare(
         try:
             if body is None:
                 raise NotReachable("no room")
-            here, surfaces = criterion.on(body), (*body.patches, *body.spheres)
+            here = criterion.on(body)
+            surfaces: Surfaces = (*body.patches, *body.spheres)
             own = chosen_poses(criterion.plain.on(body), body, surfaces, all_poses, options)
             if body.patches:
                 tried = some_touches(here, body, own, options, rng)

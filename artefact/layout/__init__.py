@@ -1,11 +1,12 @@
 """Bodies that can be made on a blank: pillars, posts and holes, whole standards, other artefacts.
 
-In: a `Blank` with its limits. Out: upright candidates with smooth shapes, which of them stand beside
-each other, standards put together from `Site`s by hand, and rivals. A further rival is one more
-entry in `rivals`.
+In: a `Blank` with its limits. Out: upright candidates with smooth shapes, which of them stand
+beside each other, standards put together from `Site`s by hand, and rivals. A further rival is one
+more entry in `rivals`.
 """
 
 from artefact.layout.rival_artefacts import rivals, with_spheres
+from artefact.layout.side_by_side import most_side_by_side
 from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
 from artefact.layout.upright import (
     WALL_GAP,
@@ -30,6 +31,7 @@ __all__ = [
     "faces_fit",
     "freeform_faces",
     "holes_on",
+    "most_side_by_side",
     "rivals",
     "standard_from_sites",
     "with_spheres",

@@ -6,8 +6,8 @@ import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch, Standard, graph_patch
 from artefact.layout.shapes import smooth_heights
-from artefact.layout.upright import ball_on_post
 from artefact.layout.sites import Blank
+from artefact.layout.upright import ball_on_post
 from sensitivity.first_order import Box
 from twin.frames import Array, pose, rotation
 from twin.units import DEG

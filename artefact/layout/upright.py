@@ -1,8 +1,8 @@
 """What can stand on a base: upright pillars with a freeform top, balls on posts, and screw holes.
 
-Everything is milled from above: walls are upright and parallel to the sides of the base, a face is a
-graph over its own rectangle, however much it leans. Between any two bodies a cutter passes, places
-are in tenths of a millimetre, and nothing stands out beyond the outline.
+Everything is milled from above: walls are upright and parallel to the sides of the base, a face is
+a graph over its own rectangle, however much it leans. Between any two bodies a cutter passes,
+places are in tenths of a millimetre, and nothing stands out beyond the outline.
 """
 
 from collections.abc import Sequence
@@ -17,8 +17,8 @@ from artefact.body import (
     MountingHole,
     graph_patch,
     outline_distance,
-    post_foot,
 )
+from artefact.layout.post import post_foot
 from artefact.layout.shapes import smooth_heights, steepest_slope
 from artefact.layout.sites import Blank
 from twin.errors import NotBuildable
@@ -63,7 +63,8 @@ def freeform_faces(
     Raises:
         NotBuildable: No pillar stands within the outline.
     """
-    base, out = blank.base, []
+    base = blank.base
+    out: list[FreeformPatch] = []
     side = np.sqrt(_FACES_SHARE * 4.0 * np.prod(base.half_size) / faces)
     steepest = steepest_slope(blank.limits)
     for _ in range(count):
@@ -161,7 +162,9 @@ def holes_on(blank: Blank) -> tuple[MountingHole, ...]:
     (px, py), ty = pair[best[0]], third[best[1]]
     places = [(-px, py), (px, py), (0.0, ty)]
     return tuple(
-        MountingHole(f"HOLE{i}", float(a), float(b), fit.hole_radius, fit.bore_radius, fit.bore_depth)
+        MountingHole(
+            f"HOLE{i}", float(a), float(b), fit.hole_radius, fit.bore_radius, fit.bore_depth
+        )
         for i, (a, b) in enumerate(places, 1)
     )
 
@@ -186,9 +189,7 @@ def balls_fit(balls: Sequence[DatumSphere], blank: Blank) -> Pairs:
     return np.asarray(apart >= least)
 
 
-def beside_holes(
-    balls: Sequence[DatumSphere], holes: Sequence[MountingHole]
-) -> NDArray[np.bool_]:
+def beside_holes(balls: Sequence[DatumSphere], holes: Sequence[MountingHole]) -> NDArray[np.bool_]:
     """Which posts leave room for screws and key, (B,)."""
     across, widest = np.stack([b.centre[:2] for b in balls]), np.array([_widest(b) for b in balls])
     free = np.ones(len(balls), dtype=bool)
@@ -206,8 +207,7 @@ def faces_beside(
         return np.ones(len(faces), dtype=bool)
     across, widest = np.stack([b.centre[:2] for b in balls]), np.array([_widest(b) for b in balls])
     room = np.maximum(widest + WALL_GAP, _probe_room(blank))
-    free: NDArray[np.bool_] = (_to_pillar(faces, across) >= room[:, None]).all(axis=0)
-    return free
+    return np.asarray((_to_pillar(faces, across) >= room[:, None]).all(axis=0))
 
 
 def _probe_room(blank: Blank) -> float:

@@ -2,8 +2,8 @@
 
 Balls on posts identify: nothing tells more of a machine than a precision ball whose centre is known
 to a few tenths of a micrometre, so all identifying touches are made on them. Freeform faces prove:
-they have slopes, curvatures and table poses of real work, they are touched beside the balls and held
-back from the identification, and a model that is wrong shows on them (`artefact.compare`).
+they have slopes, curvatures and table poses of real work, they are touched beside the balls and
+held back from the identification, and a model that is wrong shows on them (`artefact.compare`).
 
 Candidate faces and balls stand all over the blank; every touch that could be made on them at some
 table poses is a row ``n^T J`` times the shape functions of the expected errors. Balls, then faces
@@ -34,6 +34,7 @@ from artefact.layout import (
     faces_fit,
     freeform_faces,
     holes_on,
+    most_side_by_side,
 )
 from artefact.place.proving import proving_touches
 from artefact.reach import ProbeReach, Requests, joined, spread_poses
@@ -62,6 +63,7 @@ from sensitivity.population import Population
 from twin.compute import Progress, silent
 from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
+from twin.record import IntArray
 from twin.units import UM
 
 __all__ = ["Placement", "PlacementOptions", "design_standard"]
@@ -88,7 +90,7 @@ class PlacementOptions:
 
     name: str = "FFS"
     serial: str = ""
-    patches: int = 5
+    patches: int = 6
     balls: int = 13
     sites: int = 400
     noise: float = 1.0 * UM
@@ -259,10 +261,8 @@ def _standard(
     binding: list[str] = []
     for _ in range(_REBUILDS):
         while True:
-            free = faces_beside(faces, balls, blank)[group]
-            chosen = best_groups(
-                criterion.objective, W[free], group[free], options.patches, take, apart=fits
-            )
+            free = faces_beside(faces, balls, blank)
+            chosen = _side_by_side(criterion, W, group, options.patches, take, fits, free)
             if len(chosen) == options.patches:
                 break
             if len(balls) <= _FEWEST_BALLS:
@@ -283,6 +283,27 @@ def _standard(
     raise NotBuildable(
         f"no choice of {options.patches} patches meets every limit; {refused}", binding=binding
     )
+
+
+def _side_by_side(
+    criterion: Criterion,
+    W: Array,
+    group: IntArray,
+    count: int,
+    take: int,
+    fits: NDArray[np.bool_],
+    free: NDArray[np.bool_],
+) -> list[int]:
+    """The faces that are worth most; if their neighbours run out, begun from some that all fit."""
+    rows = free[group]
+    W, group = W[rows], group[rows]
+    chosen = best_groups(criterion.objective, W, group, count, take, apart=fits)
+    if len(chosen) < count:
+        touched = np.isin(np.arange(len(fits)), group)
+        begin = most_side_by_side(fits & touched & touched[:, None], count)
+        if len(begin) > len(chosen) and touched[begin].all():
+            chosen = best_groups(criterion.objective, W, group, count, take, None, fits, begin)
+    return chosen
 
 
 def _put_together(

@@ -6,7 +6,7 @@ twin's effects understand them. A new hindrance is one more look in `ProbeReach`
 standard is a `Solid` of the `Workshop`.
 """
 
-from artefact.reach.face_of_table import table_face
+from artefact.reach.face_of_table import hangs, seat_height, standing_remarks, table_face
 from artefact.reach.mesh_cover import covering_solids
 from artefact.reach.probe_clearance import ProbeShape, clearance
 from artefact.reach.touchable import Mask, ProbeReach, Requests, joined
@@ -42,11 +42,14 @@ __all__ = [
     "clearance",
     "clearance_in_workshop",
     "covering_solids",
+    "hangs",
     "joined",
     "places_on",
     "reach_of",
     "round_table",
+    "seat_height",
     "spread_poses",
+    "standing_remarks",
     "still_frames",
     "table_face",
     "turned",

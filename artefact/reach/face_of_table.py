@@ -6,8 +6,10 @@ machine's table, on which a standard stands upright, looks along Y and not along
 
 import numpy as np
 
-from twin.frames import Array, pose
+from twin.frames import Array, apply, inverse, pose
+from twin.machine import Chain, table_to_tool
 
+_ALONG = 0.7  # cosine above which two directions count as one axis: half a right angle
 _TURNED = {0: (1, 2, 0), 1: (2, 0, 1), 2: (0, 1, 2)}  # coordinate axes that become x, y, z
 
 
@@ -28,3 +30,51 @@ def table_face(T_table_artefact: Array) -> Array:
     if up[axis] < 0.0:
         R = R @ np.diag([1.0, -1.0, -1.0])
     return pose(R)
+
+
+def seat_height(T_table_artefact: Array, half_size: tuple[float, float]) -> float:
+    """Height of the lowest corner of a base above the origin of the table's face, mm.
+
+    Args:
+        T_table_artefact: Where the standard stands, shape (4, 4).
+        half_size: Half sides of its base, mm.
+    """
+    a, b = half_size
+    corners = np.array([[x, y, 0.0] for x in (-a, a) for y in (-b, b)])
+    on_face = apply(inverse(table_face(T_table_artefact)), apply(T_table_artefact, corners))
+    return float(on_face[:, 2].min())
+
+
+def hangs(chain: Chain, T_table_artefact: Array) -> bool:
+    """Whether a standard on a rotary table looks away from the tool with every axis at zero.
+
+    Its seat would then have to be on the lower side of the table. A table that turns about an axis
+    across the tool has no such side: it turns the standard round.
+    """
+    axis, q = _turns_about(chain), np.zeros((1, len(chain.axes)))
+    tool, up = table_to_tool(chain, q)[0, :3, 2], T_table_artefact[:3, 2]
+    return axis is not None and abs(float(axis @ tool)) > _ALONG and float(up @ tool) < -_ALONG
+
+
+def standing_remarks(chain: Chain, T_table_artefact: Array) -> tuple[str, ...]:
+    """What is taken for granted of the face that carries the standard."""
+    axis, face = _turns_about(chain), table_face(T_table_artefact)[:3, 2]
+    if axis is None or abs(float(axis @ face)) > _ALONG:
+        return ()
+    way = f"{'-' if face.min() < -0.5 else '+'}{'XYZ'[int(np.argmax(np.abs(face)))]}"
+    return (
+        f"The standard stands on a face that looks along {way} of the table frame, as on an angle "
+        f"plate, and {_innermost(chain)} turns about another direction: the table of "
+        f"{_innermost(chain)} itself is kept clear only where it stands under [[workshop.bodies]].",
+    )
+
+
+def _innermost(chain: Chain) -> str:
+    """The rotary axis nearest to the workpiece, of those that carry it; empty for none."""
+    turning = (k.name for k in chain.links if k.kind == "rotary" and k.carries_workpiece)
+    return next(turning, "")
+
+
+def _turns_about(chain: Chain) -> Array | None:
+    name = _innermost(chain)
+    return chain.link(name).direction if name else None

@@ -11,6 +11,7 @@ from artefact.worth.ball_choice import BallPlaces, ball_places
 from artefact.worth.calibration import Calibration
 from artefact.worth.effect_visibility import Visibility, visibility
 from artefact.worth.touch_choice import (
+    Surfaces,
     TouchOptions,
     chosen_poses,
     chosen_touches_on,
@@ -37,6 +38,7 @@ __all__ = [
     "Calibration",
     "Criterion",
     "CriterionOptions",
+    "Surfaces",
     "TouchCurve",
     "TouchOptions",
     "Visibility",

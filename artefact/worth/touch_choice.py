@@ -56,7 +56,7 @@ class TouchOptions:
 
     touches: int = 480
     poses: int = 30
-    proof: int = 120
+    proof: int = 160
 
 
 def table_poses(criterion: Criterion, wanted: int) -> Array:

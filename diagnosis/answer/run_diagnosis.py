@@ -117,6 +117,8 @@ def _diagnosed(
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
     final = search_until_stable(task, added, single, progress)
     task, final = remembered(task, added, final, single, progress)
+    if task.model.chain.is_serial_arm:  # whose lines bend like what it lacks
+        task = task.suited((*added, *final.effects))
     choice = chosen_by_prediction(task, added, final, library, progress)
     if choice is not None:
         task, final = followed(task, added, final, choice, single, progress)

@@ -55,8 +55,12 @@ def sizes(
     wider = float(np.sqrt(dof / max(dof - 2.0, 0.5)))
     moved = tuple(ScaledEffect(e, s.scale) for e, s in zip(at, effects, strict=True))
     out = []
+    whole = [getattr(e, "is_told_whole", False) for e in at]
+    # what the machine can do alike, if it were free to, leaves nothing of the whole of an effect
+    expected = task.fit(moved, gross) if any(whole) else fit
     for i, effect in enumerate(at):
-        out.append(reported(fit, effect, wider, _instants(complement, moved, i)))
+        by = expected if whole[i] else fit
+        out.append(reported(by, effect, wider, _instants(complement, moved, i)))
     return tuple(out), moved
 
 

@@ -11,6 +11,7 @@ from diagnosis.fit.identification import Fit
 from diagnosis.regression import BoolArray
 from twin.frames import Array
 from twin.model import Effect, Inner, columns, inner_values
+from twin.record import Touches
 from twin.units import DEG, MINUTE, UM, URAD
 
 AT_END = 1e-3
@@ -21,6 +22,9 @@ UNSEEN = 0.99
 
 ALIKE = 1e-6
 """Singular values of columns below this share of the largest are rounding: they say the same."""
+
+SEEN = 0.1
+"""Share of the largest lever below which a row says little of a curve, and noise would tell."""
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
@@ -109,8 +113,10 @@ def reported(
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
     out = list(_inner(fit, effect, wider, settled or {}))
-    if getattr(effect, "is_shrunk", False) or getattr(effect, "is_told_whole", False):
+    if getattr(effect, "is_shrunk", False):
         out.append(explained_rms(fit, effect, theta, covariance))
+    elif getattr(effect, "is_curve", False):
+        out.append(peak_to_valley(fit, effect, theta, covariance))
     elif len(theta) > 1:
         out.append(size(effect, theta, covariance, _is_seen(fit, place)))
     for i, parameter in enumerate(effect.parameters):
@@ -132,28 +138,66 @@ def reported(
 def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
     """Deviation that an effect of many parameters explains, root mean square over the rows used.
 
-    Of parameters that share what they know neither one nor their length means anything. Of a curve
-    it is what only the curve explains: its lowest terms are straight lines and parabolas, which
-    stand in the model under other names; likewise of the sag of an arm.
+    Of parameters that share what they know neither one nor their length means anything.
     """
     C = columns([effect], fit.run.touches)[fit.used]
-    if getattr(effect, "is_told_whole", False):
-        others = [e for e in fit.effects if e.name != effect.name]
-        unit = fit.u[fit.used][:, None]
-        beside = columns(others, fit.run.touches)[fit.used] / unit
-        beside /= np.maximum(np.linalg.norm(beside, axis=0), 1e-300)
-        Q = orth(beside, rcond=ALIKE)
-        C = C - unit * (Q @ (Q.T @ (C / unit)))
     explained = C @ theta
     rms = float(np.sqrt(np.mean(explained**2)))
     # d rms / d theta = C^T C theta / (n rms)
     slope = C.T @ explained / max(len(C) * rms, 1e-300)
+    return _told("rms", "mm", rms, slope, covariance)
+
+
+def peak_to_valley(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
+    """Largest less smallest value of a curve that an effect of many parameters is.
+
+    Over the rows used, in the unit of the component error that it is: an angle of a rotary axis.
+    Of a curve whose lowest terms are straight lines and parabolas, which stand in the model under
+    other names, it is what only the curve explains; of others (`is_told_whole`) the whole.
+    """
+    touches = fit.run.touches[fit.used]
+    C = columns([effect], touches)
+    curve, unit = _curve(effect, touches)
+    lever = np.linalg.norm(C, axis=1) / np.maximum(np.linalg.norm(curve, axis=1), 1e-300)
+    if not getattr(effect, "is_told_whole", False):
+        others = [e for e in fit.effects if e.name != effect.name]
+        u = fit.u[fit.used][:, None]
+        beside = columns(others, touches) / u
+        beside /= np.maximum(np.linalg.norm(beside, axis=0), 1e-300)
+        Q = orth(beside, rcond=ALIKE)
+        # which side of it a lever is on shows where the curve is not freed of others yet
+        side = np.sign(np.einsum("np,np->n", C, curve))
+        C = C - u * (Q @ (Q.T @ (C / u)))
+        curve = C * (side / np.maximum(lever, 1e-300))[:, None]
+    seen = lever > SEEN * lever.max()
+    values = np.where(seen, curve @ theta, np.nan)
+    across = curve[int(np.nanargmax(values))] - curve[int(np.nanargmin(values))]
+    return _told("peak_to_valley", unit, float(across @ theta), across, covariance)
+
+
+def _curve(effect: Effect, touches: Touches) -> tuple[Array, str]:
+    """The one error that all terms of an effect are, per unit of every parameter, (N, P).
+
+    A joint whose line lies between the axes of the machine turns about a direction of its own.
+    """
+    parameters = effect.parameters
+    A = np.zeros((6, len(touches), len(parameters)))
+    for term in effect.terms(touches):
+        A[term.where.component, :, term.parameter] += term.amount
+    U = np.linalg.svd(A.reshape(6, -1), full_matrices=False)[0]
+    along = U[:, 0] * np.sign(U[np.argmax(np.abs(U[:, 0])), 0])
+    return np.einsum("c,cnp->np", along, A), "rad" if np.any(along[3:]) else "mm"
+
+
+def _told(quantity: str, unit: str, value: float, slope: Array, covariance: Array) -> Reported:
+    """A size of an effect in files, with the uncertainty of a function with this slope."""
+    suffix, factor = file_unit(unit)
     return Reported(
-        quantity="rms",
-        unit="um",
-        value=rms / UM,
-        u=float(np.sqrt(slope @ covariance @ slope)) / UM,
-        factor=UM,
+        quantity=quantity,
+        unit=suffix,
+        value=value / factor,
+        u=float(np.sqrt(slope @ covariance @ slope)) / factor,
+        factor=factor,
         role=Role.SIZE,
     )
 

@@ -40,9 +40,6 @@ MIN_POSES = 4  # of fewer, one held out leaves the fit with less than three quar
 BLOCKS = 10
 """With fewer table poses than that, held out are so many blocks of touches one after the other."""
 
-PASSES = 5
-"""Most passes until the gross errors stay what they are."""
-
 BY_CHANCE = 3.0
 """Standard deviations of the number of accidents that chance may add."""
 
@@ -354,17 +351,21 @@ def fit_run(
 
 
 def prior_for(
-    run: Run, model: Model, gross: GrossErrors | None = None, memory: Memory | None = None
+    run: Run,
+    model: Model,
+    gross: GrossErrors | None = None,
+    memory: Memory | None = None,
+    stated: Prior | None = None,
 ) -> Prior:
     """What the effects of a model state, less where a run says that its machine is better.
 
-    Arguments and errors as of `fit_run`.
+    Arguments and errors as of `fit_run`; `stated` where something else is believed of the effects.
     """
-    stated = Prior.of_effects(model.effects)
+    stated = stated or Prior.of_effects(model.effects)
     fit = fit_run(run, model, stated, gross=gross, memory=memory)
     if fit.widened > 1.0 or not len(stated):
         return stated
-    return narrowed(stated, model.effects, fit.X[fit.used], fit.y[fit.used])
+    return narrowed(stated, model, fit.X[fit.used], fit.y[fit.used])
 
 
 def row_weight(memory: Memory | None) -> float:

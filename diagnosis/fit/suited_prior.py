@@ -10,7 +10,9 @@ each get the one factor of a few under which the run is most likely,
 
 with whitened columns X in units of the prior and nu observations for the noise that is stated. The
 class keeps its word unless the run clearly says otherwise. Squareness, scale and lines of rotary
-axes keep it always: hardly any run leaves them open, and they shall not be drawn to zero.
+axes keep it always: hardly any run leaves them open, and they shall not be drawn to zero. Of a
+serial arm the zeros and the places of its joints keep it, while the tilts of their lines, two a
+joint that a workshop bores in one clamping, get the second factor.
 
 Reference:
     MacKay, Neural Computation 4 (1992) 415 (the evidence for a scale of the prior).
@@ -24,10 +26,10 @@ from scipy.linalg import cho_factor, cho_solve
 
 from diagnosis.fit.prior import Prior
 from diagnosis.regression import PRIOR_DOF, Solution
-from twin.effects import Change, ComponentError
+from twin.effects import Change, ComponentError, LocationError
 from twin.frames import Array
-from twin.machine import LETTERS
-from twin.model import Effect
+from twin.machine import LETTERS, Chain, error_class
+from twin.model import Effect, Model
 
 FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
 """On what is expected: from the class down to a machine of a laboratory."""
@@ -40,17 +42,18 @@ CLEARLY = 3.0
 """Log evidence that a smaller factor must gain, 20 : 1."""
 
 
-def narrowed(prior: Prior, effects: Sequence[Effect], X: Array, y: Array) -> Prior:
+def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
     """The prior with the factors under which a run is most likely.
 
     Args:
-        prior: Of the parameters of the effects: what the class of the machine says.
-        effects: Of the model.
+        prior: Of the parameters of the model: what the class of the machine says.
         X: Columns of the effects, then of the set-ups, in units of the prior and of the noise, rows
             in use, (M, P).
         y: Deviations in units of the noise, (M,).
     """
-    kinds = np.repeat([_kind(e) for e in effects], [len(e.parameters) for e in effects])
+    kinds = np.repeat(
+        [_kind(e, model.chain) for e in model.effects], [len(e.parameters) for e in model.effects]
+    )
     G, g, square = X.T @ X, X.T @ y, float(y @ y)
     each = [np.ones(len(G)) for _ in range(len(FACTORS) ** 2)]
     for factor, (bends, tilts) in zip(each, product(FACTORS, repeat=2), strict=True):
@@ -64,9 +67,11 @@ def narrowed(prior: Prior, effects: Sequence[Effect], X: Array, y: Array) -> Pri
     return Prior(prior.mean, chosen[:, None] * prior.root, chosen)
 
 
-def _kind(effect: Effect) -> str:
+def _kind(effect: Effect, chain: Chain) -> str:
     """What an error of the ordinary model, or its change, does over its axis."""
     effect = effect.effect if isinstance(effect, Change) else effect
+    if isinstance(effect, LocationError) and chain.is_serial_arm:
+        return "tilts" if error_class(chain, effect.symbol) == "arm_tilt" else "stays"
     if not isinstance(effect, ComponentError):
         return "stays"
     if effect.shape in ("parabolic", "sinusoidal"):

@@ -12,7 +12,6 @@ from diagnosis.geometry.changes import (
     state_of_standing,
     with_changes,
 )
-from diagnosis.geometry.functionals import Quantity
 from diagnosis.geometry.learnt import (
     CHANGED,
     Correction,
@@ -24,6 +23,7 @@ from diagnosis.geometry.learnt import (
     geometry_rows,
     learnt_geometry,
 )
+from diagnosis.geometry.quantities import Quantity
 
 __all__ = [
     "CHANGED",

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.fit import Prior
-from diagnosis.geometry.functionals import is_geometry
+from diagnosis.geometry.quantities import is_geometry
 from twin.effects import Change
 from twin.frames import Array
 from twin.model import Effect, Model

@@ -5,54 +5,27 @@
   squares) and, two by two, the squareness;
 - the angular errors of a linear axis and all errors of a rotary one are curves of its reading, of
   which the peak-to-valley over the probed readings is told;
-- the line of a rotary axis is where the tool sees it, place and tilt, while the axis turns.
+- the line of a rotary axis is where the tool sees it, place and tilt, while the axis turns;
+- of a serial arm instead the lengths and twists of links and the zeros of joints (`arm_links`).
 
 None of them depends on where the standard stands, nor on how parameters share what they have in
 common.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 
 from diagnosis.fit import Fit
+from diagnosis.geometry.arm_links import arm_functionals
+from diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
 from twin.frames import Array
 from twin.machine import LETTERS, Chain, Family, Link, tip
-from twin.model import Effect, Model
+from twin.model import Model
 from twin.record import Touches, at_poses
 
 POINTS = 21
 """Poses of a line along an axis: a sine over the travel has ten of them in every half wave."""
-
-
-class Quantity(Enum):
-    """What is told of the geometry of a machine."""
-
-    SCALE = "scale"
-    STRAIGHTNESS = "straightness"
-    SQUARENESS = "squareness"
-    ANGULAR = "angular error"
-    ROTARY_LINE = "line of a rotary axis"
-    ROTARY_MOTION = "error motion of a rotary axis"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Functional:
-    """A quantity as weights (P,) of the parameters of the geometric effects."""
-
-    quantity: Quantity
-    symbol: str
-    axes: tuple[str, ...]
-    unit: str
-    weights: Array
-    lever: float
-
-
-def is_geometry(effect: Effect) -> bool:
-    """Whether an effect is a component or location error, a function of readings alone."""
-    return effect.kind in ("geometric", "location")
 
 
 def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
@@ -70,9 +43,11 @@ def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
     for i, first in enumerate(axes):
         for second in axes[i + 1 :]:
             yield from _squareness(lines[first], lines[second])
-    for axis in chain.rotary_axes:
-        if _is_probed(fit, axis):
-            yield from _rotary(fit, theta, axis)
+    probed = [axis for axis in chain.rotary_axes if _is_probed(fit, axis)]
+    if chain.is_serial_arm:
+        yield from arm_functionals(fit, probed)
+    for axis in probed:
+        yield from _rotary(fit, theta, axis)
 
 
 def _is_probed(fit: Fit, axis: str) -> bool:
@@ -103,21 +78,12 @@ def _along_axis(fit: Fit, axis: str) -> Touches:
     return at_poses(chain, q, float(np.mean(t.length)))
 
 
-def _per_parameter(fit: Fit) -> Iterator[tuple[int, Effect]]:
-    """Geometric effects with the place of their first parameter."""
-    start = 0
-    for effect in fit.model.effects:
-        if is_geometry(effect):
-            yield start, effect
-        start += len(effect.parameters)
-
-
 def _curves(fit: Fit, poses: Touches, link: Link) -> dict[int, Array]:
     """Error curves of one axis per unit of every parameter, by component, each (N, P)."""
     index = poses.chain.link_index(link.name)
     size = (len(poses), len(fit.model.parameters))
     out: dict[int, Array] = {}
-    for start, effect in _per_parameter(fit):
+    for start, effect in geometric_effects(fit):
         for term in effect.terms(poses):
             if term.where.part == "twist" and term.where.link == index:
                 curve = out.setdefault(term.where.component, np.zeros(size))
@@ -128,7 +94,7 @@ def _curves(fit: Fit, poses: Touches, link: Link) -> dict[int, Array]:
 def _displacements(fit: Fit, poses: Touches) -> Array:
     """Displacement of the tool relative to the table per unit of every parameter, (N, 3, P)."""
     out = np.zeros((len(poses), 3, len(fit.model.parameters)))
-    for start, effect in _per_parameter(fit):
+    for start, effect in geometric_effects(fit):
         part = slice(start, start + len(effect.parameters))
         out[:, :, part] = Model(poses.chain, (effect,)).relative_columns(poses)
     return out
@@ -227,8 +193,12 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
     t = fit.run.touches[fit.used]
     link = t.chain.link(axis)
     reach = float(np.linalg.norm(np.ptp(t.point_table, axis=0)))
+    if t.instrument.reads_angle:
+        reach = float(np.median(np.linalg.norm(t.point, axis=1)))
     unit = {False: "mm", True: "rad"}
-    for component, weights in sorted(_line_of(fit, axis).items()):
+    is_joint = t.chain.is_serial_arm and axis in t.chain.arm_joints
+    is_untold = is_joint or t.instrument.reads_angle  # where it is, no angle tells
+    for component, weights in () if is_untold else sorted(_line_of(fit, axis).items()):
         yield Functional(
             quantity=Quantity.ROTARY_LINE,
             symbol=f"E{LETTERS[component]}0{axis}",
@@ -239,12 +209,15 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
         )
     for component, curve in sorted(_curves(fit, _along_axis(fit, axis), link).items()):
         is_angle = component >= 3
+        weights = _peak_to_valley(curve, theta)
+        if not np.any(weights):  # nothing that was measured feels it
+            continue
         yield Functional(
             quantity=Quantity.ROTARY_MOTION,
             symbol=f"E{LETTERS[component]}{axis}",
             axes=(axis,),
             unit=unit[is_angle],
-            weights=_peak_to_valley(curve, theta),
+            weights=weights,
             lever=reach if is_angle else 1.0,
         )
 
@@ -276,7 +249,7 @@ def _line_of(fit: Fit, axis: str) -> dict[int, Array]:
     places = {f"location({s.name})": s for s in chain.symbols if s.family is Family.LOCATION}
     own = {
         places[effect.name].component: D[:, :, start]
-        for start, effect in _per_parameter(fit)
+        for start, effect in geometric_effects(fit)
         if effect.name in places and places[effect.name].link == axis
     }
     own.pop(link.own_component, None)  # its zero is a rotation of the standard, or of the tool
@@ -286,7 +259,7 @@ def _line_of(fit: Fit, axis: str) -> dict[int, Array]:
         [np.tile(np.eye(3), (len(poses), 1, 1)), _crossed(poses.point_table)], axis=2
     )
     basis = np.concatenate([np.stack(list(own.values()), axis=2), rigid], axis=2)
-    size = np.linalg.norm(basis.reshape(-1, basis.shape[2]), axis=0)
+    size = np.maximum(np.linalg.norm(basis.reshape(-1, basis.shape[2]), axis=0), 1e-300)
     scaled = basis.reshape(-1, basis.shape[2]) / size
     found = np.linalg.lstsq(scaled, D.reshape(-1, D.shape[2]), rcond=1e-9)[0] / size[:, None]
     return {component: found[k] for k, component in enumerate(own)}

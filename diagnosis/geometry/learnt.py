@@ -17,7 +17,8 @@ import numpy as np
 
 from diagnosis.fit import Fit, Prior, fit_run
 from diagnosis.geometry.changes import changed_since, of_first, since_first_run, standing, state
-from diagnosis.geometry.functionals import Functional, Quantity, functionals
+from diagnosis.geometry.functionals import functionals
+from diagnosis.geometry.quantities import Functional, Quantity
 from twin.frames import Array
 from twin.machine import LETTERS, Link
 from twin.model import Model

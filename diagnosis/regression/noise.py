@@ -6,13 +6,19 @@ import numpy as np
 
 from diagnosis.regression.linear import BoolArray
 from twin.frames import Array
-from twin.record import Run
+from twin.record import Instrument, Run
 
 PRIOR_DOF = 4.0
 """Weight of the stated uncertainty, in degrees of freedom: it decides where touches are few."""
 
 SAME_PLACE = 0.05
 """Touches whose calibrated points lie within this (mm) in one pose are replicates."""
+
+SAME_SHARE = 1e-3
+"""... and within this share of what was probed, on which an axis may be 1 mm long."""
+
+SAME_READING = 1e-6
+"""The same of readings that an encoder took on the way (mm, rad): no two are one place."""
 
 SAME_SIDE = 0.02
 """Their normals agree within this."""
@@ -57,9 +63,12 @@ def replicate_groups(run: Run, rows: BoolArray) -> np.ndarray:
     Rows outside `rows` get -1.
     """
     t = run.touches
-    cells = np.round(t.point / SAME_PLACE).astype(np.int64)
+    extent = float(np.ptp(t.point, axis=0).max(initial=0.0))
+    place = min(SAME_PLACE, SAME_SHARE * extent) if extent > 0.0 else SAME_PLACE
+    place = SAME_READING if t.instrument is Instrument.ENCODER else place
+    cells = np.round(t.point / place).astype(np.int64)
     sides = np.round(t.normal / SAME_SIDE).astype(np.int64)
-    readings = np.round(t.q / SAME_PLACE).astype(np.int64)
+    readings = np.round(t.q / place).astype(np.int64)
     key = np.column_stack([cells, sides, readings, t.setup, t.pose, t.approach.astype(np.int64)])
     group = np.full(len(run), -1)
     group[rows] = np.unique(key[rows], axis=0, return_inverse=True)[1].reshape(-1)

@@ -50,9 +50,10 @@ class HeldOutInDoubt:
 
 @dataclass(frozen=True, slots=True)
 class FewPoses:
-    """So few table poses that errors of the rotary axes can hardly be seen."""
+    """So few poses that errors of rotary axes, if there are any, can hardly be seen."""
 
     poses: int
+    has_rotary: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +208,7 @@ def _touches(fit: Fit) -> list[Remark]:
     t = fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[fit.used], axis=0))
     if poses < MIN_POSES:
-        out.append(FewPoses(poses))
+        out.append(FewPoses(poses, bool(t.chain.rotary_axes)))
     return out
 
 

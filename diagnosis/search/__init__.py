@@ -9,8 +9,6 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 from diagnosis.search.refine import refined, refined_set, with_moved_points
 from diagnosis.search.screening import Library
 from diagnosis.search.search_loop import (
-    FREEDOM,
-    DiagnosisTask,
     SearchState,
     most_evident,
     refined_named,
@@ -27,6 +25,7 @@ from diagnosis.search.selection import (
     Search,
     Verified,
 )
+from diagnosis.search.task import FREEDOM, DiagnosisTask
 
 __all__ = [
     "CHANCE",

@@ -30,18 +30,17 @@ from diagnosis.evidence import (
     scanned_grids,
     signatures,
 )
-from diagnosis.fit import Fit, Prior, fit_run
-from diagnosis.regression import GrossErrors, Memory
+from diagnosis.fit import Fit
 from diagnosis.residual import Structure, find_structure
 from diagnosis.search.edges import unexplained_near_slip, without
 from diagnosis.search.refine import refined_set
 from diagnosis.search.regrid import regridded
 from diagnosis.search.screening import Library, joined_shortlists
 from diagnosis.search.selection import Budget, EffectSubset, Search
+from diagnosis.search.task import DiagnosisTask
 from twin.effects import Again, again
 from twin.frames import Array
-from twin.model import Effect, Model
-from twin.record import Run
+from twin.model import Effect
 
 ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
@@ -74,45 +73,6 @@ to push one of them out: as far as both predict alike, the name stays."""
 LONG = 2000
 """Rows from which laws and tables are searched for together: a search of laws that do not explain a
 log goes on for minutes."""
-
-FREEDOM = 3.0
-"""Factor on the prior of a found effect in its last fit: being found tells more of its size than
-what is usual, and an estimate shall not be drawn to zero."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class DiagnosisTask:
-    """What is diagnosed: a run, the starting model, and what is believed of it.
-
-    Attributes:
-        model: Machine and effects of the starting model.
-        prior: Of its parameters.
-        is_known: Whether the prior is an earlier fit, rather than what is usual.
-        memory: Of the noise; None for white noise.
-    """
-
-    run: Run
-    model: Model
-    prior: Prior
-    is_known: bool = False
-    memory: Memory | None = None
-
-    def fit(
-        self,
-        effects: Sequence[ScaledEffect] = (),
-        gross: GrossErrors | None = None,
-        beside: Fit | None = None,
-    ) -> Fit:
-        """The model with further effects, fitted; `gross` and `beside` as in `fit_run`."""
-        model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
-        prior = self.prior
-        for sized in effects:
-            prior = prior.joined(self.found_prior(sized))
-        return fit_run(self.run, model, prior, None, gross, self.memory, beside)
-
-    def found_prior(self, sized: ScaledEffect) -> Prior:
-        """Of the parameters of an effect that was added."""
-        return Prior.of_effects([sized.effect]).widened(FREEDOM * sized.scale)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

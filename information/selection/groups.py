@@ -1,5 +1,7 @@
 """Choosing what brings many touches at once: patches of a standard, table poses."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +21,7 @@ def best_groups(
     take: int,
     start: Array | None = None,
     apart: NDArray[np.bool_] | None = None,
+    begin: Sequence[int] = (),
 ) -> list[int]:
     """Choose groups of rows that belong together (the touches of a patch, of a table pose).
 
@@ -33,6 +36,7 @@ def best_groups(
         take: Rows that a group will contribute.
         start: W^T W of what is measured anyway, (R, R).
         apart: Which groups may stand beside each other, (groups, groups); None for all.
+        begin: Groups that are chosen before the others and exchanged like them.
 
     Returns:
         The chosen groups, in the order of choice; fewer than `count` where no other fits.
@@ -40,9 +44,12 @@ def best_groups(
     nothing = np.zeros((criterion.size, criterion.size))
     board = _Groups(criterion, W, group, take, nothing if start is None else start)
     fits = np.ones((board.count, board.count), dtype=bool)
-    if apart is not None:
-        fits = apart[: board.count, : board.count]  # the last groups may have no row
+    if apart is not None:  # the last groups may have no rows
+        fits = apart[: board.count, : board.count]
     chosen: list[int] = []
+    for k in begin:
+        board.best(chosen, fits, only=k)
+        chosen.append(k)
     while len(chosen) < count:
         best = board.best(chosen, fits)
         if best is None:
@@ -69,7 +76,9 @@ class _Groups:
         self.edges = np.searchsorted(group[order], np.arange(self.count + 1))
         self.brought: dict[int, Array] = {}
 
-    def best(self, chosen: list[int], fits: NDArray[np.bool_]) -> int | None:
+    def best(
+        self, chosen: list[int], fits: NDArray[np.bool_], only: int | None = None
+    ) -> int | None:
         """The group that helps most beside those chosen, and whose rows are then remembered."""
         information: Array = self.start.copy()
         for k in chosen:
@@ -85,6 +94,8 @@ class _Groups:
             gain += tangent.fall(tangent.numerators(reach, leverage), leverage)
         free = np.all(fits[chosen], axis=0) if chosen else np.ones(self.count, dtype=bool)
         free[chosen] = False
+        if only is not None:
+            free = np.arange(self.count) == only
         open_groups = np.flatnonzero(free & (np.diff(self.edges) > 0))
         if not len(open_groups):
             return None

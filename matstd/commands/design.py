@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 REFUSED = "reach-refused.png"
 """Picture of what the machine reaches, all that a refused run leaves in its folder."""
 
+NO_ROOM = "room-refused.png"
+"""Likewise of the patches that fit side by side."""
+
 SHEET = "setup"
 """Folder of the set-up sheet."""
 
@@ -30,7 +33,7 @@ _KEYS = {
     "slope": "limits.max_slope_deg (larger)",
     "height": "blank.height_mm (larger)",
     "room for the ball before": "limits.gap_mm or probe.radius_mm (smaller)",
-    "distance of the stem from": "limits.gap_mm (smaller)",
+    "distance of the stem from": "limits.gap_mm or probe.radius_mm (smaller)",
     "mass": "limits.max_mass_kg (larger)",
 }
 """What may be changed where a constraint binds."""
@@ -55,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from artefact.brief import read_project
+    from artefact.reach import standing_remarks
     from matstd.console import say, say_assumed
     from matstd.folder import results_folder
     from matstd.from_project import dialect
@@ -67,8 +71,11 @@ def run(args: argparse.Namespace) -> int:
         project = replace(project, control=own if own.endswith(".toml") else args.control)
     dialect(project)  # a control that nobody knows is refused before any work
     say_assumed(project.chain)
+    for remark in standing_remarks(project.chain, project.setup.T_table_artefact):
+        say(f"- {remark}")
+    leftovers = (*REPORT_FILES, *SHEET_FILES)
     with (
-        results_folder(args.output, args.force, (*REPORT_FILES, *SHEET_FILES), [REFUSED]) as folder,
+        results_folder(args.output, args.force, leftovers, [REFUSED, NO_ROOM]) as folder,
         refusals(project, folder, args.output),
     ):
         from matstd.design import design
@@ -91,7 +98,8 @@ def run(args: argparse.Namespace) -> int:
     for refusal in made.plan.refused:
         say(f"- touch dropped: {refusal}")
     for machine in made.machines:
-        say(f"- {proof_line(machine.seed + 1, machine.in_workspace, machine.proof)}")
+        told = proof_line(machine.seed + 1, machine.in_workspace, machine.proof, machine.fit)
+        say(f"- {told}")
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0
 
@@ -103,25 +111,32 @@ def refusals(project: Project, folder: Path, out: str) -> Iterator[None]:
     Args:
         project: What is designed.
         folder: In which it is; the picture of what is reached lies there.
-        out: Where the picture goes if reach is what stops it.
+        out: Where a picture goes of what stops it.
     """
-    from matstd.reach import PICTURE
+    from matstd import reach
     from twin.errors import NotBuildable, NotReachable
 
     try:
         yield
     except NotBuildable as error:
-        raise NotBuildable(f"{project.path}: {error}; change {_to_change(error)}") from error
+        told = f"{project.path}: {error}; change {_to_change(error)}"
+        seen = _left(folder / reach.ROOM_PICTURE, Path(out) / NO_ROOM, "what fits")
+        raise NotBuildable(told + seen) from error
     except NotReachable as error:
         told = str(error)
         if not told.startswith(str(project.path)):
             told = f"{project.path}: {told}; change workspace, setup or probe.length_mm"
-        if not (folder / PICTURE).exists():
-            raise NotReachable(told) from error
-        picture = Path(out) / REFUSED
-        picture.parent.mkdir(exist_ok=True)
-        (folder / PICTURE).replace(picture)
-        raise NotReachable(f"{told}; {picture} shows what is reached") from error
+        seen = _left(folder / reach.PICTURE, Path(out) / REFUSED, "what is reached")
+        raise NotReachable(told + seen) from error
+
+
+def _left(picture: Path, there: Path, shows: str) -> str:
+    """Leave a picture to the user if there is one, and say so."""
+    if not picture.exists():
+        return ""
+    there.parent.mkdir(exist_ok=True)
+    picture.replace(there)
+    return f"; {there} shows {shows}"
 
 
 def _to_change(error: DesignError) -> str:
@@ -130,9 +145,7 @@ def _to_change(error: DesignError) -> str:
 
     fitting, binding = error.facts.get("fitting"), error.facts.get("binding")
     keys = []
-    if isinstance(fitting, int):
-        if fitting >= FEWEST_PATCHES:
-            keys.append(f"standard.patches (to {fitting})")
-        keys.append(_KEYS["room for the ball before"])
+    if isinstance(fitting, int) and fitting >= FEWEST_PATCHES:
+        keys.append(f"standard.patches (to {fitting})")
     keys += [_KEYS.get(name, _ALWAYS) for name in binding] if isinstance(binding, list) else []
     return " or ".join(dict.fromkeys([*keys, _ALWAYS]))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from twin.foreign import Sheet
+    from twin.foreign import PositioningTest, Sheet
     from twin.machine import Chain
     from twin.record import Run
 
@@ -188,13 +188,10 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
 def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A positioning test as a run."""
-    import numpy as np
-
-    from matstd.console import say
     from twin.errors import DesignError
     from twin.files import read_machine
     from twin.foreign import one_axis_machine, positioning_run, read_positioning
-    from twin.units import DEG, UM, URAD
+    from twin.units import UM, URAD
 
     axis = args.positioning
     if axis not in tuple("XYZABC"):
@@ -202,17 +199,38 @@ def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     turns = axis in "ABC"
     u = _uncertainty(args, "u_urad", URAD) if turns else _uncertainty(args, "u_um", UM)
     test = read_positioning(sheet, axis, args.unit, (args.target, args.actual))
-    low, high = (
-        v / (DEG if axis in "ABC" else 1.0) for v in (test.target.min(), test.target.max())
-    )
+    _say_positioning(test)
+    chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
+    return positioning_run(test, chain, u), chain
+
+
+def _say_positioning(test: PositioningTest) -> None:
+    """Targets, directions, and the figures of the standard, which no model makes."""
+    import numpy as np
+
+    from matstd.console import say
+    from twin.foreign import positioning_figures
+    from twin.units import DEG, UM, URAD
+
+    turns = test.axis in "ABC"
+    low, high = (v / (DEG if turns else 1.0) for v in (test.target.min(), test.target.max()))
     up, down = (int((test.direction == s).sum()) for s in (1, -1))
     say(
         f"- {len(np.unique(test.target))} targets from {low:g} to {high:g}, "
-        f"{len(np.unique(test.cycle))} cycles or strokes; {up} readings with {axis} growing, "
-        f"{down} with it falling"
+        f"{len(np.unique(test.cycle))} cycles or strokes; {up} readings with {test.axis} growing, "
+        f"{down} with it falling{', by the order of the rows' if test.is_by_order else ''}"
     )
-    chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
-    return positioning_run(test, chain, u), chain
+    if not up and not down:
+        say("- no direction of approach is stated (columns up and down): no reversal can be found")
+    found = None if np.any(test.time) else positioning_figures(test)
+    if found is not None:
+        unit, name = (URAD, "µrad") if turns else (UM, "µm")
+        say(
+            f"- ISO 230-2: reversal B {found.reversal / unit:.3g} {name} "
+            f"(mean {found.mean_reversal / unit:.3g}), M {found.mean_range / unit:.3g}, "
+            f"E {found.systematic / unit:.3g}, R {found.repeatability / unit:.3g}, "
+            f"A {found.accuracy / unit:.3g} {name}"
+        )
 
 
 def _arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:

@@ -77,6 +77,7 @@ class Runner:
         self.readable = {_shape(parse_mask(text, path)) for text in texts}
         self.touches: list[ProbeStep] = []
         self.logged: set[int] = set()
+        self.branches = 0  # within each other, at this moment
 
     def run(self, start: int, state: State, is_branch: bool = False) -> list[Step]:
         """Steps from one block to the end of the program."""
@@ -134,7 +135,11 @@ class Runner:
             raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
         state.untested = None
         missed = state.copied()
+        self.branches += 1
+        if self.branches > MAX_CALLS:  # a branch that comes back to its own touch
+            raise state.refusal(block, "a loop without end", "a program that comes to M30")
         self.touches[value.touch].on_miss.extend(self.run(target, missed, is_branch=True))
+        self.branches -= 1
         return i + 1
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:

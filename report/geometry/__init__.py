@@ -8,6 +8,7 @@ from report.geometry.console_words import console_lines
 from report.geometry.copied_numbers import copy_lines
 from report.geometry.fault_words import fault_sentences
 from report.geometry.geometry_words import (
+    USUAL,
     correction_line,
     geometry_lines,
     quantity_name,
@@ -17,6 +18,7 @@ from report.geometry.geometry_words import (
 from report.geometry.trend_words import change_sentences
 
 __all__ = [
+    "USUAL",
     "change_sentences",
     "console_lines",
     "copy_lines",

@@ -13,6 +13,15 @@ _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 _TURNS = {"A": "X", "B": "Y", "C": "Z"}
 """Direction about which a letter turns."""
 
+USUAL = (
+    Quantity.SQUARENESS,
+    Quantity.SCALE,
+    Quantity.JOINT_ZERO,
+    Quantity.LINK_LENGTH,
+    Quantity.JOINT_OFFSET,
+)
+"""What a reader asks for first, of a machine tool and of a serial arm."""
+
 NOTED = 8
 """Quantities that are told on the console."""
 
@@ -43,31 +52,34 @@ def geometry_lines(geometry: LearntGeometry) -> list[GeometryLine]:
     return [_line(row) for row in geometry.rows]
 
 
+_NAMES = {
+    Quantity.SCALE: "scale of {axis}",
+    Quantity.STRAIGHTNESS: "straightness of {axis} in {letter}",
+    Quantity.SQUARENESS: "squareness of {axis} to {first}",
+    Quantity.JOINT_ZERO: "zero of joint {axis}",
+    Quantity.LINK_LENGTH: "length of the link from {first} to {axis}",
+    Quantity.JOINT_OFFSET: "length along the line of {axes}",
+    Quantity.LINK_TWIST: "angle between the lines of {first} and {axis}",
+}
+
+
 def quantity_name(row: GeometryRow) -> str:
     """`squareness of Y to X (EC0Y)`."""
     axis, letter = row.axes[-1], row.symbol[1]
+    about = _TURNS.get(letter)
     match row.quantity:
-        case Quantity.SCALE:
-            words = f"scale of {axis}"
-        case Quantity.STRAIGHTNESS:
-            words = f"straightness of {axis} in {letter}"
-        case Quantity.SQUARENESS:
-            words = f"squareness of {axis} to {row.axes[0]}"
         case Quantity.ANGULAR:
-            about = _TURNS[letter]
             words = f"roll of {axis}" if about == axis[0] else f"tilt of {axis} about {about}"
         case Quantity.ROTARY_LINE:
-            tilts = letter in _TURNS
-            words = (
-                f"tilt of the line of {axis} about {_TURNS[letter]}"
-                if tilts
-                else f"line of {axis} in {letter}"
-            )
+            line = f"line of {axis}"
+            words = f"tilt of the {line} about {about}" if about else f"{line} in {letter}"
+        case Quantity.ROTARY_MOTION if letter == axis[0]:
+            words = f"positioning of {axis}"
         case Quantity.ROTARY_MOTION:
-            about = f"about {_TURNS[letter]}" if letter in _TURNS else f"in {letter}"
-            words = (
-                f"positioning of {axis}" if letter == axis[0] else f"error motion of {axis} {about}"
-            )
+            words = f"error motion of {axis} {f'about {about}' if about else f'in {letter}'}"
+        case plain:
+            first, axes = row.axes[0], listed(list(row.axes))
+            words = _NAMES[plain].format(axis=axis, letter=letter, first=first, axes=axes)
     return f"{words} ({row.symbol})"
 
 
@@ -125,12 +137,11 @@ def _value(value: float, u: float, factor: float, unit: str) -> str:
 def noted_lines(geometry: LearntGeometry) -> list[str]:
     """What of the geometry a reader should see first: changes, and what exceeds expectations.
 
-    Without such, squareness and scales.
+    Without such, squareness and scales, zeros of joints and lengths of links, the clearest first.
     """
     noted = [r for r in geometry.rows if r.has_changed or r.is_beyond_expected]
     if not noted:
-        usual = (Quantity.SQUARENESS, Quantity.SCALE)
-        noted = [r for r in geometry.rows if r.quantity in usual and r.is_determined]
+        noted = [r for r in geometry.rows if _is_usual(r) and r.is_determined]
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
     lines = [_line(r) for r in by_size[:NOTED]]
     told = [
@@ -150,6 +161,12 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
             "beyond chance",
         )
     return told
+
+
+def _is_usual(row: GeometryRow) -> bool:
+    """Whether a reader asks for it first; of a rotary axis that is where it stands."""
+    is_positioning = row.quantity is Quantity.ROTARY_MOTION and row.symbol[1] == row.axes[0][0]
+    return row.quantity in USUAL or is_positioning
 
 
 def ladder_sentence(geometry: LearntGeometry) -> str:

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from diagnosis.answer import Trend
-from diagnosis.geometry import CHANGED, Estimate, GeometryRow, Quantity
+from diagnosis.geometry import CHANGED, Estimate, GeometryRow
 from report.effects import effect_title
-from report.geometry.geometry_words import quantity_name, shown_unit, sized
+from report.geometry.geometry_words import USUAL, quantity_name, shown_unit, sized
 from report.numbers import digits
 from report.words import microns
 from twin.units import UM
@@ -87,7 +87,7 @@ def _would_have(rows: Sequence[GeometryRow], run: int) -> str:
     seen = []
     for row in rows:
         step = row.steps[run - 1]
-        if row.quantity in (Quantity.SQUARENESS, Quantity.SCALE) and step is not None:
+        if row.quantity in USUAL and step is not None:
             unit, factor = shown_unit(row.unit)
             least = digits(CHANGED * step.u / factor, 2)
             seen.append(f"{quantity_name(row)} by {least} {unit}")

@@ -7,6 +7,7 @@ import numpy as np
 
 from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
 from artefact.compare import Rival
+from artefact.reach import standing_remarks
 from artefact.worth import Criterion, touch_curve
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
@@ -49,6 +50,8 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         What could not be drawn and why, one line each; the page says it too.
     """
     remarks: list[str] = comparison_remarks(design.placement)
+    chain, stands = design.project.chain, design.project.setup.T_table_artefact
+    assumed = [*chain.remarks, *standing_remarks(chain, stands)]
     pictures = _standard_pictures(design, folder, remarks)
     maps = [*design.maps, *_volumes(design, folder, remarks)]
     write_touches_picture(folder / "plan_touches.png", design.plan)
@@ -64,7 +67,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         plan=design.plan,
         programs=design.programs,
         pictures=pictures,
-        remarks=[*design.project.chain.remarks, *remarks],
+        remarks=[*assumed, *remarks],
         placeholders=(folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER"),
         curves_caption=_draw_curves(design, folder),
         **study_content(design.study, maps),
@@ -106,8 +109,8 @@ def _draw_curves(design: Design, folder: Path) -> str:
     return (
         "Error left against the number of touches, predicted for every artefact by one rule: its "
         "touches in the order in which each helps most, and beyond their number all of them again. "
-        f"Marked: the {len(placement.requests)} touches of the table above. No machine is drawn "
-        "for it: it is the spread that the touches leave to machines of the stated error ranges."
+        f"Marked: the {len(placement.requests)} identifying touches of the table above. No machine "
+        "is drawn for it: it is the spread that the touches leave to machines of the stated error ranges."
     )
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from diagnosis.answer import Trend
-from diagnosis.geometry import Estimate, GeometryRow, Quantity
-from report.geometry import change_sentences, quantity_name, sized
+from diagnosis.geometry import Estimate, GeometryRow
+from report.geometry import USUAL, change_sentences, quantity_name, sized
 from report.numbers import digits
 from report.plots import draw_trend
 from twin.units import UM
@@ -90,5 +90,4 @@ def _um(value: float | None) -> str:
 
 def _first_changed(lines: list[_Line]) -> list[_Line]:
     """Quantities by what a reader wants to see: changes, then squareness and scales, then all."""
-    usual = (Quantity.SQUARENESS, Quantity.SCALE)
-    return sorted(lines, key=lambda n: (not any(n.has_changed), n.row.quantity not in usual))
+    return sorted(lines, key=lambda n: (not any(n.has_changed), n.row.quantity not in USUAL))

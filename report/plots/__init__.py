@@ -9,7 +9,7 @@ from report.plots.form_pictures import draw_form, is_form
 from report.plots.pattern_pictures import draw_pattern
 from report.plots.plan_pictures import write_order_picture, write_touches_picture
 from report.plots.proof_picture import write_proof_picture
-from report.plots.reach_picture import draw_reach
+from report.plots.reach_picture import draw_reach, draw_room
 from report.plots.residual_pictures import draw_normal_plot, draw_over_variables
 from report.plots.setup_picture import write_setup_picture
 from report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, is_spread
@@ -28,6 +28,7 @@ __all__ = [
     "draw_pose_arrows",
     "draw_reach",
     "draw_rivals",
+    "draw_room",
     "draw_touch_curves",
     "draw_trend",
     "is_form",

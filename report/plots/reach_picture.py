@@ -1,4 +1,4 @@
-"""Picture of what a machine reaches of a blank: places from two sides, table poses, limits."""
+"""Pictures of what a machine reaches of a blank, and of the faces that fit on it side by side."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from artefact.layout import Blank
+from artefact.body import FreeformPatch
+from artefact.layout import WALL_GAP, Blank
 from artefact.reach import ANGLE, Limit, PlacesInReach
 from report.style import BLUE, INK, RED, figure, plain
 from twin.machine import Chain
 from twin.units import DEG
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -102,3 +105,36 @@ def _words(limit: Limit) -> str:
     if limit.name == ANGLE:
         return f"over {limit.at / DEG:g}° from the tool axis"
     return f"{limit.name} {'above' if limit.upper else 'below'} {limit.at:g} mm"
+
+
+def draw_room(faces: Sequence[FreeformPatch], wanted: int, blank: Blank) -> Figure:
+    """Faces that stand side by side, from above and the side.
+
+    Args:
+        faces: Those that fit.
+        wanted: How many were asked for.
+        blank: On which they stand.
+    """
+    drawn = figure(5.0)
+    drawn.suptitle(
+        f"{len(faces)} of {wanted} patches fit side by side: between them a cutter has to pass, "
+        f"{WALL_GAP:g} mm",
+        color=INK,
+    )
+    a, b = blank.base.half_size
+    views = ((1, "from above", -b, b), (2, "from the side", 0.0, blank.height))
+    for axes, (other, title, low, high) in zip(drawn.subplots(1, 2), views, strict=True):
+        for face in faces:
+            x, y = face.half_size
+            uv = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
+            outline = face.point(uv)
+            axes.fill(outline[:, 0], outline[:, other], color=BLUE, alpha=0.5, lw=0.0)
+        axes.plot([-a, a, a, -a, -a], [low, low, high, high, low], color=INK, lw=1.0)
+        axes.set(
+            title=f"the blank {title}",
+            xlabel="x of the standard / mm",
+            ylabel=f"{'xyz'[other]} of the standard / mm",
+            aspect="equal",
+        )
+        plain(axes)
+    return drawn

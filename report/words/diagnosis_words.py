@@ -16,13 +16,18 @@ from twin.units import UM
 from twin.words import listed
 
 _WORDS = {
-    "rms": "rms that it alone explains",
+    "rms": "rms that it explains",
+    "peak_to_valley": "peak to valley",
     "length": "correlation length",
     "tau": "time constant",
+    "step": "per step of",
 }
 
 PERIODS_TOLD = 4
 """Periods that look alike that are told one by one, the longest ones."""
+
+WITHIN = 0.1
+"""Excess over stated noise below which nothing stands out of it: half a per cent of its size."""
 
 ALL_TOLD = 7
 """Numbers of an effect that are told one by one; of more only the size is."""
@@ -51,6 +56,8 @@ def named_value(reported: Reported) -> tuple[str, str]:
         return words, span(reported.value)
     if reported.quantity == "length" and not reported.unit:
         return words, f"{reported.value:.0%} of the travel"
+    if reported.quantity == "harmonic":
+        return words, f"{reported.value:g} a turn"
     return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))
 
 
@@ -68,7 +75,8 @@ def values(step: Step) -> list[tuple[str, str]]:
 def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
     """The same of the numbers themselves, as a model file keeps them."""
     told = sorted(reported, key=lambda r: _ORDER.index(r.role))
-    if len(told) > ALL_TOLD:
+    is_curve = any(r.quantity == "peak_to_valley" for r in told)
+    if is_curve or len(told) > ALL_TOLD:
         told = [r for r in told if r.role is not Role.COEFFICIENT]
     return [named_value(r) for r in told]
 
@@ -104,6 +112,14 @@ def excess(fit: Fit) -> float:
     """Root mean square of what is left beyond the stated noise, mm."""
     stated = stated_noise(fit.run)
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
+
+
+def _left(fit: Fit) -> str:
+    """How much a fit leaves, as a clause: beyond the stated noise, or within it."""
+    beyond, stated = excess(fit), stated_noise(fit.run)
+    if beyond < WITHIN * stated:
+        return f"{microns(fit.rms)} rms, within the stated noise of {microns(stated)}"
+    return f"{microns(beyond)} rms beyond the stated noise of {microns(stated)}"
 
 
 def region_words(conditions: Sequence[Condition]) -> str:
@@ -216,8 +232,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
         return (
             f"Something is left that no effect of the library accounts for: "
-            f"{microns(excess(diagnosis.fit))} rms beyond the stated noise of "
-            f"{microns(stated_noise(diagnosis.run))}. It is not noise: "
+            f"{_left(diagnosis.fit)}. It is not noise: "
             f"{words or 'it varies with nothing that was recorded'}.{what}"
         )
     fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""

@@ -87,6 +87,8 @@ def _held_out_in_doubt(r: HeldOutInDoubt) -> str:
 
 def _few_poses(r: FewPoses) -> str:
     several = r.poses > 1
+    if not r.has_rotary:
+        return f"{r.poses} pose{'s' if several else ''} only: rows are held out in blocks instead"
     return (
         f"{r.poses} table pose{'s' if several else ''} only: errors of the rotary axes "
         f"{'can hardly' if several else 'cannot'} be seen, and touches are held out in blocks "

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from artefact.compare.placed_spheres import COUNTS, placed_spheres
+
 from artefact.layout.sites import Blank
 from artefact.reach.probe_clearance import ProbeShape
 from artefact.reach.touchable import ProbeReach

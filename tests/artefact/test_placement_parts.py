@@ -4,10 +4,11 @@ from itertools import combinations, product
 
 import numpy as np
 import pytest
+from artefact.layout.candidates import TALLEST, random_sites, smooth_heights
 
 from artefact.body.freeform import graph_patch
 from artefact.body.limits import Limits, max_slope, min_concave_radius
-from artefact.layout.candidates import TALLEST, neighbours_fit, random_sites, smooth_heights
+from artefact.layout.side_by_side import most_side_by_side, neighbour_gaps
 from artefact.layout.sites import Blank, Site
 from artefact.layout.spread import spread
 from artefact.reach.probe_clearance import ProbeShape
@@ -64,12 +65,31 @@ def test_sites_that_overlap_do_not_fit():
         Site(10.0 * DEG, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
         Site(180.0 * DEG, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
     ]
-    fits = neighbours_fit(sites, Blank())
+    fits = neighbour_gaps(sites, Blank()) >= Blank().limits.gap
     assert not fits[0, 1]
     assert not fits[1, 0]
     assert fits[0, 2]
     assert fits[1, 2]
     assert not fits.diagonal().any()
+
+
+def test_as_many_sites_stand_side_by_side_as_any_search_finds():
+    """Against the largest clique of a graph in which the most sociable site is a bad beginning."""
+    rng = np.random.default_rng(2)
+    for _ in range(5):
+        fits = rng.random((14, 14)) < 0.5
+        fits &= fits.T
+        np.fill_diagonal(fits, val=False)
+        largest = max(
+            size
+            for size in range(1, 8)
+            for some in combinations(range(14), size)
+            if all(fits[a, b] for a, b in combinations(some, 2))
+        )
+        found = most_side_by_side(fits, 14)
+        assert len(found) == largest
+        assert all(fits[a, b] for a, b in combinations(found, 2))
+        assert len(most_side_by_side(fits, 2)) == 2
 
 
 def test_sites_cover_the_blank():

@@ -10,6 +10,7 @@ import pytest
 
 from diagnosis.fit.identification import fit_run
 from diagnosis.regression.linear import left_out, solve
+from diagnosis.regression.noise import replicate_groups
 from diagnosis.remarks.run_remarks import (
     FewTouches,
     NoiseMisstated,
@@ -20,6 +21,7 @@ from diagnosis.remarks.run_remarks import (
 )
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 from twin.errors import NotEnoughData
+from twin.foreign.positioning import PositioningTest, one_axis_machine, positioning_run
 from twin.library.ordinary import ordinary_model
 from twin.model.model import columns
 from twin.units import NM, UM
@@ -239,3 +241,22 @@ def test_replicates_tell_noise_from_what_the_model_lacks(case) -> None:
     (told,) = [r for r in remarks(fit) if isinstance(r, WorseThanReplicates)]
     assert told.ratio == pytest.approx(fit.noise.factor / fit.noise.replicates)
     assert fit_run(run, fit.model).noise.replicates is None
+
+
+def test_readings_on_the_way_are_no_replicates() -> None:
+    """Steps of 10 µm of an encoder over 1.2 mm, and steps of 2 µm of a laser over as much."""
+    for time, step in ((np.arange(120.0), 0.01), (np.zeros(600), 0.002)):
+        at = 5.0 + step * np.arange(len(time))
+        nothing = np.zeros(len(at))
+        test = PositioningTest(
+            axis="X",
+            target=at,
+            deviation=nothing,
+            cycle=np.ones(len(at), dtype=np.int64),
+            direction=np.ones(len(at), dtype=np.int64),
+            line=np.arange(len(at)),
+            time=time,
+        )
+        run = positioning_run(test, one_axis_machine("X", at), 1.0 * UM)
+        group = replicate_groups(run, np.ones(len(at), dtype=bool))
+        assert len(np.unique(group)) == len(at)

@@ -21,7 +21,8 @@ from diagnosis.fit.learnt_fit import Learnt
 from diagnosis.fit.prior import Prior
 from diagnosis.regression.memory import Memory
 from diagnosis.remarks.run_remarks import SearchEnded
-from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
+from diagnosis.search.search_loop import search_until_stable
+from diagnosis.search.task import DiagnosisTask
 from matstd.cli import main
 from report.words.diagnosis_words import figures, number_words
 from twin.library.catalogue import parse_effect

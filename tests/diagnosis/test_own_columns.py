@@ -14,7 +14,7 @@ from diagnosis.evidence.effect_signatures import ScaledEffect
 from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.prior import Prior
-from diagnosis.search.search_loop import DiagnosisTask
+from diagnosis.search.task import DiagnosisTask
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.machine.chain import Axis, make_chain

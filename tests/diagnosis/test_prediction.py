@@ -21,7 +21,8 @@ from diagnosis.evidence.evidence import EffectSet
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.prior import Prior
 from diagnosis.regression.memory import Memory
-from diagnosis.search.search_loop import DiagnosisTask, search_until_stable
+from diagnosis.search.search_loop import search_until_stable
+from diagnosis.search.task import DiagnosisTask
 from matstd.inputs import candidates
 from report.words.diagnosis_words import named_value, promise_sentence
 from twin.errors import DesignError

@@ -31,7 +31,7 @@ def test_joints_that_sag_are_found_and_none_beside_them() -> None:
     assert sorted(e.name for e in result.found) == ["joint-sag(B)", "joint-sag(B1)"]
     assert result.fit.test_rms < 1.5 * NOISE < 0.5 * result.steps[0].fit.test_rms
     for step in result.steps[1:]:
-        size = next(r for r in step.reported if r.quantity == "rms")
+        size = next(r for r in step.reported if r.quantity == "peak_to_valley")
         assert size.u < 0.2 * size.value
 
 

@@ -155,3 +155,16 @@ def test_what_is_measured_anyway_is_not_chosen_again(case):
     have = W[group == first]
     second = best_groups(criterion, W, group, 1, take=6, start=1e4 * have.T @ have)[0]
     assert second != first
+
+
+def test_groups_to_begin_with_are_exchanged_like_the_others(case):
+    criterion, W = case
+    group = np.arange(60) // 6
+    fits = np.zeros((10, 10), dtype=bool)
+    for some in ([0, 1, 2], [3, 4, 5, 6]):
+        fits[np.ix_(some, some)] = True
+    np.fill_diagonal(fits, val=False)
+    begun = best_groups(criterion, W, group, 4, take=6, apart=fits, begin=[3, 4, 5])
+    assert set(begun) == {3, 4, 5, 6}
+    free = best_groups(criterion, W, group, 3, take=6)
+    assert set(best_groups(criterion, W, group, 3, take=6, begin=free)) == set(free)

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from artefact.brief.project_file import Project, read_project
-from artefact.reach.face_of_table import table_face
+from artefact.reach.face_of_table import standing_remarks, table_face
 from artefact.reach.touchable import Requests
 from artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
-from matstd.commands.design import REFUSED, refusals
+from matstd.commands.design import NO_ROOM, REFUSED, refusals
 from matstd.from_project import blank, probe_reach
-from matstd.reach import check_reach
-from twin.errors import NotBuildable, NotReachable
+from matstd.reach import _to_rise, check_reach, check_room
+from twin.errors import BadFile, NotBuildable, NotReachable
 from twin.frames import fixed_xyz, pose
 from twin.units import DEG
 
@@ -114,6 +114,66 @@ def test_a_refused_command_leaves_its_picture_alone(
         assert f"{out / REFUSED} shows what is reached" in told
         assert [p.name for p in out.iterdir()] == [REFUSED]
         assert (out / REFUSED).read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("name", "setup", "told"),
+    [
+        ("vertical", "origin_mm = [0.0, 0.0, -50.0]", "lowest corner lies 50.0 mm below"),
+        # a base of 280 mm, tilted by 20 degrees about its middle
+        ("vertical", "rotation_deg = [20.0, 0.0, 0.0]", "lies 47.9 mm below"),
+        ("trunnion", "rotation_deg = [180.0, 0.0, 0.0]", "its seat does"),
+        ("head-table", "rotation_deg = [0.0, 170.0, 0.0]", "lies 24.3 mm below"),
+    ],
+)
+def test_a_standard_in_the_table_or_under_it_is_refused(
+    tmp_path: Path, name: str, setup: str, told: str
+) -> None:
+    project = read_project(changed(tmp_path, name, with_setup(setup), {}))
+    with pytest.raises(BadFile, match=re.escape(told)):
+        check_reach(project, tmp_path)
+
+
+def test_a_face_that_is_no_table_is_said() -> None:
+    """The table of B looks up; a standard that looks at the spindle stands on something else."""
+    said = {}
+    for name in ("horizontal", "upright", "trunnion", "vertical"):
+        project = read_project(MACHINES / f"{name}.toml")
+        said[name] = standing_remarks(project.chain, project.setup.T_table_artefact)
+    assert "looks along +Z of the table frame" in said.pop("horizontal")[0]
+    assert set(said.values()) == {()}
+
+
+def test_patches_that_do_not_fit_are_told_with_the_gap_that_would_do(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("matstd.design.design_standard", None)  # not begun
+    wide = {r"\Z": "\n[limits]\ngap_mm = 60.0\n"}
+    path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
+    for _ in range(2):
+        assert main(["design", str(path), "-o", str(out)]) == 2
+        (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
+        assert [p.name for p in out.iterdir()] == [NO_ROOM]
+    assert re.search(r"only \d of 10 patches fit on the blank side by side", told)
+    gap = re.search(r"limits.gap_mm \(to ([0-9.]+)\)", told)
+    assert gap, told
+    project = read_project(
+        changed(tmp_path, "vertical", {r"\Z": f"\n[limits]\ngap_mm = {gap[1]}\n"}, {})
+    )
+    check_room(project, tmp_path, np.zeros((1, 0)))
+
+
+def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
+    """The table swings 5 degrees beyond A = -60, unless its travel ends there."""
+    rises = []
+    for end in (-120.0, -60.0):
+        short = {r"(?<=^\[axis.A\]\nrange = )\[.*?,": f"[{end},"}
+        path = changed(tmp_path, "trunnion", {r"^A = .*\n": ""}, short)
+        project = read_project(path)
+        rise, _ = _to_rise(project, probe_reach(project), np.array([[0.0, -60.0 * DEG]]))
+        rises.append(rise[0])
+    # the rim is 160 mm from the line of A, 50 mm above it
+    assert 5.0 < rises[0] - rises[1] < 160.0 * 5.0 * DEG
 
 
 @pytest.mark.parametrize(

@@ -45,4 +45,5 @@ def test_one_pose_and_two() -> None:
     assert remark_sentence(FewPoses(1)).startswith("1 table pose only: errors of the rotary axes c")
     assert "cannot be seen" in remark_sentence(FewPoses(1))
     assert "2 table poses only" in remark_sentence(FewPoses(2))
+    assert remark_sentence(FewPoses(1, False)) == "1 pose only: rows are held out in blocks instead"
     assert "1500 sets" in remark_sentence(SearchEnded(1500.0))

@@ -138,7 +138,7 @@ def test_equal_readings_of_two_cycles_are_no_copies(tmp_path):
 
 
 def test_a_rotary_axis_that_turns_too_far(tmp_path):
-    """ECC grows by 100 µrad over 90 degrees: the tool point at 100 mm moves 10 µm in its sense."""
+    """ECC grows by 100 µrad over 90 degrees: at 1 m that is 100 µm in its sense."""
     angles = np.linspace(0.0, 90.0, 13)
     rows = [f"{a},{1e-4 * a / 90.0 / (DEG / 3600.0)}" for a in angles]
     text = "target [deg],deviation [arcsec]\n" + "\n".join(rows) + "\n"
@@ -146,8 +146,8 @@ def test_a_rotary_axis_that_turns_too_far(tmp_path):
     assert test.deviation[-1] == pytest.approx(100.0 * URAD)
     chain = one_axis_machine("C", test.target)
     run = positioning_run(test, chain, 1.0 * URAD)
-    assert run.deviation[-1] / UM == pytest.approx(-10.0)
-    assert run.u[0] / UM == pytest.approx(0.1)
+    assert run.deviation[-1] / UM == pytest.approx(-100.0)
+    assert run.u[0] / UM == pytest.approx(1.0)
     moved = np.diff(run.touches.point, axis=0)
     along = np.einsum("ni,ni->n", moved, run.touches.normal[:-1])
     assert np.all(along > 0.0), "the direction is that of growing readings"

@@ -20,7 +20,7 @@ from twin.model import (
     sensor_record,
     sensors,
 )
-from twin.record import Instrument, Touches
+from twin.record import Touches
 from twin.units import T_REF, UM, URAD
 
 HOUR = 3600.0
@@ -169,14 +169,15 @@ def _propose_expansion(touches: Touches) -> Iterable[Effect]:
 
 
 def _propose_slip(touches: Touches) -> Iterable[Effect]:
-    if touches.instrument is Instrument.ENCODER:
-        return ()  # nothing stands on the table
+    if not touches.instrument.has_standard:
+        return ()
     slip = ArtefactSlip()
     return (slip,) if len(slip.inner(touches)[0].grid) else ()
 
 
 def _propose_drift(touches: Touches) -> Iterable[Effect]:
-    return (Drift(),) if np.ptp(touches.time) > 0.0 else ()
+    is_felt = not touches.instrument.reads_angle and np.ptp(touches.time) > 0.0
+    return (Drift(),) if is_felt else ()
 
 
 EXPANSION = Kind(

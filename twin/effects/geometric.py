@@ -110,7 +110,7 @@ class HigherOrder:
     lowest: int = 1
 
     kind = "geometric"
-    is_told_whole = True
+    is_curve = True
 
     @property
     def name(self) -> str:

@@ -18,9 +18,6 @@ from twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
 from twin.record import Touches
 from twin.units import URAD
 
-JOINTS = 4
-"""Rotary joints between the foundation and the tool from which a machine is a serial arm."""
-
 SAME = 1e-6
 """Points closer than this (mm) with every axis at zero are one."""
 
@@ -53,6 +50,7 @@ class JointSag:
     places: tuple[str, ...]
 
     kind = "joint-sag"
+    is_curve = True
     is_told_whole = True
 
     @property
@@ -100,22 +98,13 @@ def _body_before(touches: Touches, link: Link) -> Array:
     return table_to_tool(part, touches.q[:, [chain.axis_index(ln.name) for ln in before]])
 
 
-def arm_joints(chain: Chain) -> list[str]:
-    """Rotary axes between the foundation and the tool, from the foundation outwards."""
-    return [
-        ln.name
-        for ln in chain.links
-        if ln.kind == "rotary" and ln.programmed and not ln.carries_workpiece
-    ]
-
-
 def joint_sag(chain: Chain, joint: str) -> JointSag:
     """Sag of a joint under weights at the points that follow, each place once.
 
     The point of the next joint has no lever if it lies on this joint's line; two at one place are
     one.
     """
-    joints = arm_joints(chain)
+    joints = chain.arm_joints
     own = chain.link(joint)
     ends = [*(chain.link(j) for j in joints[joints.index(joint) :]), chain.links[-1]]
     places = []
@@ -130,7 +119,7 @@ def joint_sag(chain: Chain, joint: str) -> JointSag:
 def make(chain: Chain, arguments: Sequence[str]) -> JointSag:
     """From the joint."""
     check_count(KIND.usage, arguments, 1, 1)
-    joints = arm_joints(chain)
+    joints = chain.arm_joints
     if arguments[0] not in joints:
         known = ", ".join(joints) or "none on this machine"
         raise refusal(KIND.usage, arguments, f"a rotary axis that carries the tool: {known}")
@@ -142,9 +131,8 @@ def make(chain: Chain, arguments: Sequence[str]) -> JointSag:
 
 def propose(touches: Touches) -> Iterable[JointSag]:
     """Every joint of a serial arm."""
-    joints = arm_joints(touches.chain)
-    if len(joints) >= JOINTS:
-        for joint in joints:
+    if touches.chain.is_serial_arm:
+        for joint in touches.chain.arm_joints:
             found = joint_sag(touches.chain, joint)
             if found.places:
                 yield found

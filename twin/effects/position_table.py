@@ -72,7 +72,7 @@ class PositionTable:
     length: float = LENGTHS[1]
 
     kind = "position-table"
-    is_told_whole = True
+    is_curve = True
     is_table = True
 
     @property

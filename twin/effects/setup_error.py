@@ -26,10 +26,12 @@ class SetupError:
         setup: Label of the set-up.
         centre: c, table frame, mm: the middle of the touched points, so that displacement and
             rotation are estimated nearly independently.
+        turns_only: Whether an instrument that feels angles alone stands there: three parameters.
     """
 
     setup: str
     centre: tuple[float, float, float]
+    turns_only: bool = False
 
     kind = "setup"
 
@@ -41,7 +43,7 @@ class SetupError:
     @property
     def parameters(self) -> Sequence[Parameter]:
         """Displacement and rotation in the table frame."""
-        shifts = [Parameter(f"d{c}", "mm", SHIFT_SD) for c in "xyz"]
+        shifts = [Parameter(f"d{c}", "mm", SHIFT_SD) for c in "xyz" if not self.turns_only]
         return (*shifts, *(Parameter(f"r{c}", "rad", TURN_SD) for c in "xyz"))
 
     def terms(self, touches: Touches) -> Sequence[Term]:
@@ -49,6 +51,11 @@ class SetupError:
         names = [s.name for s in touches.setups]
         index = names.index(self.setup) if self.setup in names else -1
         here = (touches.setup == index).astype(float)
+        if self.turns_only:
+            felt = np.cross(
+                touches.point_table - touches.T_table_artefact[:, :3, 3], touches.normal_table
+            )
+            return [Term(i, Where("bias"), here * felt[:, i]) for i in range(3)]
         arm = (touches.point_table - np.array(self.centre)) * here[:, None]
         terms = [Term(i, Where("shift", 0, i), here) for i in range(3)]
         for turn in range(3):
@@ -65,5 +72,6 @@ def setup_errors(touches: Touches) -> tuple[SetupError, ...]:
         rows = touches.setup == index
         if rows.any():
             x, y, z = touches.point_table[rows].mean(axis=0)
-            out.append(SetupError(setup.name, (float(x), float(y), float(z))))
+            turns_only = touches.instrument.reads_angle
+            out.append(SetupError(setup.name, (float(x), float(y), float(z)), turns_only))
     return tuple(out)

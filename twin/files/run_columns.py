@@ -299,3 +299,9 @@ def moved_setup(moved: Moved) -> str:
         f"set-up {moved.name} stands {moved.shift:.2f} mm and {moved.turn / DEG:.2f}° from where "
         "the head says, as its touches tell; it is taken there"
     )
+
+
+def angles_told(points: Array) -> str:
+    """How an instrument of angles puts them into deviations."""
+    arm = float(np.median(np.linalg.norm(points, axis=1)))
+    return f"deviations are angles times {arm:g} mm: 1 µm is {1000.0 / arm:.3g} µrad"

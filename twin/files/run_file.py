@@ -108,6 +108,8 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         placed, moved = aligned(stated)
         run = replace(placed, deviation=stated.deviation)
     remarks += [columns.moved_setup(m) for m in moved]
+    if head.instrument.reads_angle:
+        remarks.append(columns.angles_told(stated.touches.point))
     try:
         run = checked_run(run, table, remarks)
     except BadFile as refusal:

@@ -31,7 +31,7 @@ def run_text(run: Run, machine: str) -> str:
     out = io.StringIO()
     out.write('# format = "run/1"\n')
     out.write(f'# machine = "{machine}"\n')
-    probe = f"radius_mm = {float(t.radius[0])!r}, length_mm = {float(t.length[0])!r}"
+    probe = f"radius_mm = {float(t.radius[0])!r}, length_mm = {float(t.length[0]) + 0.0!r}"
     if t.offset[0].any() and not _has_targets(run):
         probe += f", offset_mm = [{', '.join(repr(float(v)) for v in t.offset[0])}]"
     out.write(f"# probe = {{ {probe} }}\n")
@@ -41,7 +41,7 @@ def run_text(run: Run, machine: str) -> str:
         out.write(f"# u_um = {float(run.u[0]) / UM:.12g}\n")
     for setup in t.setups:
         T = setup.T_table_artefact
-        angles = fixed_xyz_angles(T[:3, :3]) / DEG
+        angles = np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 10) + 0.0  # no minus before a zero
         out.write(f"# [setup.{setup.name}]\n")
         out.write(f"# origin_mm = [{', '.join(f'{v:.9f}' for v in T[:3, 3])}]\n")
         out.write(f"# rotation_deg = [{', '.join(f'{v:.10f}' for v in angles)}]\n")

@@ -6,16 +6,23 @@ there, a machine whose travels are those of the data. The sign of a deviation is
 and said to the user: what a machine did wrong is the negative of what its controller sees.
 """
 
+from twin.foreign.acceptance import positioning_figures
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
 from twin.foreign.points import joined_points, linear_machine, points_run, read_points
-from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
+from twin.foreign.positioning import (
+    PositioningTest,
+    one_axis_machine,
+    positioning_run,
+    read_positioning,
+)
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
 from twin.foreign.sheet import ANGLES, MM, Sheet, read_sheet
 
 __all__ = [
     "ANGLES",
     "MM",
+    "PositioningTest",
     "Sheet",
     "arm_from_dh",
     "joined_points",
@@ -25,6 +32,7 @@ __all__ = [
     "mapped_run",
     "one_axis_machine",
     "points_run",
+    "positioning_figures",
     "positioning_run",
     "read_points",
     "read_positioning",

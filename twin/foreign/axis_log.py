@@ -32,6 +32,34 @@ def strokes(at: Array) -> tuple[IntArray, IntArray]:
     return sign, 1 + np.cumsum(turned)
 
 
+def approaches(at: Array) -> tuple[IntArray, IntArray]:
+    """Directions of approach and cycles of a positioning test, (N,) each, by the order of its rows.
+
+    A target was reached from the one before it; of one that stands twice where the motion turns,
+    the second belongs to the way back. A step over more than half the travel begins a new cycle,
+    and so does every second turn. All signs are 0 where most rows repeat the one before: no order
+    is told by them.
+
+    Args:
+        at: Targets in the order in which they stand, (N,).
+
+    Example:
+        >>> approaches(np.array([0.0, 1.0, 2.0, 2.0, 1.0, 0.0, 0.0, 1.0]))
+        (array([ 1,  1,  1, -1, -1, -1,  1,  1]), array([1, 1, 1, 1, 1, 1, 2, 2]))
+    """
+    n = len(at)
+    step = np.diff(at)
+    if n < 3 or np.mean(step == 0.0) > 0.5 or not np.all(np.isfinite(at)):
+        return np.zeros(n, dtype=np.int64), np.ones(n, dtype=np.int64)
+    before, after = np.r_[0.0, step], np.r_[step, 0.0]
+    usual = 1.5 * np.median(np.abs(step[step != 0.0]))
+    is_back = np.abs(before) > max(0.5 * np.ptp(at), usual)
+    sign = np.sign(np.where((before == 0.0) | is_back, after, before)).astype(np.int64)
+    turns = (sign[1:] * sign[:-1] < 0) & ~is_back[1:]
+    strokes_before = np.r_[0, np.cumsum(turns)]
+    return sign, 1 + strokes_before // 2 + np.cumsum(is_back)
+
+
 def temperatures(sheet: Sheet) -> dict[str, Array]:
     """Columns of temperatures by the name of the sensor, each (N,), degC."""
     out = {}

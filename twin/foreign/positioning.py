@@ -16,15 +16,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from twin.errors import BadFile
-from twin.foreign.axis_log import strokes, temperatures
+from twin.foreign.axis_log import approaches, strokes, temperatures
 from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column, unit_of_time
-from twin.frames import Array
-from twin.machine import Axis, Chain, make_chain, tip
+from twin.frames import Array, pose
+from twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
 from twin.record import Instrument, IntArray, Run, Setup, Touches
 
-ARM = 100.0
-"""Distance (mm) from a rotary axis at which its angle is counted as a distance along the motion:
-any will do, since the angle is what was measured."""
+ARM = 1000.0
+"""Arm (mm) by which the angle of a rotary axis is told as a length: 1 µrad is 1 µm."""
 
 ALL_BUT = 0.1
 """Slope over the targets, off from 1 by less, of positions: no axis is wrong by a tenth."""
@@ -32,15 +31,24 @@ ALL_BUT = 0.1
 ENOUGH_CYCLES = 4
 """Cycles from which one can be held out: of fewer it would be more than a quarter of the test."""
 
-_TARGET = re.compile(r"target|soll|nominal|command|position|\bp_?i\b", re.IGNORECASE)
+_TARGET = re.compile(
+    r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|\bp_?i\b", re.IGNORECASE
+)
 _ACTUAL = re.compile(r"actual|measured|ist\b|istwert", re.IGNORECASE)
+_REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)
+"""The better instrument, in tables of two; a `reference position` is a target to others."""
 _DEVIATION = re.compile(r"dev|error|abweich|fehler|\bx_?ij\b", re.IGNORECASE)
 _CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
 _DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
-_UP = re.compile(r"up|↑|\+|pos|fwd|forward|vor", re.IGNORECASE)
-_DOWN = re.compile(r"down|dn|↓|-|−|neg|rev|back|rück|ruck|zur", re.IGNORECASE)
+_DOWN = re.compile(
+    r"down|\bdn\b|dwn|↓|-|−|\bneg|\brev|\bb(ack|wd|kw)|rück|ruck|zur|\bret", re.IGNORECASE
+)
+_UP = re.compile(r"\bup|↑|\+|\bpos(itive?)?\b|\bf(wd|or)|\bvor|\bhin\b|\baller", re.IGNORECASE)
+_WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
+_WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+")
+_LONGEST = 9  # digits of the number of a cycle
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +64,7 @@ class PositioningTest:
         line: Line of the file, (N,).
         time: Since the start of a log, (N,), s; zeros of a table.
         temperature: By sensor, each (N,), degC; of a log.
+        is_by_order: Whether directions are those in which the rows follow each other.
     """
 
     axis: str
@@ -66,6 +75,7 @@ class PositioningTest:
     line: IntArray
     time: Array = field(default_factory=lambda: np.zeros(0))
     temperature: Mapping[str, Array] = field(default_factory=dict)
+    is_by_order: bool = False
 
 
 def read_positioning(
@@ -76,7 +86,8 @@ def read_positioning(
     Two layouts are understood: a row a reading (columns target, cycle, direction, and deviation or
     actual position), and a row a target with a column a cycle and direction (`1 up`, `1 down`, or
     the cycle in one header row and the direction in the next). With a column of times the first is
-    a log: cycles are its strokes, directions those of its motion.
+    a log: cycles are its strokes, directions those of its motion. Without columns of directions or
+    cycles the order of the rows tells them.
 
     Args:
         axis: Letter of the axis, which says whether it turns (A B C).
@@ -99,6 +110,8 @@ def read_positioning(
     values, actual = _only(names, _DEVIATION), _only(names, _ACTUAL)
     if named[1]:
         values, actual = None, sheet.column(named[1])
+    elif values is None and actual is None:
+        actual = _only(names, _REFERENCE)
     if values is None and actual is None:
         return _wide(sheet, axis, target, at, unit, base)
     cycle, direction = _only(names, _CYCLE), _only(names, _DIRECTION)
@@ -109,10 +122,14 @@ def read_positioning(
         assert actual is not None
         deviation = sheet.numbers(actual) * base[_unit(sheet, actual, base, unit)] - at
     n = len(sheet)
-    time, sign, stroke = np.zeros(n), np.zeros(n, dtype=np.int64), np.ones(n, dtype=np.int64)
+    time = np.zeros(n)
     if clock is not None:
         time = sheet.numbers(clock) * unit_of_time(sheet.columns[clock])
-        sign, stroke = strokes(at)
+        sign, stroke = strokes(_held(at))
+    else:
+        sign, stroke = approaches(_held(at))
+        parted = _ways_of_parts(sheet)
+        sign = parted if np.any(parted) else sign
     return _present(
         PositioningTest(
             axis=axis,
@@ -123,27 +140,45 @@ def read_positioning(
             line=np.array(sheet.lines),
             time=time,
             temperature=temperatures(sheet) if clock is not None else {},
+            is_by_order=direction is None and bool(np.any(sign < 0)),
         )
     )
+
+
+def _held(at: Array) -> Array:
+    """Targets with those that are missing taken for the last one before them, or the first."""
+    there = np.isfinite(at)
+    last = np.maximum.accumulate(np.where(there, np.arange(len(at)), np.argmax(there)))
+    held: Array = at[last]
+    return held
 
 
 def _wide(
     sheet: Sheet, axis: str, target: int, at: Array, unit: str | None, base: dict[str, float]
 ) -> PositioningTest:
     """A row a target, a column a cycle and direction."""
-    parts = []
+    parts, signs = [], {}
+    parted = _ways_of_parts(sheet)
     for i, name in enumerate(sheet.columns):
         number = _NUMBER.search(name)
         if i == target or number is None:
             continue
+        if len(number.group(0)) > _LONGEST:
+            raise BadFile(sheet.path, "header", f"column {name[:40]!r}", "the number of a cycle")
         rest = bare(name).replace(number.group(0), "", 1)
         sign = 1 if _UP.search(rest) else -1 if _DOWN.search(rest) else 0
         values = _deviations(sheet, i, target, at, unit, base)
         whole = np.ones(len(sheet), dtype=np.int64)
-        parts.append((at, values, int(number.group(0)) * whole, sign * whole, sheet.lines))
+        ways = sign * whole if sign else parted
+        parts.append((at, values, int(number.group(0)) * whole, ways, sheet.lines))
+        signs[name] = sign
     if not parts:
         expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
         raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
+    unsaid = next((name for name, sign in signs.items() if sign == 0), None)
+    if unsaid is not None and any(signs.values()):
+        expected = "up or down (fwd, bwd, +, -) in its name, as in others"
+        raise BadFile(sheet.path, "header", f"column {unsaid!r}", expected)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     return _present(
         PositioningTest(
@@ -155,6 +190,13 @@ def _wide(
             line=columns[4],
         )
     )
+
+
+def _ways_of_parts(sheet: Sheet) -> IntArray:
+    """Signs of directions as the words above the parts of a table say, 0 where they do not."""
+    ways = [1 if _WAY_OUT.search(a) else -1 if _WAY_BACK.search(a) else 0 for a in sheet.above]
+    both = {1, -1} <= set(ways)
+    return np.array(ways if both else np.zeros(len(sheet)), dtype=np.int64)
 
 
 def _deviations(
@@ -191,6 +233,7 @@ def _present(test: PositioningTest) -> PositioningTest:
         line=test.line[rows],
         time=test.time[rows] if len(test.time) else np.zeros(int(rows.sum())),
         temperature={name: values[rows] for name, values in test.temperature.items()},
+        is_by_order=test.is_by_order,
     )
 
 
@@ -239,12 +282,11 @@ def _signs(sheet: Sheet, column: int) -> IntArray:
 
 
 def one_axis_machine(axis: str, target: Array) -> Chain:
-    """A machine of one axis whose travel is that of the targets, the tool at `ARM` if it turns."""
+    """A machine of one axis whose travel is that of the targets."""
     low, high = float(target.min()), float(target.max())
     turns = axis in "ABC"
     chain = f"[w {axis}' f t]" if turns else f"[w f {axis} t]"
-    aside = {"A": (0.0, -ARM, 0.0), "B": (0.0, 0.0, -ARM), "C": (-ARM, 0.0, 0.0)}
-    table = Axis(range=(low, high), point=aside.get(axis))
+    table = Axis(range=(low, high), point=(0.0, 0.0, 0.0) if turns else None)
     return make_chain(f"{axis} axis", chain, {axis: table})
 
 
@@ -253,7 +295,8 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
 
     Every reading is a distance along the motion: its direction is that in which the tool moves
     relative to the workpiece while the reading grows, its deviation the negative of what the
-    instrument says (times the arm on a rotary axis).
+    instrument says. Of a rotary axis it is the angle times `ARM`, as an autocollimator reads it:
+    it feels neither an eccentric polygon nor a table that wanders aside.
 
     Args:
         test: The readings.
@@ -267,15 +310,14 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
     i = chain.axis_index(test.axis)
     q = np.zeros((n, len(chain.axes)))
     q[:, i] = test.target
-    length = np.zeros(n)
-    point = tip(chain, q, length)
-    step = 1e-4
-    ahead, behind = q.copy(), q.copy()
-    ahead[:, i] += step
-    behind[:, i] -= step
-    motion = (tip(chain, ahead, length) - tip(chain, behind, length)) / (2.0 * step)
-    # 1 on a linear axis, the arm on a rotary one, to what the difference leaves of it
-    speed = np.round(np.linalg.norm(motion, axis=1), 8)
+    link = chain.link(test.axis)
+    turns = link.kind == "rotary"
+    middle, target = _on_line(link) if turns else (chain.table_origin, np.zeros(3))
+    at, centre = np.tile(target, (n, 1)), middle - chain.table_origin
+    point = tip(chain, q, at)
+    # the other axes stand at zero, where all frames have the same directions
+    motion = np.cross(link.direction, point - centre) / ARM if turns else link.direction
+    per_unit = ARM if turns else 1.0
     approach = np.zeros(q.shape)
     approach[:, i] = test.direction
     # what repeats at the targets is what the test is for: held out are cycles, if it has some
@@ -286,11 +328,12 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
     touches = Touches(
         chain=chain,
         q=q,
-        length=length,
+        length=-at[:, 2],
+        offset=at[:, :2],
         radius=np.zeros(n),
-        point=point,
-        normal=motion / speed[:, None],
-        setups=(Setup("a"),),
+        point=point - centre,
+        normal=np.broadcast_to(motion, (n, 3)),
+        setups=(Setup("a", pose(t=centre)),),
         setup=np.zeros(n, dtype=np.int64),
         time=test.time if len(test.time) else np.zeros(n),
         approach=approach,
@@ -299,7 +342,28 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         pose=held_out.astype(np.int64),
         # a test without times, and yet what warms up moves from cycle to cycle
         value={"cycle_1": test.cycle.astype(float)} if not is_log and cycles.max() > 1 else {},
-        instrument=Instrument.ENCODER if is_log else Instrument.LASER,
+        instrument=_instrument(turns, is_log),
     )
     # one line of the file may hold many readings: the rows of the run are what messages name
-    return Run(touches, -test.deviation * speed, np.asarray(u * speed), repeat=test.cycle)
+    u_of_row = np.full(n, u * per_unit)
+    return Run(touches, -test.deviation * per_unit, u_of_row, repeat=test.cycle)
+
+
+def _on_line(link: Link) -> tuple[Array, Array]:
+    """A point of a rotary axis's line, and one of the tool `ARM` beside it, below the spindle.
+
+    Machine and tool frame coincide with every axis at zero.
+    """
+    d, point = link.direction, link.point
+    if LETTERS[link.own] == "Z":
+        point = point - d * point[2] / d[2]
+    down = np.eye(3)[0] if LETTERS[link.own] == "Z" else -np.eye(3)[2]
+    aside = down - (down @ d) * d
+    return point, point + ARM * aside / np.linalg.norm(aside)
+
+
+def _instrument(turns: bool, is_log: bool) -> Instrument:
+    """What measured: beside the axis where it turns, else the two encoders of a log or a laser."""
+    if turns:
+        return Instrument.AUTOCOLLIMATOR
+    return Instrument.ENCODER if is_log else Instrument.LASER

@@ -101,7 +101,11 @@ def _dh_column(sheet: Sheet, name: str) -> Array:
         if re.search(_DH[name], bare(column), re.IGNORECASE):
             units = ANGLES if is_angle else MM
             unit = unit_of_column(column) or ("deg" if is_angle else "mm")
-            return sheet.numbers(i) * units.get(unit, 1.0)
+            values = sheet.numbers(i)
+            if not np.isfinite(values).all():
+                row = int(np.argmin(np.isfinite(values)))
+                raise sheet.bad(row, i, "nothing", "a number for every joint")
+            return values * units.get(unit, 1.0)
     raise BadFile(
         sheet.path,
         "header",

@@ -27,6 +27,9 @@ _SEPARATORS = (";", "\t", ",", "|")
 MOSTLY = 0.6
 """Share of rows with a number from which a column is one of numbers."""
 
+_RULE = re.compile(r":?-{2,}:?\Z|\Z")
+"""Cells of a line that rules off the header, as in tables of a wiki."""
+
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?\Z")
 _DECIMAL_POINT = re.compile(r"[+-]?\d+\.\d*([eE][+-]?\d+)?\Z")
 _UNIT = re.compile(r"\s*[\[(]\s*([^\])]+?)\s*[\])]\s*\Z|[_\s/]+([A-Za-zµμ°]+)\Z")
@@ -38,6 +41,8 @@ ANGLES = {"deg": math.pi / 180.0, "°": math.pi / 180.0, "rad": 1.0, "mrad": 1e-
 """Units of angles in files of others, rad."""
 SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
 """Units of time in files of others, s."""
+LARGEST = 1e15
+"""What a cell may hold: more than milliseconds of a clock, and far from where squares overflow."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,8 @@ class Sheet:
         lines: Line or row of the file that each of them stands in.
         title: What stands above the header.
         left_out: Lines below the header that hold no row of numbers.
+        above: For each row what stands between it and the last row of numbers before its block: a
+            table in two parts says there which is which.
     """
 
     path: Path
@@ -58,6 +65,7 @@ class Sheet:
     lines: tuple[int, ...]
     title: tuple[str, ...]
     left_out: tuple[int, ...]
+    above: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -75,6 +83,8 @@ class Sheet:
                 expected = "a number" if "," not in cell else "one decimal mark in the whole file"
                 raise self.bad(i, column, repr(cell), expected)
             if cell != "" and cell != missing:
+                if abs(float(cell)) > LARGEST:
+                    raise self.bad(i, column, f"{cell:g}", f"{LARGEST:g} at most")
                 out[i] = cell
         return out
 
@@ -196,6 +206,7 @@ def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
     separator = next((s for s in _SEPARATORS if counts[s] >= 1), ",")
     reader = csv.reader(io.StringIO(text), delimiter=separator)
     rows = [(reader.line_num, [c.strip() for c in row]) for row in reader]
+    rows = [(line, row) for line, row in rows if not all(_RULE.match(c) for c in row)]
     mark = _decimal_mark(path, rows)
     return [(line, [_number(c, mark) for c in row]) for line, row in rows]
 
@@ -239,6 +250,7 @@ def _table(path: Path, rows: Sequence[tuple[int, Sequence[str | float]]]) -> She
     header = _header([list(rows[i][1]) for i in above[-3:]], width)
     data, others = _data_rows(rows[above[-1] + 1 :])
     title = [" ".join(str(c) for c in row if c != "") for _, row in rows[: above[-1]]]
+    blocks = _blocks(rows, {line for line, _ in data})
     return Sheet(
         path=path,
         columns=header,
@@ -246,7 +258,22 @@ def _table(path: Path, rows: Sequence[tuple[int, Sequence[str | float]]]) -> She
         lines=tuple(line for line, _ in data),
         title=tuple(title),
         left_out=tuple(others),
+        above=tuple(blocks[line] for line, _ in data),
     )
+
+
+def _blocks(rows: Sequence[tuple[int, Sequence[str | float]]], data: set[int]) -> dict[int, str]:
+    """What stands above the block of each row of numbers, by its line."""
+    out: dict[int, str] = {}
+    words: list[str] = []
+    block = ""
+    for line, row in rows:
+        if line in data:
+            block, words = "\n".join(words) if words else block, []
+            out[line] = block
+        else:
+            words.append(" ".join(str(c) for c in row if c != ""))
+    return out
 
 
 def _data_rows(

@@ -1,6 +1,5 @@
 """Machines in ISO chain notation, `[w C' B' X' f Y Z (C1) t]`, as an ordered tuple of links."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -11,12 +10,11 @@ import numpy as np
 from twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from twin.frames import Array
 from twin.machine.contribution import Where
+from twin.machine.notation import parse_notation
 from twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
 from twin.units import DEG
 
 Kind = Literal["linear", "rotary", "fixed"]
-
-_TOKEN = re.compile(r"([XYZUVWABCS]\d?)('?)\Z")
 
 _SAME = 1e-6
 """Two machines whose numbers differ by less (mm, rad) are the same."""
@@ -27,6 +25,10 @@ SHORTEST = 1e-6
 FLATTEST = 0.01
 """Smallest singular value of the directions of linear axes: below, two of three axes stand within
 about a degree of one another."""
+
+ARM_JOINTS = 4
+"""Rotary joints between the foundation and the tool from which a machine is a serial arm: heads of
+machine tools have two or three."""
 
 SPINDLE_RANGE = (-360.0 * DEG, 360.0 * DEG)
 """Range of a bracketed spindle whose machine file says nothing about it, rad."""
@@ -137,6 +139,17 @@ class Chain:
         """Names of the programmed rotary axes in chain order."""
         return tuple(ln.name for ln in self.links if ln.kind == "rotary" and ln.programmed)
 
+    @cached_property
+    def arm_joints(self) -> tuple[str, ...]:
+        """Programmed rotary axes that carry the tool, from the foundation outwards."""
+        moving = (ln for ln in self.links if ln.kind == "rotary" and ln.programmed)
+        return tuple(ln.name for ln in moving if not ln.carries_workpiece)
+
+    @property
+    def is_serial_arm(self) -> bool:
+        """Whether so many joints carry the tool that the machine is a serial arm."""
+        return len(self.arm_joints) >= ARM_JOINTS
+
     def twist_of(self, symbol: Symbol) -> Where:
         """Where a component error acts."""
         return Where("twist", self.link_index(symbol.link), symbol.component)
@@ -240,42 +253,6 @@ def _location(link: Link) -> list[int]:
     if link.kind == "linear":
         return [link.own] + [3 + i for i in others]
     return [*others, 3, 4, 5]
-
-
-def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:
-    """Axes of a chain notation as (name, carries the workpiece, programmed), workpiece to tool.
-
-    Raises:
-        BadValue: A token that is no axis, or a prime on the wrong side of the foundation.
-
-    Reference:
-        ISO 841; chain notation as in ISO 10791-6, with primes as in `[w C' B' X' f Y Z (C1) t]`.
-    """
-    tokens = notation.strip().removeprefix("[").removesuffix("]").split()
-    if len(tokens) < 3 or tokens[0] != "w" or tokens[-1] != "t" or tokens.count("f") != 1:
-        expected = "one 'w' first, one 't' last and one 'f' between, such as [w X' f Y Z t]"
-        raise BadValue("chain", f"'{notation}'", expected)
-    foundation = tokens.index("f")
-    axes: list[tuple[str, bool, bool]] = []
-    for position, token in enumerate(tokens[1:-1], start=1):
-        if token == "f":
-            continue
-        bracketed = token.startswith("(") and token.endswith(")")
-        match = _TOKEN.match(token[1:-1] if bracketed else token)
-        if match is None:
-            expected = "a letter of X Y Z U V W A B C, a prime on the workpiece side"
-            raise BadValue("chain", f"unknown axis '{token}' in '{notation}'", expected)
-        name, prime = match.groups()
-        if bool(prime) != (position < foundation):
-            side, wanted = ("workpiece", "a") if position < foundation else ("tool", "no")
-            found = f"axis '{token}' on the {side} side of f in '{notation}'"
-            raise BadValue("chain", found, f"{wanted} prime")
-        if any(name == known for known, _, _ in axes):
-            raise BadValue("chain", f"axis '{name}' twice in '{notation}'", "it once")
-        axes.append((name, bool(prime), not bracketed))
-    if not axes:
-        raise BadValue("chain", f"no axis in '{notation}'", "one at least")
-    return axes
 
 
 def _listed(values: Array) -> str:

@@ -18,6 +18,11 @@ DEFAULT_RANGES: Mapping[str, tuple[float, float]] = {
     "rotary_location": (20 * UM, 100 * UM),
     "rotary_tilt": (20 * URAD, 100 * URAD),
     "rotary_zero": (20 * URAD, 100 * URAD),
+    "arm_translation": (5 * UM, 20 * UM),
+    "arm_rotation": (20 * URAD, 200 * URAD),
+    "arm_location": (100 * UM, 500 * UM),
+    "arm_tilt": (100 * URAD, 500 * URAD),
+    "arm_zero": (200 * URAD, 2000 * URAD),
     "setup_translation": (10 * UM, 50 * UM),
     "setup_rotation": (20 * URAD, 100 * URAD),
 }
@@ -26,24 +31,26 @@ DEFAULT_RANGES: Mapping[str, tuple[float, float]] = {
 The translations of a linear axis (50 to 100 µm) and the upper end of those of a rotary axis (10 µm)
 are those of the D-MT paper's figures 2 and 3; the angular ones of a linear axis take the same
 figures in µrad, over which the paper is silent; the rest are typical of neglected machines of this
-class and are ours.
+class and are ours. Joints of a serial arm are those of an arm that was never calibrated, which
+misses by millimetres.
 """
 
 
 def error_class(chain: Chain, symbol: Symbol) -> str:
     """Class of an error parameter: one of the keys of `DEFAULT_RANGES`."""
     kind = chain.link(symbol.link).kind
+    joint = "arm" if chain.is_serial_arm and symbol.link in chain.arm_joints else "rotary"
     motion = "rotation" if symbol.is_angular else "translation"
     if symbol.family is Family.SETUP:
         return f"setup_{motion}"
     if symbol.family is Family.COMPONENT:
-        return f"{kind}_{motion}"
+        return f"{joint if kind == 'rotary' else kind}_{motion}"
     if kind == "linear":
         return "squareness" if symbol.is_angular else "linear_zero"
     if not symbol.is_angular:
-        return "rotary_location"
+        return f"{joint}_location"
     own = chain.link(symbol.link).own
-    return "rotary_zero" if symbol.component - 3 == own else "rotary_tilt"
+    return f"{joint}_zero" if symbol.component - 3 == own else f"{joint}_tilt"
 
 
 @dataclass(frozen=True)

@@ -103,7 +103,12 @@ class Model:
         """
         moved = self.relative_deviation(touches, theta)
         bias = self.contribution(touches, theta).bias
-        return -np.einsum("ni,ni->n", touches.normal, moved) + bias
+        along = np.einsum("ni,ni->n", touches.normal, moved)
+        if touches.instrument.reads_angle:
+            other = touches.opposite
+            across = np.einsum("ni,ni->n", other.normal, self.relative_deviation(other, theta))
+            along = 0.5 * (along + across)
+        return bias - along
 
 
 def columns(effects: Sequence[Effect], touches: Touches) -> Array:

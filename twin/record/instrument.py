@@ -12,6 +12,7 @@ class Instrument(Enum):
     DIAL_GAUGE = "dial-gauge"
     ENCODER = "encoder"
     CMM = "cmm"
+    AUTOCOLLIMATOR = "autocollimator"
 
     @property
     def is_ball_on_standard(self) -> bool:
@@ -20,3 +21,17 @@ class Instrument(Enum):
         A machined part that a CMM measured has no ball of this machine on it.
         """
         return self is Instrument.TOUCH_PROBE
+
+    @property
+    def reads_angle(self) -> bool:
+        """Whether it feels how the tool turns relative to the table, and no displacement.
+
+        A row then is that angle times the arm p, along n: a point seen together with the one
+        opposite, behind the origin of its set-up.
+        """
+        return self is Instrument.AUTOCOLLIMATOR
+
+    @property
+    def has_standard(self) -> bool:
+        """Whether something stands on the table that may slip."""
+        return self not in (Instrument.ENCODER, Instrument.AUTOCOLLIMATOR)

@@ -9,7 +9,16 @@ from numpy.typing import NDArray
 
 from twin.errors import ShapeMismatch
 from twin.frames import Array, apply, inverse, turn
-from twin.machine import Chain, Reach, Where, checked_readings, linear_directions, reach, tip
+from twin.machine import (
+    Chain,
+    Reach,
+    Where,
+    checked_readings,
+    linear_directions,
+    reach,
+    table_to_tool,
+    tip,
+)
 from twin.record.instrument import Instrument
 
 IntArray = NDArray[np.int64]
@@ -46,6 +55,13 @@ class Signature:
         self.place = -np.einsum("nlci,ni->nlc", reached.place, normal)
         self.shift = normal
         self.bias = np.ones(len(normal))
+
+    def paired(self, opposite: "Signature") -> "Signature":
+        """The mean with that of opposite points, whose displacements cancel."""
+        self.twist = 0.5 * (self.twist + opposite.twist)
+        self.place = 0.5 * (self.place + opposite.place)
+        self.shift = 0.5 * (self.shift + opposite.shift)
+        return self
 
     def of(self, where: Where) -> Array:
         """Deviation along the normal per unit of one entry, (N,)."""
@@ -183,7 +199,19 @@ class Touches:
     @cached_property
     def signature(self) -> Signature:
         """First-order deviation along the normal per unit of every entry of a contribution."""
-        return Signature(self.reach, self.normal_table)
+        own = Signature(self.reach, self.normal_table)
+        if not self.instrument.reads_angle:
+            return own
+        other = self.opposite
+        return own.paired(Signature(other.reach, other.normal_table))
+
+    @cached_property
+    def opposite(self) -> "Touches":
+        """The points behind the origin of every set-up, and what of the tool is there."""
+        point = -self.point
+        tool = inverse(table_to_tool(self.chain, self.q))
+        at = apply(tool, apply(self.T_table_artefact, point))
+        return replace(self, point=point, normal=-self.normal, offset=at[:, :2], length=-at[:, 2])
 
 
 MAPS = ("temperature", "value")

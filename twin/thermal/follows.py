@@ -89,7 +89,8 @@ class Follows:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(f"{self.symbol.title} that follows {self.column}", self.symbol.link)
+        column = self.column.removesuffix("_1").replace("_", " ")
+        return Title(f"{self.symbol.title} that follows {column}", self.symbol.link)
 
     @property
     def parameters(self) -> Sequence[Parameter]:

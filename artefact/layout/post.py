@@ -1,8 +1,8 @@
 """How stiff the post under a ball is, and how wide its foot has to be.
 
-A post is a cone frustum of radius ``b`` at the ball's centre and ``a`` at its foot, ``L`` below. Under
-a force across it at the ball the compliance is the sum of bending, shear, and the turn of the foot in
-the plate, which is taken as a half space under a rigid disc:
+A post is a cone frustum of radius ``b`` at the ball's centre and ``a`` at its foot, ``L`` below.
+Under a force across it at the ball the compliance is the sum of bending, shear, and the turn of the
+foot in the plate, which is taken as a half space under a rigid disc:
 
     bending   4 L^3 / (3 pi E a^3 b)
     shear     L / (kappa G pi a b),  kappa = 0.9
@@ -11,7 +11,7 @@ the plate, which is taken as a half space under a rigid disc:
 The first two are the integrals of ``s^2 / E I(s)`` and ``1 / kappa G A(s)`` along the taper.
 
 Reference:
-    Timoshenko and Gere, Mechanics of Materials, ch. 9; Johnson, Contact Mechanics (1985), 3.2 (foot).
+    Timoshenko and Gere, Mechanics of Materials, ch. 9; the foot: Johnson, Contact Mechanics (1985).
 """
 
 import numpy as np

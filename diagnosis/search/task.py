@@ -1,0 +1,71 @@
+"""What is diagnosed: a run, the model to begin with, and what is believed of both."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from diagnosis.evidence import ScaledEffect
+from diagnosis.fit import Fit, Prior, fit_run, prior_for
+from diagnosis.regression import GrossErrors, Memory
+from twin.model import Model
+from twin.record import Run
+
+FREEDOM = 3.0
+"""Factor on the prior of a found effect in its last fit: being found tells more of its size than
+what is usual, and an estimate shall not be drawn to zero."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DiagnosisTask:
+    """What is diagnosed: a run, the starting model, and what is believed of it.
+
+    Attributes:
+        model: Machine and effects of the starting model.
+        prior: Of its parameters.
+        is_known: Whether the prior is an earlier fit, rather than what is usual.
+        memory: Of the noise; None for white noise.
+        alone: Prior of the starting model by itself, where `prior` is what suits it beside effects.
+    """
+
+    run: Run
+    model: Model
+    prior: Prior
+    is_known: bool = False
+    memory: Memory | None = None
+    alone: Prior | None = None
+
+    def fit(
+        self,
+        effects: Sequence[ScaledEffect] = (),
+        gross: GrossErrors | None = None,
+        beside: Fit | None = None,
+    ) -> Fit:
+        """The model with further effects, fitted; `gross` and `beside` as in `fit_run`."""
+        model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
+        prior = self.prior if effects or self.alone is None else self.alone
+        for sized in effects:
+            prior = prior.joined(self.found_prior(sized))
+        return fit_run(self.run, model, prior, None, gross, self.memory, beside)
+
+    def suited(self, effects: Sequence[ScaledEffect]) -> "DiagnosisTask":
+        """The same with the prior that suits the machine once these effects are in the model.
+
+        What an effect does, errors of the machine seem to do as long as it is missing.
+
+        Args:
+            effects: Everything that was found or added.
+        """
+        if self.is_known or not effects:
+            return self
+        model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))
+        stated = Prior.of_effects(self.model.effects)
+        for sized in effects:
+            stated = stated.joined(self.found_prior(sized))
+        found = prior_for(self.run, model, None, self.memory, stated)
+        own = slice(len(self.prior))
+        narrowed = None if found.narrowed is None else found.narrowed[own]
+        prior = Prior(found.mean[own], found.root[own, own], narrowed)
+        return replace(self, prior=prior, alone=self.prior)
+
+    def found_prior(self, sized: ScaledEffect) -> Prior:
+        """Of the parameters of an effect that was added."""
+        return Prior.of_effects([sized.effect]).widened(FREEDOM * sized.scale)

@@ -1,0 +1,82 @@
+"""Instruments of angles: rotary tables under an autocollimator, and what they cannot feel."""
+
+import numpy as np
+import pytest
+
+from diagnosis.fit.identification import fit_run
+from diagnosis.geometry.learnt import geometry_rows
+from twin.files.run_file import read_run
+from twin.files.run_writer import run_text
+from twin.foreign.positioning import (
+    PositioningTest,
+    one_axis_machine,
+    positioning_run,
+    read_positioning,
+)
+from twin.foreign.sheet import read_sheet
+from twin.library.ordinary import ordinary_model
+from twin.machine.chain import Axis, make_chain
+from twin.units import DEG, UM, URAD
+
+ARCSEC = DEG / 3600.0
+
+
+@pytest.fixture(scope="module")
+def tilting():
+    """A table beside other axes, whose line stands anywhere."""
+    axes = {
+        "C": Axis(range=(-3.0, 3.0), point=(30.0, -20.0, 5.0)),
+        "X": Axis(range=(-100.0, 100.0)),
+        "Z": Axis(range=(-100.0, 100.0)),
+    }
+    chain = make_chain("table", "[w C' f X Z t]", axes, (10.0, 40.0, -60.0))
+    angles = np.linspace(-2.9, 2.9, 9)
+    whole = np.ones(len(angles), dtype=int)
+    test = PositioningTest("C", angles, 2e-5 * whole, whole, whole, np.arange(len(angles)))
+    return positioning_run(test, chain, 1e-3)
+
+
+def test_a_table_of_angles_tells_its_first_harmonic(tmp_path):
+    """It feels no eccentric clamping: the wave is the axis's own, and reversal its half."""
+    angles = np.arange(0.0, 360.0, 30.0)
+    wave = 4.0 * np.sin(angles * DEG + 0.4)
+    rows = [f"{a},{w + 0.5:.3f},{w - 0.5:.3f}" for a, w in zip(angles, wave, strict=True)]
+    text = "\n".join(["Target [deg],1 up [arcsec],1 down [arcsec]", *rows])
+    (tmp_path / "table.csv").write_text(text)
+    test = read_positioning(read_sheet(tmp_path / "table.csv"), "C")
+    run = positioning_run(test, one_axis_machine("C", test.target), 0.5 * URAD)
+    told = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(run.touches.chain)))}
+    assert list(told) == ["ECC"]
+    wanted = np.ptp(4.0 * np.sin(np.linspace(0.0, 330.0, 400) * DEG + 0.4)) * ARCSEC
+    assert told["ECC"].estimate.value == pytest.approx(wanted, rel=0.01)
+    assert told["ECC"].is_determined
+
+
+def test_columns_are_differences_of_the_exact_chain(tilting):
+    model, touches = ordinary_model(tilting.touches.chain), tilting.touches
+    G, step = model.columns(touches), 1e-6
+    for k, name in enumerate(model.names):
+        theta = step * np.eye(len(model.parameters))[k]
+        exact = (model.deviation(touches, theta) - model.deviation(touches, -theta)) / (2.0 * step)
+        np.testing.assert_allclose(G[:, k], exact, atol=1e-4, err_msg=name)
+    parts = [name.split("(")[1] for name in model.names]
+    felt = {s[:3] for s, g in zip(parts, G.T, strict=True) if np.abs(g).max() > 1e-6}
+    assert {"ECC", "EC0"} <= felt
+    assert all(symbol[1] in "ABC" for symbol in felt)
+
+
+def test_the_sign_is_that_of_a_zero(tilting):
+    """Beyond its target by 20 µrad at every angle is a zero that adds to the reading."""
+    model, touches = ordinary_model(tilting.touches.chain), tilting.touches
+    theta = np.array([20.0 * URAD * (n == "location(EC0C)") for n in model.names])
+    np.testing.assert_allclose(model.deviation(touches, theta), tilting.deviation, atol=1e-6)
+    assert tilting.deviation == pytest.approx(-20.0 * UM)
+
+
+def test_it_is_read_again_as_it_was_written(tilting, tmp_path):
+    (tmp_path / "run.csv").write_text(run_text(tilting, "machine.toml"))
+    again = read_run(tmp_path / "run.csv", tilting.touches.chain)
+    model = ordinary_model(tilting.touches.chain)
+    before, after = model.columns(tilting.touches), model.columns(again.touches)
+    np.testing.assert_allclose(after, before, atol=1e-5)
+    assert any("1 µm is 1 µrad" in remark for remark in again.remarks)

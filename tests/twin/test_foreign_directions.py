@@ -1,0 +1,100 @@
+"""Directions of approach as tables tell them, and the figures of ISO 230-2 made of them by hand."""
+
+import numpy as np
+import pytest
+
+from matstd.cli import main
+from twin.errors import BadFile
+from twin.foreign.acceptance import positioning_figures
+from twin.foreign.axis_log import approaches
+from twin.foreign.positioning import read_positioning
+from twin.foreign.sheet import read_sheet
+from twin.units import UM
+
+PARTS = """# test of X
+
+Data forward direction
+
+i |target [mm]|ref_pos(i,1) [mm]|ref_pos(i,2) [mm]|
+--- |--- |--- |--- |
+1|0.0|0.001|0.003|
+2|10.0|10.004|10.006|
+
+Data backward direction
+
+i |target [mm]|ref_pos(i,1) [mm]|ref_pos(i,2) [mm]|
+--- |--- |--- |--- |
+1|0.0|-0.004|-0.002|
+2|10.0|10.001|10.003|
+"""
+
+
+def positioning(tmp_path, text):
+    path = tmp_path / "table.csv"
+    path.write_text(text, encoding="utf-8")
+    return read_positioning(read_sheet(path), "X")
+
+
+@pytest.mark.parametrize(
+    ("up", "down"),
+    [("up", "down"), ("fwd", "bwd"), ("vor", "zurück"), ("+", "-"), ("pos", "neg"), ("↑", "↓")],
+)
+def test_words_of_directions(tmp_path, up, down):
+    text = f"target [mm];1 {up} [µm];1 {down} [µm]\n0;1;2\n10;3;4\n"
+    test = positioning(tmp_path, text)
+    assert test.deviation[test.direction > 0] / UM == pytest.approx([1.0, 3.0])
+    assert test.deviation[test.direction < 0] / UM == pytest.approx([2.0, 4.0])
+
+
+def test_a_word_that_tells_no_direction_beside_others_is_refused(tmp_path):
+    text = "target [mm];1 up [µm];1 xyz [µm]\n0;1;2\n10;3;4\n"
+    with pytest.raises(BadFile, match=r"column '1 xyz \[µm\]', expected up or down"):
+        positioning(tmp_path, text)
+
+
+def test_a_table_in_two_parts_says_which_is_which(tmp_path):
+    test = positioning(tmp_path, PARTS)
+    for sign, expected in ((1, [1.0, 4.0, 3.0, 6.0]), (-1, [-4.0, 1.0, -2.0, 3.0])):
+        own = test.direction == sign
+        assert test.deviation[own] / UM == pytest.approx(expected)
+        assert test.cycle[own].tolist() == [1, 1, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("targets", "signs", "cycles"),
+    [
+        ([0, 1, 2, 3, 3, 2, 1, 0, 0, 1], [1, 1, 1, 1, -1, -1, -1, -1, 1, 1], [1] * 8 + [2, 2]),
+        ([0, 1, 2, 3, 2, 1, 0, 1], [1, 1, 1, 1, -1, -1, -1, 1], [1] * 7 + [2]),
+        ([0, 1, 2, 3, 4, 0, 1, 2, 3, 4], [1] * 10, [1] * 5 + [2] * 5),
+        ([0, 0, 0, 1, 1, 1, 2, 2, 2], [0] * 9, [1] * 9),
+    ],
+    ids=["turn twice", "turn once", "one way", "sorted"],
+)
+def test_the_order_of_rows_tells_directions(targets, signs, cycles):
+    sign, cycle = approaches(np.array(targets, dtype=float))
+    assert sign.tolist() == signs
+    assert cycle.tolist() == cycles
+
+
+def test_figures_of_the_standard_by_hand(tmp_path):
+    """Means 2, 5 up and -3, 2 down, every estimator sqrt(2) µm."""
+    found = positioning_figures(positioning(tmp_path, PARTS))
+    s = np.sqrt(2.0)
+    assert found.reversal / UM == pytest.approx(5.0)
+    assert found.mean_reversal / UM == pytest.approx(4.0)
+    assert found.mean_range / UM == pytest.approx(4.0)
+    assert found.systematic / UM == pytest.approx(8.0)
+    assert found.repeatability / UM == pytest.approx(4.0 * s + 5.0)
+    assert found.accuracy / UM == pytest.approx(8.0 + 4.0 * s)
+
+
+def test_import_tells_the_figures_and_what_is_missing(tmp_path, capsys):
+    path = tmp_path / "parts.md"
+    path.write_text(PARTS, encoding="utf-8")
+    arguments = ["--positioning", "X", "--u-um", "1", "-o", str(tmp_path / "a.csv")]
+    assert main(["import", str(path), *arguments]) == 0
+    told = capsys.readouterr().out
+    assert "ISO 230-2: reversal B 5 µm (mean 4), M 4, E 8, R 10.7, A 13.7 µm" in told
+    path.write_text("target [mm],1 [µm],2 [µm]\n0,1,2\n10,3,4\n", encoding="utf-8")
+    assert main(["import", str(path), *arguments, "--force"]) == 0
+    assert "no direction of approach is stated" in capsys.readouterr().out
