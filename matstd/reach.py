@@ -11,7 +11,7 @@ import numpy as np
 
 from artefact.body import DatumSphere, Standard
 from artefact.brief import Project
-from artefact.layout import WALL_GAP
+from artefact.layout import least_gap
 from artefact.place import room_for
 from artefact.reach import (
     ANGLE,
@@ -174,7 +174,8 @@ def check_room(project: Project, folder: Path, poses: Array) -> None:
     save(draw_room(room.faces, patches, made), folder / ROOM_PICTURE)
     raise NotBuildable(
         f"only {len(room.faces)} of {patches} patches fit on the blank side by side, of "
-        f"{room.tried} places tried; between them a cutter has to pass, {WALL_GAP:g} mm",
+        f"{room.tried} places tried; between two of them cutter and probe need "
+        f"{least_gap(made.limits):g} mm",
         fitting=len(room.faces),
     )
 

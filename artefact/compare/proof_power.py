@@ -106,6 +106,6 @@ def proof_power(
 
 
 def _estimator(W: Array, C: Array) -> Array:
-    """What a deviation in units of the noise adds to the estimates in units of the prior, (P, N)."""
+    """What a deviation in units of noise adds to the estimates in units of the prior, (P, N)."""
     known = np.linalg.solve(np.eye(len(W)) + C @ C.T, W)
     return np.asarray(np.linalg.solve(np.eye(W.shape[1]) + W.T @ known, known.T))

@@ -9,7 +9,6 @@ from artefact.layout.rival_artefacts import rivals, with_spheres
 from artefact.layout.side_by_side import most_side_by_side
 from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
 from artefact.layout.upright import (
-    WALL_GAP,
     balls_fit,
     balls_on_posts,
     beside_holes,
@@ -17,10 +16,10 @@ from artefact.layout.upright import (
     faces_fit,
     freeform_faces,
     holes_on,
+    least_gap,
 )
 
 __all__ = [
-    "WALL_GAP",
     "Blank",
     "Fittings",
     "Site",
@@ -31,6 +30,7 @@ __all__ = [
     "faces_fit",
     "freeform_faces",
     "holes_on",
+    "least_gap",
     "most_side_by_side",
     "rivals",
     "standard_from_sites",

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from artefact.body import (
     DatumSphere,
     FreeformPatch,
+    Limits,
     MountingHole,
     graph_patch,
     outline_distance,
@@ -45,6 +46,7 @@ _LOWEST_BALL = 15.0  # mm between the base and a ball, for the probe to come bes
 _HIGHEST_BALL = 0.7  # of the blank's height, centre of a ball at most
 _TO_HOLE = 6.0  # mm between a counterbore and a body: fillet of its foot, and the key
 _WALL = 5.0  # mm between a counterbore and the outline
+_APART = 60.0  # mm between two holes at least: nearer ones let a standard rock
 _STEP = 2.0  # mm, in which places of holes are tried
 _TRIES = 50  # draws for each place
 
@@ -141,7 +143,7 @@ def holes_on(blank: Blank) -> tuple[MountingHole, ...]:
     standard rests on the pads round its holes, so three of them never rock.
 
     Raises:
-        NotBuildable: No two slots are within base and table.
+        NotBuildable: Base, table and slots leave no room for them.
     """
     fit, base, limits = blank.fittings, blank.base, blank.limits
     xs = np.arange(0.0, base.half_size[0], _STEP)
@@ -154,11 +156,14 @@ def holes_on(blank: Blank) -> tuple[MountingHole, ...]:
     x, y = x[good], y[good]
     alone = x == 0.0
     pair, third = np.column_stack([x, y])[~alone], y[alone]
-    if not len(pair) or not len(third):
-        raise NotBuildable("no three screw holes are within base, table and its slots")
     side = 2.0 * pair[:, :1] + 0.0 * third
     leg = np.hypot(pair[:, :1], pair[:, 1:] - third)
-    best = np.unravel_index(np.argmax(np.minimum(side, leg) + 1e-3 * leg), side.shape)
+    apart = np.minimum(side, leg)
+    if apart.max(initial=0.0) < _APART:
+        raise NotBuildable(
+            f"no three screw holes {_APART:g} mm apart are within base, table and its slots"
+        )
+    best = np.unravel_index(np.argmax(apart + 1e-3 * leg), side.shape)
     (px, py), ty = pair[best[0]], third[best[1]]
     places = [(-px, py), (px, py), (0.0, ty)]
     return tuple(
@@ -169,12 +174,19 @@ def holes_on(blank: Blank) -> tuple[MountingHole, ...]:
     )
 
 
-def faces_fit(faces: Sequence[FreeformPatch], holes: Sequence[MountingHole]) -> Pairs:
+def least_gap(limits: Limits) -> float:
+    """Between two pillars, for the cutter and the probe's ball, mm."""
+    return max(WALL_GAP, 2.0 * limits.ball_radius + limits.gap)
+
+
+def faces_fit(
+    faces: Sequence[FreeformPatch], holes: Sequence[MountingHole], limits: Limits
+) -> Pairs:
     """Which pillars can stand beside each other, (F, F); one over a hole fits beside nothing."""
     middle = np.stack([p.T_artefact_patch[:2, 3] for p in faces])
     half = np.array([p.half_size for p in faces])
     beyond = np.abs(middle[:, None] - middle) - half[:, None] - half
-    out: Pairs = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) >= WALL_GAP
+    out: Pairs = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) >= least_gap(limits)
     for hole in holes:
         blocked = _to_pillar(faces, np.array([[hole.x, hole.y]]))[0] < hole.bore_radius + _TO_HOLE
         out[blocked, :] = out[:, blocked] = False

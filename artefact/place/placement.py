@@ -7,8 +7,8 @@ held back from the identification, and a model that is wrong shows on them (`art
 
 Candidate faces and balls stand all over the blank; every touch that could be made on them at some
 table poses is a row ``n^T J`` times the shape functions of the expected errors. Balls, then faces
-between them, then poses, then single touches are chosen so that the tool point can be predicted best
-over the user's poses, and the finished body is measured against every limit.
+between them, then poses, then single touches are chosen so that the tool point can be predicted
+best over the user's poses, and the finished body is measured against every limit.
 """
 
 from dataclasses import dataclass, field, replace
@@ -27,13 +27,13 @@ from artefact.compare import (
     random_lots,
 )
 from artefact.layout import (
-    WALL_GAP,
     Blank,
     beside_holes,
     faces_beside,
     faces_fit,
     freeform_faces,
     holes_on,
+    least_gap,
     most_side_by_side,
 )
 from artefact.place.proving import proving_touches
@@ -246,7 +246,7 @@ def _standard(
     holes = holes_on(blank)
     faces = freeform_faces(blank, options.patches, options.sites, rng)
     balls = places.best(options.balls, options.choice.touches, beside_holes(places.balls, holes))
-    fits = faces_fit(faces, holes)
+    fits = faces_fit(faces, holes, blank.limits)
     few = spread_poses(poses, 20)
     wanted = joined([each_at(p, face_grid(p.half_size, 3)[::2], few) for p in faces])
     wanted = wanted[criterion.reach.is_reachable(wanted)]
@@ -257,7 +257,7 @@ def _standard(
         )
     W, group = criterion.rows(wanted), wanted.feature.astype(np.int64)
     take = max(4, options.choice.proof // options.patches)
-    refused = f"between two bodies a cutter has to pass, {WALL_GAP:g} mm"
+    refused = f"between two of them cutter and probe need {least_gap(blank.limits):g} mm"
     binding: list[str] = []
     for _ in range(_REBUILDS):
         while True:

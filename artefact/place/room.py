@@ -53,5 +53,5 @@ def room_for(
     faces = [faces[i] for i in np.flatnonzero(tried.reached.any(axis=1))]
     if not faces:
         return Room((), 0)
-    found = most_side_by_side(faces_fit(faces, holes_on(blank)), patches)
+    found = most_side_by_side(faces_fit(faces, holes_on(blank), blank.limits), patches)
     return Room(tuple(faces[i] for i in found), len(faces))

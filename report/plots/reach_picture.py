@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from artefact.body import FreeformPatch
-from artefact.layout import WALL_GAP, Blank
+from artefact.layout import Blank, least_gap
 from artefact.reach import ANGLE, Limit, PlacesInReach
 from report.style import BLUE, INK, RED, figure, plain
 from twin.machine import Chain
@@ -117,8 +117,8 @@ def draw_room(faces: Sequence[FreeformPatch], wanted: int, blank: Blank) -> Figu
     """
     drawn = figure(5.0)
     drawn.suptitle(
-        f"{len(faces)} of {wanted} patches fit side by side: between them a cutter has to pass, "
-        f"{WALL_GAP:g} mm",
+        f"{len(faces)} of {wanted} patches fit side by side: between two of them cutter and "
+        f"probe need {least_gap(blank.limits):g} mm",
         color=INK,
     )
     a, b = blank.base.half_size

@@ -39,7 +39,8 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
         ("hsm600u-machine.toml", "machine.toml"),
         ("poses = 2000", "poses = 300"),
         ("draws = 2000", "draws = 300"),
-        ("patches = 10", "patches = 8"),
+        ("patches = 6 ", "patches = 5 "),
+        ("# proof_touches = 160", "proof_touches = 60"),
         ("touches = 480", f"touches = {touches}"),
         ("poses = 30 ", f"poses = {poses} "),
         ("machines = 3", f"machines = {machines}"),
@@ -135,7 +136,7 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("X = [-150.0, 150.0]", "X = [150.0, -150.0]", "workspace.X"),
         ("X = [-150.0, 150.0]", "Q = [-150.0, 150.0]", "workspace.Q"),
         ("X = [-150.0, 150.0]", "X = [-900.0, 150.0]", "within the travel"),
-        ("patches = 8", "patches = 3", "standard.patches"),
+        ("patches = 5", "patches = 2", "standard.patches"),
         ("noise_um = 1.0", "noise_um = nan", "simulation.noise_um"),
         ("noise_um = 1.0", "noises = 1.0", "simulation.noises"),
         ("# [errors.classes]", "[errors.classes]\nspeed = [1.0, 2.0]", "errors.classes.speed"),
@@ -158,7 +159,7 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("max_mass_kg = 60.0", "max_mass_kg = 5.0", "more than 18.3 kg"),
         ("\nradius_mm = 3.0", "\nradius_mm = 20.0", "limits.min_concave_radius_mm"),
         ("gap_mm = 1.0", "gap_mm = -1.0", "limits.gap_mm"),
-        ("gap_mm = 1.0", "gap_mm = 60.0", "8 patches fit on the blank; between them the ball"),
+        ("gap_mm = 1.0", "gap_mm = 60.0", "of 5 patches fit on the blank side by side"),
         ("B = [-90.0, 20.0]", "B = [28.0, 30.0]", "leave no room: they are approached"),
     ],
 )
@@ -223,7 +224,7 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
     assert made.base.half_size == (120.0, 100.0)
     assert made.height == 180.0
     assert max(made.fittings.sphere_heights) < 180.0
-    assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0)
+    assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0, 130.0)
     assert probe_reach(project).table_radius == 130.0
 
 
@@ -232,7 +233,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert placement_options(read_project(path)) == PlacementOptions(
-        name="FFS-600U", serial="001", patches=8, choice=TouchOptions(touches=120, poses=10)
+        name="FFS-600U", serial="001", patches=5, choice=TouchOptions(120, 10, 60)
     )
     plain = re.sub(
         r"(?m)^(criterion|potential|drawn_machines|worst_share|poses = 10).*\n", "", text
@@ -246,7 +247,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
             wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
         path.write_text(wanted.replace("poses = 10 ", "poses = 12 "))
         options = placement_options(read_project(path))
-        assert options.choice == TouchOptions(touches=120, poses=12)
+        assert options.choice == TouchOptions(120, 12, 60)
         assert options.criterion == CriterionOptions(criterion, 0.1, 8, 0.5)
 
 
