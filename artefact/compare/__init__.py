@@ -5,7 +5,13 @@ can and cannot know (`IdentifiabilityReport`), with what would resolve it.
 """
 
 from artefact.compare.alternatives import Alternative
-from artefact.compare.comparison import Rival, compare, evaluated, prior_rms, random_lots
+from artefact.compare.comparison import (
+    Rival,
+    compare,
+    evaluated,
+    prior_rms,
+    random_lots,
+)
 from artefact.compare.identifiability import (
     Alone,
     IdentifiabilityReport,

@@ -6,7 +6,7 @@ import numpy as np
 
 from artefact.body import Standard
 from artefact.layout import Blank, rivals, with_spheres
-from artefact.reach import Requests, joined
+from artefact.reach import Requests, joined, spread_poses
 from artefact.worth import (
     BallPlaces,
     Criterion,
@@ -51,6 +51,7 @@ class Rival:
         estimable: Combinations of parameters that are determined (effective degrees of freedom).
         visible: Effects of the library, of those that any touches could show, that these show.
         could_be_visible: Number of effects that any touches could show.
+        value: Of the criterion that the touches were chosen by.
         touches: What it is judged by.
         available: Number of different touches among which they were chosen; with fewer than are
             compared, some are made more than once.
@@ -66,6 +67,7 @@ class Rival:
     estimable: float
     visible: int
     could_be_visible: int
+    value: float
     touches: Requests
     available: int
     body: Standard | None = None
@@ -90,7 +92,7 @@ def evaluated(
         available: Number of different touches among which they were chosen.
         body: What is touched; None for scatter that no body has.
     """
-    after = _posterior(criterion, chosen)
+    after, rows = _posterior(criterion, chosen), criterion.rows(chosen)
     over = after.predicted_sd(criterion.tip_volume)
     of_user = after.predicted_sd(criterion.tip_user)
     by_chance = [
@@ -106,6 +108,7 @@ def evaluated(
         estimable=after.degrees_of_freedom,
         visible=library.shown(criterion, chosen),
         could_be_visible=len(library.effects),
+        value=criterion.objective.value(rows.T @ rows),
         touches=chosen,
         available=available,
         body=body,
@@ -139,7 +142,6 @@ def compare(
     criterion: Criterion,
     places: BallPlaces | None,
     all_poses: Array,
-    poses: Array,
     blank: Blank,
     options: TouchOptions,
     library: Visibility,
@@ -155,7 +157,6 @@ def compare(
     Args:
         places: That balls may have; None where the machine touches none.
         all_poses: Table poses that bodies choose from, (K, R), rad.
-        poses: Table poses of the scatter.
         blank: Base, blank and limits of the standard.
         options: Numbers of touches and poses.
         library: Effects of the library that touches could show.
@@ -184,7 +185,7 @@ def compare(
             continue
         lots = random_lots(tried, options.touches, rng)
         out.append(evaluated(name, here, chosen, lots, library, _different(tried), body))
-    tried = _scatter(criterion, poses, rng)
+    tried = _scatter(criterion, spread_poses(all_poses, options.poses), rng)
     lots = random_lots(tried, options.touches, rng)
     for name, objective in (("I", criterion.objectives["I"]), ("D", criterion.objectives["D"])):
         chosen = chosen_touches(criterion, objective, tried, options)

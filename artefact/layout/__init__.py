@@ -11,7 +11,6 @@ from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
 from artefact.layout.upright import (
     balls_fit,
     balls_on_posts,
-    beside_holes,
     faces_beside,
     faces_fit,
     freeform_faces,
@@ -25,7 +24,6 @@ __all__ = [
     "Site",
     "balls_fit",
     "balls_on_posts",
-    "beside_holes",
     "faces_beside",
     "faces_fit",
     "freeform_faces",

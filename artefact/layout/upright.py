@@ -47,7 +47,7 @@ _HIGHEST_BALL = 0.7  # of the blank's height, centre of a ball at most
 _TO_HOLE = 6.0  # mm between a counterbore and a body: fillet of its foot, and the key
 _WALL = 5.0  # mm between a counterbore and the outline
 _APART = 60.0  # mm between two holes at least: nearer ones let a standard rock
-_STEP = 2.0  # mm, in which places of holes are tried
+_STEP = 7.0  # mm, in which places of holes are tried
 _TRIES = 50  # draws for each place
 
 
@@ -136,8 +136,8 @@ def _widest(ball: DatumSphere) -> float:
     return max(ball.radius, ball.foot_radius)
 
 
-def holes_on(blank: Blank) -> tuple[MountingHole, ...]:
-    """Three screw holes as far apart as base, table and its slots allow.
+def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingHole, ...]:
+    """Three screw holes as far apart as base, table, its slots and some balls allow.
 
     Two stand on one slot, the third on another; the slots run along x, one through the middle. A
     standard rests on the pads round its holes, so three of them never rock.
@@ -146,31 +146,29 @@ def holes_on(blank: Blank) -> tuple[MountingHole, ...]:
         NotBuildable: Base, table and slots leave no room for them.
     """
     fit, base, limits = blank.fittings, blank.base, blank.limits
-    xs = np.arange(0.0, base.half_size[0], _STEP)
-    reach = int(base.half_size[1] // (limits.slot_pitch or _STEP))
-    ys = np.arange(-reach, reach + 1) * (limits.slot_pitch or _STEP)
-    x, y = (v.ravel() for v in np.meshgrid(xs, ys, indexing="ij"))
-    inset = -outline_distance(np.column_stack([x, y]), base.half_size, base.corner_radius)
+    pitch = limits.slot_pitch or _STEP
+    ys = np.arange(-(base.half_size[1] // pitch), base.half_size[1] // pitch + 1) * pitch
+    xs = np.arange(-(base.half_size[0] // _STEP), base.half_size[0] // _STEP + 1) * _STEP
+    places = np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1).reshape(-1, 2)
+    inset = -outline_distance(places, base.half_size, base.corner_radius)
     good = inset >= fit.bore_radius + _WALL
-    good &= np.hypot(x, y) <= limits.table_radius - TABLE_RIM - fit.hole_radius
-    x, y = x[good], y[good]
-    alone = x == 0.0
-    pair, third = np.column_stack([x, y])[~alone], y[alone]
-    side = 2.0 * pair[:, :1] + 0.0 * third
-    leg = np.hypot(pair[:, :1], pair[:, 1:] - third)
-    apart = np.minimum(side, leg)
-    if apart.max(initial=0.0) < _APART:
+    good &= np.hypot(*places.T) <= limits.table_radius - TABLE_RIM - fit.hole_radius
+    for ball in balls:
+        apart = np.hypot(*(places - ball.centre[:2]).T)
+        good &= apart >= _widest(ball) + fit.bore_radius + _TO_HOLE
+    mirrored = good.reshape(len(xs), -1)[::-1].reshape(-1)
+    pair, third = places[good & mirrored & (places[:, 0] > 0.0)], places[good]
+    legs = [np.linalg.norm(pair[:, None] * [s, 1.0] - third, axis=-1) for s in (-1.0, 1.0)]
+    least = np.minimum(np.minimum(*legs), 2.0 * pair[:, :1])
+    if least.max(initial=0.0) < _APART:
         raise NotBuildable(
             f"no three screw holes {_APART:g} mm apart are within base, table and its slots"
         )
-    best = np.unravel_index(np.argmax(apart + 1e-3 * leg), side.shape)
-    (px, py), ty = pair[best[0]], third[best[1]]
-    places = [(-px, py), (px, py), (0.0, ty)]
+    first, last = np.unravel_index(np.argmax(least + 1e-3 * (legs[0] + legs[1])), least.shape)
+    (x, y), bore = pair[first], (fit.hole_radius, fit.bore_radius, fit.bore_depth)
     return tuple(
-        MountingHole(
-            f"HOLE{i}", float(a), float(b), fit.hole_radius, fit.bore_radius, fit.bore_depth
-        )
-        for i, (a, b) in enumerate(places, 1)
+        MountingHole(f"HOLE{i}", float(a), float(b), *bore)
+        for i, (a, b) in enumerate([(-x, y), (x, y), third[last]], 1)
     )
 
 
@@ -199,16 +197,6 @@ def balls_fit(balls: Sequence[DatumSphere], blank: Blank) -> Pairs:
     apart = np.linalg.norm(across[:, None] - across, axis=-1)
     least = np.maximum(widest[:, None] + widest + WALL_GAP, _probe_room(blank) + widest)
     return np.asarray(apart >= least)
-
-
-def beside_holes(balls: Sequence[DatumSphere], holes: Sequence[MountingHole]) -> NDArray[np.bool_]:
-    """Which posts leave room for screws and key, (B,)."""
-    across, widest = np.stack([b.centre[:2] for b in balls]), np.array([_widest(b) for b in balls])
-    free = np.ones(len(balls), dtype=bool)
-    for hole in holes:
-        apart = np.hypot(*(across - [hole.x, hole.y]).T)
-        free &= apart >= widest + hole.bore_radius + _TO_HOLE
-    return free
 
 
 def faces_beside(

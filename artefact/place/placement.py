@@ -14,9 +14,8 @@ best over the user's poses, and the finished body is measured against every limi
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from artefact.body import Base, DatumSphere, FreeformPatch, MountingHole, Standard, constraints
+from artefact.body import Base, DatumSphere, Standard
 from artefact.compare import (
     Power,
     Rival,
@@ -26,18 +25,10 @@ from artefact.compare import (
     proof_power,
     random_lots,
 )
-from artefact.layout import (
-    Blank,
-    beside_holes,
-    faces_beside,
-    faces_fit,
-    freeform_faces,
-    holes_on,
-    least_gap,
-    most_side_by_side,
-)
+from artefact.layout import Blank, with_spheres
+from artefact.place.body_choice import BodyChoice, body_choice
 from artefact.place.proving import proving_touches
-from artefact.reach import ProbeReach, Requests, joined, spread_poses
+from artefact.reach import Mask, ProbeReach, Requests, joined
 from artefact.worth import (
     BallPlaces,
     Criterion,
@@ -47,9 +38,7 @@ from artefact.worth import (
     chosen_poses,
     chosen_touches_on,
     criterion_for,
-    each_at,
     error_shares,
-    face_grid,
     parameter_symbols,
     random_touches,
     table_poses,
@@ -57,20 +46,18 @@ from artefact.worth import (
     visibility,
 )
 from information.criteria import whitened
-from information.selection import Certificate, best_groups
+from information.selection import Certificate
 from sensitivity.first_order import Workspace
 from sensitivity.population import Population
 from twin.compute import Progress, silent
 from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
-from twin.record import IntArray
 from twin.units import UM
 
 __all__ = ["Placement", "PlacementOptions", "design_standard"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
-_REBUILDS = 8  # choices of faces tried before giving up
-_FEWEST_BALLS = 3  # a set-up has six unknowns, and a ball alone hides every turn about it
+_BASES = 3  # sets of balls tried at most
 
 
 @dataclass(frozen=True)
@@ -186,29 +173,28 @@ def design_standard(
     progress("placement", 1, 6)
     all_poses = table_poses(criterion, choice.poses) if poses_to_try is None else poses_to_try
     places = ball_places(criterion.plain, blank, all_poses, rng)
-    standard = _standard(criterion.plain, places, blank, all_poses, options, rng)
+    bodies = body_choice(criterion.plain, blank, all_poses, options.patches, options.sites, rng)
     progress("placement", 2, 6)
-    identifying = replace(standard, patches=())
-    here, balls = criterion.on(identifying), standard.spheres
-    poses = chosen_poses(criterion.plain.on(identifying), standard, balls, all_poses, choice)
-    tried = touches_to_choose_from(reach, standard, balls, poses, choice.touches)
-    chosen, nearness = chosen_touches_on(here, tried, choice)
-    requests = tried[chosen]
-    progress("placement", 3, 6)
+    free = random_touches(
+        reach, criterion.volume, criterion.rotary, max(choice.touches, _FREE), rng
+    )
+    library = visibility(criterion, free)
+    rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
+    progress("placement", 4, 6)
+    bases = _bases(criterion.plain, rivals, places, all_poses, options)
+    found = _identifying(criterion, bodies, bases, options)
+    standard, tried, chosen = found.standard, found.tried, found.chosen
+    requests, poses = tried[chosen], found.poses
+    here = criterion.on(replace(standard, patches=()))
     whole = criterion.on(standard)
     on_faces = touches_to_choose_from(reach, standard, standard.patches, poses, choice.proof)
     proof = proving_touches(whole, on_faces, requests, choice.proof)
     more = proving_touches(whole, tried[~chosen], requests, choice.proof)
     standard = _with_shares(criterion, standard, proof)
-    progress("placement", 4, 6)
-    free = random_touches(
-        reach, criterion.volume, criterion.rotary, max(choice.touches, _FREE), rng
-    )
-    library = visibility(criterion, free)
+    progress("placement", 5, 6)
     lots = random_lots(tried, len(requests), rng)
     own = evaluated(f"standard {options.name}", here, requests, lots, library, len(tried), standard)
     powers = [proof_power(whole, requests, lot, library.effects, rng) for lot in (proof, more)]
-    rivals, unreachable = compare(criterion, places, all_poses, poses, blank, choice, library, rng)
     progress("placement", 6, 6)
     return Placement(
         standard=standard,
@@ -217,11 +203,80 @@ def design_standard(
         criterion=criterion,
         prior_rms=prior_rms(criterion),
         rivals=(own, *rivals),
-        certificate=nearness,
+        certificate=found.nearness,
         power=powers[0],
         power_of_balls=powers[1],
         unreachable=unreachable,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Identifying:
+    """A standard with the touches that identify by it: those that can be made, the choice."""
+
+    standard: Standard
+    poses: Array
+    tried: Requests
+    chosen: Mask
+    nearness: Certificate
+
+
+def _bases(
+    criterion: Criterion,
+    rivals: tuple[Rival, ...],
+    places: BallPlaces,
+    all_poses: Array,
+    options: PlacementOptions,
+) -> list[tuple[tuple[DatumSphere, ...], Array]]:
+    """Balls to build on, with table poses: the rivals', the best first, or as many as find room."""
+    of_balls = [
+        r
+        for r in rivals
+        if r.body is not None and not r.body.patches and len(r.body.spheres) <= options.balls
+    ]
+    if of_balls:
+        return [
+            (r.body.spheres, np.unique(r.touches.rotary, axis=0))
+            for r in sorted(of_balls, key=lambda r: r.value)
+            if r.body is not None
+        ]
+    balls = places.best(options.balls, options.choice.touches)
+    body = with_spheres(places.blank, [b.centre for b in balls])
+    poses = chosen_poses(criterion.on(body), body, body.spheres, all_poses, options.choice)
+    return [(body.spheres, poses)]
+
+
+def _identifying(
+    criterion: Criterion,
+    bodies: BodyChoice,
+    bases: list[tuple[tuple[DatumSphere, ...], Array]],
+    options: PlacementOptions,
+) -> _Identifying:
+    """The best balls that leave room for the faces, and the touches that identify by them.
+
+    Where every ball of a base stays nothing better is looked for; where some had to go, the next
+    base is tried as well.
+    """
+    best: _Identifying | None = None
+    choice, refused = options.choice, NotReachable("no ball")
+    for balls, poses in bases[:_BASES]:
+        standard = bodies.standard(
+            options.name, options.serial, balls, options.patches, choice.proof
+        )
+        here, reach = criterion.on(replace(standard, patches=())), criterion.reach
+        tried = touches_to_choose_from(reach, standard, standard.spheres, poses, choice.touches)
+        try:
+            chosen, nearness = chosen_touches_on(here, tried, choice)
+        except NotReachable as error:
+            refused = error
+            continue
+        if best is None or nearness.value < best.nearness.value:
+            best = _Identifying(standard, poses, tried, chosen, nearness)
+        if len(standard.spheres) == len(balls):
+            break
+    if best is None:
+        raise refused
+    return best
 
 
 def _check_blank(base: Base, reach: ProbeReach) -> None:
@@ -232,117 +287,6 @@ def _check_blank(base: Base, reach: ProbeReach) -> None:
             f"a blank of {a:g} x {b:g} mm is larger than the table, diameter "
             f"{2.0 * reach.table_radius:g} mm"
         )
-
-
-def _standard(
-    criterion: Criterion,
-    places: BallPlaces,
-    blank: Blank,
-    poses: Array,
-    options: PlacementOptions,
-    rng: np.random.Generator,
-) -> Standard:
-    """Choose balls, and faces between them, until the whole body meets every limit."""
-    holes = holes_on(blank)
-    faces = freeform_faces(blank, options.patches, options.sites, rng)
-    balls = places.best(options.balls, options.choice.touches, beside_holes(places.balls, holes))
-    fits = faces_fit(faces, holes, blank.limits)
-    few = spread_poses(poses, 20)
-    wanted = joined([each_at(p, face_grid(p.half_size, 3)[::2], few) for p in faces])
-    wanted = wanted[criterion.reach.is_reachable(wanted)]
-    if not len(wanted):
-        raise NotReachable(
-            f"no face at any of {len(faces)} places can be touched at a table pose with every axis "
-            "within its travel"
-        )
-    W, group = criterion.rows(wanted), wanted.feature.astype(np.int64)
-    take = max(4, options.choice.proof // options.patches)
-    refused = f"between two of them cutter and probe need {least_gap(blank.limits):g} mm"
-    binding: list[str] = []
-    for _ in range(_REBUILDS):
-        while True:
-            free = faces_beside(faces, balls, blank)
-            chosen = _side_by_side(criterion, W, group, options.patches, take, fits, free)
-            if len(chosen) == options.patches:
-                break
-            if len(balls) <= _FEWEST_BALLS:
-                raise NotBuildable(
-                    f"only {len(chosen)} of {options.patches} patches fit on the blank beside "
-                    f"{len(balls)} balls; {refused}",
-                    fitting=len(chosen),
-                )
-            balls = balls[:-1]  # the last one chosen tells least
-        standard = _put_together([faces[k] for k in chosen], balls, holes, blank, options)
-        broken = [c for c in constraints(standard, blank.limits) if c.slack < 0.0]
-        if not broken:
-            return standard
-        refused, binding = str(broken[0]), [c.name for c in broken]
-        names = [p.name for p in standard.patches]
-        for constraint in broken:
-            _blame(fits, constraint.features, names, chosen)
-    raise NotBuildable(
-        f"no choice of {options.patches} patches meets every limit; {refused}", binding=binding
-    )
-
-
-def _side_by_side(
-    criterion: Criterion,
-    W: Array,
-    group: IntArray,
-    count: int,
-    take: int,
-    fits: NDArray[np.bool_],
-    free: NDArray[np.bool_],
-) -> list[int]:
-    """The faces that are worth most; if their neighbours run out, begun from some that all fit."""
-    rows = free[group]
-    W, group = W[rows], group[rows]
-    chosen = best_groups(criterion.objective, W, group, count, take, apart=fits)
-    if len(chosen) < count:
-        touched = np.isin(np.arange(len(fits)), group)
-        begin = most_side_by_side(fits & touched & touched[:, None], count)
-        if len(begin) > len(chosen) and touched[begin].all():
-            chosen = best_groups(criterion.objective, W, group, count, take, None, fits, begin)
-    return chosen
-
-
-def _put_together(
-    faces: list[FreeformPatch],
-    balls: list[DatumSphere],
-    holes: tuple[MountingHole, ...],
-    blank: Blank,
-    options: PlacementOptions,
-) -> Standard:
-    """A standard of some faces and balls, each kind named around its middle."""
-    faces = sorted(faces, key=lambda p: _azimuth(p.T_artefact_patch[:3, 3]))
-    balls = sorted(balls, key=lambda b: _azimuth(b.centre))
-    return Standard(
-        name=options.name,
-        serial=options.serial,
-        material=blank.material,
-        base=blank.base,
-        core=None,
-        patches=tuple(replace(p, name=f"FF{i}") for i, p in enumerate(faces, 1)),
-        spheres=tuple(replace(b, name=f"SPH{i}") for i, b in enumerate(balls, 1)),
-        holes=holes,
-        blank_height=blank.height,
-    )
-
-
-def _azimuth(place: Array) -> float:
-    return float(np.arctan2(place[1], place[0]))
-
-
-def _blame(
-    fits: NDArray[np.bool_], features: tuple[str, ...], names: list[str], chosen: list[int]
-) -> None:
-    """Keep the faces that violate a limit from being chosen so again."""
-    guilty = [chosen[names.index(name)] for name in features if name in names]
-    if len(guilty) == 2 and guilty[0] != guilty[1]:
-        fits[guilty[0], guilty[1]] = fits[guilty[1], guilty[0]] = False
-    else:
-        out = guilty or [chosen[-1]]
-        fits[out, :] = fits[:, out] = False
 
 
 def _with_shares(criterion: Criterion, standard: Standard, requests: Requests) -> Standard:

@@ -32,6 +32,7 @@ class BallPlaces:
     Attributes:
         balls: B of them.
         criterion: What they are chosen for.
+        blank: On which they stand.
         W: Rows of touches on them, (N, R).
         group: Ball of every row, (N,).
         fits: Which of them stand beside each other, (B, B).
@@ -39,6 +40,7 @@ class BallPlaces:
 
     balls: list[DatumSphere]
     criterion: Criterion
+    blank: Blank
     W: Array
     group: IntArray
     fits: NDArray[np.bool_]
@@ -84,6 +86,7 @@ def ball_places(
     return BallPlaces(
         balls=balls,
         criterion=criterion,
+        blank=blank,
         W=criterion.rows(wanted),
         group=wanted.feature.astype(np.int64),
         fits=balls_fit(balls, blank),
