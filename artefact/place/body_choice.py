@@ -19,12 +19,14 @@ from artefact.layout import (
     holes_on,
     least_gap,
     most_side_by_side,
+    with_spheres,
 )
-from artefact.reach import joined, spread_poses
+from artefact.reach import Requests, joined, spread_poses
 from artefact.worth import Criterion, each_at, face_grid
 from information.selection import best_groups
 from twin.errors import NotBuildable, NotReachable
-from twin.frames import Array
+from twin.frames import Array, inverse, turn
+from twin.machine import table_to_tool
 from twin.record import IntArray
 
 Which = NDArray[np.bool_]
@@ -34,6 +36,8 @@ FEWEST_BALLS = 3
 
 _REBUILDS = 8  # choices of faces tried before giving up
 
+_HIDDEN = (0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 1.0)  # of the touches, that a face may hide
+_WAY, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that is looked at, in steps
 _POSES = 20  # at which touches on faces are looked at
 
 
@@ -56,27 +60,38 @@ class BodyChoice:
     group: IntArray
 
     def standard(
-        self, name: str, serial: str, balls: Sequence[DatumSphere], count: int, proving: int
+        self,
+        name: str,
+        serial: str,
+        balls: Sequence[DatumSphere],
+        touches: Requests,
+        count: int,
+        proving: int,
     ) -> Standard:
         """The best body of some balls with faces between them that meets every limit.
+
+        Of the faces those are taken first that stand in the way of fewest touches on the balls.
 
         Args:
             name: Type of the standard.
             serial: Of the piece.
             balls: The first tells most; as many of them as leave room.
+            touches: On the balls, that shall stay possible.
             count: Of the faces.
             proving: Touches on all faces together.
 
         Raises:
             NotBuildable: No such body; what binds.
         """
-        limits = self.blank.limits
+        limits, hides = self.blank.limits, self._hidden(touches)
         standing, holes = self._screwed(list(balls))
         fits = faces_fit(self.faces, holes, limits)
         refused = f"between two of them cutter and probe need {least_gap(limits):g} mm"
         binding: list[str] = []
         for _ in range(_REBUILDS):
-            chosen, standing = self._between(standing, count, fits, proving // count, refused)
+            chosen, standing = self._between(
+                standing, hides, count, fits, proving // count, refused
+            )
             faces = sorted((self.faces[k] for k in chosen), key=_azimuth_of_face)
             made = self._put_together(name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
@@ -103,14 +118,21 @@ class BodyChoice:
                 balls = balls[:-1]
 
     def _between(
-        self, balls: list[DatumSphere], count: int, fits: Which, take: int, refused: str
+        self,
+        balls: list[DatumSphere],
+        hides: Array,
+        count: int,
+        fits: Which,
+        take: int,
+        refused: str,
     ) -> tuple[list[int], list[DatumSphere]]:
         """Faces between some balls, and the balls: the last is left out until the faces fit."""
         while True:
             free = faces_beside(self.faces, balls, self.blank)
-            chosen = self._side_by_side(count, max(4, take), fits, free)
-            if len(chosen) == count and len(balls) >= FEWEST_BALLS:
-                return chosen, balls
+            for most in _HIDDEN:
+                chosen = self._side_by_side(count, max(4, take), fits, free & (hides <= most))
+                if len(chosen) == count and len(balls) >= FEWEST_BALLS:
+                    return chosen, balls
             if len(balls) <= FEWEST_BALLS:
                 raise NotBuildable(
                     f"only {len(chosen)} of {count} patches fit on the blank beside {len(balls)} "
@@ -118,6 +140,23 @@ class BodyChoice:
                     fitting=len(chosen),
                 )
             balls = balls[:-1]  # the last one chosen tells least
+
+    def _hidden(self, touches: Requests) -> Array:
+        """Share of some touches that every face stands in the way of, (F,)."""
+        reach = self.criterion.reach
+        frames = table_to_tool(reach.chain, reach.readings(touches))
+        axis = turn(inverse(reach.setup.T_table_artefact), frames[:, :3, 2])
+        ball = touches.point + reach.radius * touches.normal
+        begin, points, radii = 0.0, list[Array](), list[Array]()
+        for end, radius in reach.shape.cylinders:
+            for at in np.arange(begin, min(end, _WAY), _SAMPLES):
+                points.append(ball + at * axis)
+                radii.append(np.full(len(ball), radius + reach.room))
+            begin = end
+        where, least = np.concatenate(points), np.concatenate(radii)
+        bare = replace(with_spheres(self.blank, []), patches=tuple(self.faces))
+        near = [column.distance(where) < least for column in bare.columns.values()]
+        return np.array([n.reshape(-1, len(ball)).any(axis=0).mean() for n in near])
 
     def _side_by_side(self, count: int, take: int, fits: Which, free: Which) -> list[int]:
         """The faces worth most; if their neighbours run out, begun from some that all fit."""

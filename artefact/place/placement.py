@@ -227,8 +227,8 @@ def _bases(
     places: BallPlaces,
     all_poses: Array,
     options: PlacementOptions,
-) -> list[tuple[tuple[DatumSphere, ...], Array]]:
-    """Balls to build on, with table poses: the rivals', the best first, or as many as find room."""
+) -> list[tuple[tuple[DatumSphere, ...], Requests]]:
+    """Balls to build on, with touches: the rivals', the best first, or as many as find room."""
     of_balls = [
         r
         for r in rivals
@@ -236,20 +236,23 @@ def _bases(
     ]
     if of_balls:
         return [
-            (r.body.spheres, np.unique(r.touches.rotary, axis=0))
+            (r.body.spheres, r.touches)
             for r in sorted(of_balls, key=lambda r: r.value)
             if r.body is not None
         ]
     balls = places.best(options.balls, options.choice.touches)
     body = with_spheres(places.blank, [b.centre for b in balls])
     poses = chosen_poses(criterion.on(body), body, body.spheres, all_poses, options.choice)
-    return [(body.spheres, poses)]
+    tried = touches_to_choose_from(
+        criterion.reach, body, body.spheres, poses, options.choice.touches
+    )
+    return [(body.spheres, tried)]
 
 
 def _identifying(
     criterion: Criterion,
     bodies: BodyChoice,
-    bases: list[tuple[tuple[DatumSphere, ...], Array]],
+    bases: list[tuple[tuple[DatumSphere, ...], Requests]],
     options: PlacementOptions,
 ) -> _Identifying:
     """The best balls that leave room for the faces, and the touches that identify by them.
@@ -259,9 +262,10 @@ def _identifying(
     """
     best: _Identifying | None = None
     choice, refused = options.choice, NotReachable("no ball")
-    for balls, poses in bases[:_BASES]:
+    for balls, touches in bases[:_BASES]:
+        poses = np.unique(touches.rotary, axis=0)
         standard = bodies.standard(
-            options.name, options.serial, balls, options.patches, choice.proof
+            options.name, options.serial, balls, touches, options.patches, choice.proof
         )
         here, reach = criterion.on(replace(standard, patches=())), criterion.reach
         tried = touches_to_choose_from(reach, standard, standard.spheres, poses, choice.touches)
