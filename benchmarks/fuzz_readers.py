@@ -27,7 +27,7 @@ from reader_cases import Reader, damage, golden, readers  # noqa: E402
 from twin.errors import DesignError  # noqa: E402
 
 SLOW = 5.0
-"""Longest time that any small file may take to be read or refused, s."""
+"""Longest processor time that any small file may take to be read or refused, s."""
 LONGEST = 900
 """Longest line of a refusal, characters: it is read on a screen."""
 KEPT = 12
@@ -37,7 +37,7 @@ KEPT = 12
 def outcome(reader: Reader, data: bytes) -> tuple[str, str]:
     """What happens to a damaged file, and why where it should not."""
     reader.path.write_bytes(data)
-    begin = time.perf_counter()
+    begin = time.process_time()
     try:
         result = reader.read(reader.path)
     except DesignError as error:
@@ -58,7 +58,7 @@ def outcome(reader: Reader, data: bytes) -> tuple[str, str]:
         if not is_said:
             return "not what it says", ""
         found = "read, told" if getattr(result, "remarks", ()) else "read"
-    spent = time.perf_counter() - begin
+    spent = time.process_time() - begin
     return ("slow", f"{spent:.1f} s") if spent > SLOW else (found, "")
 
 

@@ -21,6 +21,7 @@ ROOMS = (
     "diagnosis",
     "cad_out",
     "probe_paths",
+    "compensation",
     "report",
 )
 """From bottom to top."""

@@ -17,6 +17,7 @@ COMMANDS = {
     "import": "tables of instruments, CMMs and spreadsheets made a run file",
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
+    "compensate": "the identified model goes back to the control: tables, or a part program",
     "new": "a commented minimal file to start from: machine, project, run or effect",
     "effects": "the effects that can be added, each with its formula and units",
 }

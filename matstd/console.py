@@ -1,6 +1,7 @@
 """What is said on the console: results on standard output."""
 
 import os
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -28,5 +29,10 @@ def say(text: str, style: str | None = None) -> None:
 
 def say_assumed(chain: "Chain") -> None:
     """What the machine file leaves open, and what is taken instead."""
-    for remark in chain.remarks:
-        say(f"- {remark}")
+    say_each(chain.remarks)
+
+
+def say_each(lines: Iterable[object]) -> None:
+    """Several lines, each as an item of a list."""
+    for line in lines:
+        say(f"- {line}")

@@ -27,17 +27,15 @@ from matstd.from_project import (
 )
 from matstd.reach import check_reach, check_room
 from matstd.streams import streams
+from matstd.study_run import study_and_maps
 from probe_paths.campaign import Campaign, VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import TouchPlan, plan_touches
 from report.identifiability import write_identifiability, write_identification
-from report.maps import draw_maps, draw_path
 from report.pages import Design, Proven
-from report.words import sampling_words
 from sensitivity.first_order import Workspace, latin_hypercube
 from sensitivity.montecarlo import Workers
 from sensitivity.population import drawn_errors
-from sensitivity.study import run_study, write_study
 from twin.compute import Progress
 from twin.files import errors_toml, write_run, write_whole
 from twin.frames import Array
@@ -65,7 +63,6 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     poses = check_reach(project, folder)
     check_room(project, folder, poses)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
-    population = project.population
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
     placement = _placement(project, workspace, rng.placement, progress, poses)
     plan = _plan(project, placement)
@@ -73,20 +70,9 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     progress("what can be told apart", 0, 1)
     known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
     write_identifiability(folder / "identifiability.json", known)
-    study = run_study(
-        population,
-        workspace,
-        poses=project.poses,
-        draws=project.draws,
-        rng=rng.study,
-        progress=progress,
-        tolerance=project.tolerance,
-        digits=project.digits,
-        workers=workers,
+    study, maps = study_and_maps(
+        project, workspace, project.poses, folder / "sensitivity", rng, progress, workers
     )
-    write_study(study, folder / "sensitivity", sampling_words(study.volumetric))
-    maps = draw_maps(study, folder / "sensitivity", rng.maps)
-    maps += draw_path(study, folder / "sensitivity")
     progress("STEP and STL", 0, 1)
     conformity = export_standard(
         placement.standard,

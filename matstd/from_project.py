@@ -112,6 +112,7 @@ def feeds(project: Project) -> Feeds:
         approach=float(stated.approach_feed_mm_min),
         turning=float(stated.turning_feed_deg_min),
         touches_per_file=stated.touches_per_file,
+        minutes_per_file=stated.minutes_per_file or np.inf,
     )
 
 

@@ -6,18 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.choice import offered
+from diagnosis.choice import candidate_effects
 from diagnosis.faults import faults_of_refused
 from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
+from matstd.options import load_effects
 from report.geometry import copy_lines, fault_sentences
 from twin.errors import BadFile, DesignError, NotEnoughData
 from twin.files import read_run
 from twin.library import (
     is_visible,
     kinds,
-    load_installed_effects,
-    load_user_effects,
     parse_effect,
     try_effect,
     try_kind,
@@ -48,9 +47,7 @@ def read_inputs(
         DesignError: Runs that cannot be diagnosed together, or nothing left to learn from.
         NotEnoughData: Too few touches to place the standard.
     """
-    load_installed_effects()
-    for path in effect_files:
-        load_user_effects(Path(path))
+    load_effects(effect_files)
     run = _joined(run_files, held_out)
     own = users_files()
     for kind in (k for k in kinds() if k.word in own):
@@ -186,7 +183,7 @@ def candidates(only: Sequence[str], without: Sequence[str], run: Run) -> list[Ef
     """
     if not only and not without:
         return None
-    everything = offered(run.touches)
+    everything = candidate_effects(run.touches)
     words = {k.word for k in kinds()}
     names = {_plain(e.name) for e in everything}
     for option, given in (("--only", only), ("--without", without)):

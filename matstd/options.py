@@ -1,8 +1,10 @@
-"""Options that several commands share: `--start`, `--model`, `--pitch`, `--pdf`."""
+"""Options that several commands share, and what they mean."""
 
 from __future__ import annotations
 
 import argparse
+import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +20,57 @@ SETUP, GEOMETRY = "setup", "geometry"
 
 REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
 """Results that not every run of such a command leaves."""
+
+
+def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = "") -> None:
+    """The options -o and --force.
+
+    Args:
+        parser: Of the command.
+        name: Of what is written: `RUN.csv`; a folder is `OUT`.
+        force: Help of --force where it is not the usual.
+    """
+    is_folder = name == "OUT"
+    meaning = "folder to be made" if is_folder else "to be written"
+    usual = "replace results of an earlier run" if is_folder else "overwrite the output"
+    parser.add_argument("-o", "--output", metavar=name, required=True, help=meaning)
+    parser.add_argument("--force", action="store_true", help=force or usual)
+
+
+def add_effects(parser: argparse.ArgumentParser) -> None:
+    """The option --effects."""
+    parser.add_argument(
+        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
+    )
+
+
+def load_effects(files: Iterable[str]) -> None:
+    """Effects of the user's own, of installed packages and of his files."""
+    from twin.library import load_installed_effects, load_user_effects
+
+    load_installed_effects()
+    for path in files:
+        load_user_effects(Path(path))
+
+
+def seen_from(folder: Path, file: str | Path) -> str:
+    """A file as another one in some folder names it."""
+    return Path(os.path.relpath(file, folder.resolve())).as_posix()
+
+
+def add_measured(parser: argparse.ArgumentParser, without: str) -> None:
+    """What compare and diagnose have in common.
+
+    Args:
+        parser: Of the command.
+        without: What it does without a model, for the help.
+    """
+    add_start(parser, without)
+    add_pitch(parser)
+    add_effects(parser)
+    parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
+    add_pdf(parser)
+    add_output(parser)
 
 
 def add_pdf(parser: argparse.ArgumentParser) -> None:

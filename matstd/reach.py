@@ -23,6 +23,7 @@ from artefact.reach import (
     reach_of,
     seat_height,
     spread_poses,
+    table_face,
     turned,
 )
 from artefact.worth import poses_within
@@ -55,6 +56,7 @@ PICTURE = "reach.png"
 ROOM_PICTURE = "room.png"
 """Of the patches that fit on the blank; only a refusal draws it."""
 
+_RISER = 300.0  # mm above the table's face that a wish may lift a standard
 _SUNK = 1.0  # mm by which a seat may lie below the table's face: set-ups are measured
 _POSES = 60  # table poses that are tried
 _PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer no choice of patches was ever found
@@ -194,7 +196,7 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
 
     By what every standard has: its base, and its highest sphere, taken over the middle.
     """
-    made, options, chain = blank(project), plan_options(project), project.chain
+    made, options, chain = blank(project), plan_options(project), wanted.chain
     fit, top = made.fittings, made.base.thickness
     middle = np.array([0.0, 0.0, max(fit.sphere_heights)])
     ball = DatumSphere(
@@ -242,7 +244,7 @@ def _fits(project: Project, wish: Wish) -> bool:
     """Whether a changed project is within reach; by few places and poses first."""
     T, made = wish.reach.setup.T_table_artefact, blank(project)
     sunk = seat_height(T, made.base.half_size) < wish.reach.workshop.table.high - _SUNK
-    if sunk or hangs(project.chain, T):
+    if sunk or hangs(wish.reach.chain, T) or _beside(project, T):
         return False
     grid = poses_within(project.chain, wish.rotary, placement_options(project).choice.poses)
     for some, step in ((spread_poses(grid, _ROUGH), 3), (spread_poses(grid, _POSES), 1)):
@@ -252,6 +254,16 @@ def _fits(project: Project, wish: Wish) -> bool:
     to_rise, retract = _to_rise(project, wish.reach, some)
     good = some[to_rise <= retract]
     return reach_of(wish.reach, point, normal, good).places >= _enough(project)
+
+
+def _beside(project: Project, T_table_artefact: Array) -> bool:
+    """Whether a standard stands further beside the table, or higher above it, than it does now."""
+    up = table_face(T_table_artefact)[:3, 2]
+    old, new = project.setup.T_table_artefact[:3, 3], T_table_artefact[:3, 3]
+    aside = [float(np.linalg.norm(place - (place @ up) * up)) for place in (old, new)]
+    return aside[1] > max(project.table_radius, aside[0]) or bool(
+        new @ up > max(_RISER, float(old @ up))
+    )
 
 
 def _asked(limit: Limit, value: float) -> str:
@@ -275,6 +287,7 @@ def _nearest(
         *_wider(wanted, rotary),
         *_longer(wanted, rotary),
         *_turned(wanted, rotary),
+        *_mirrored(wanted, rotary),
     ]
     for wish in sorted(wishes, key=lambda w: w.size):
         try:
@@ -350,5 +363,23 @@ def _turned(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
             size=90.0,
             kind="turn",
             reach=replace(wanted, setup=setup),
+            rotary=rotary,
+        )
+
+
+def _mirrored(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+    """Travels of axes that carry the workpiece, entered as motions of the table."""
+    links = wanted.chain.links
+    carried = [k for k in links if k.kind == "linear" and k.carries_workpiece]
+    for some in [*([k] for k in carried), *[carried] * (len(carried) > 1)]:
+        ends = {k.name: (-k.range[1] + 0.0, -k.range[0] + 0.0) for k in some}
+        mirrored = tuple(replace(k, range=ends.get(k.name, k.range)) for k in links)
+        words = [f"axis.{name}.range = [{low:g}, {high:g}]" for name, (low, high) in ends.items()]
+        yield Wish(
+            words=f"{' with '.join(words)} of the machine (readings move the tool relative to the "
+            "workpiece)",
+            size=1.0,
+            kind="sign",
+            reach=replace(wanted, chain=replace(wanted.chain, links=mirrored)),
             rotary=rotary,
         )

@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 
 from artefact.brief import Project
-from matstd.streams import streams
+from matstd.streams import Streams, streams
 from report.maps import draw_maps, draw_path
 from report.pages import write_study_page
 from report.words import sampling_words, study_words
 from sensitivity.first_order import Workspace
 from sensitivity.montecarlo import Workers
-from sensitivity.study import run_study, write_study
+from sensitivity.study import Study, run_study, write_study
 from twin.compute import Progress
 from twin.errors import BadFile
 from twin.files import read_poses
@@ -36,8 +36,22 @@ def study_project(
     Raises:
         BadFile: Poses of several tool lengths.
     """
-    workspace, poses = _where(project, poses_file)
-    rng = streams(project.seed)
+    where = _where(project, poses_file)
+    study, shown = study_and_maps(project, *where, folder, streams(project.seed), progress, workers)
+    remarks = write_study_page(study, folder, shown, str(project.path))
+    return [*remarks, *study_words(study)]
+
+
+def study_and_maps(
+    project: Project,
+    workspace: Workspace,
+    poses: int | Array,
+    folder: Path,
+    rng: Streams,
+    progress: Progress,
+    workers: Workers,
+) -> tuple[Study, list[tuple[str, str]]]:
+    """The study of a project, its data written into a folder, and its maps with their captions."""
     study = run_study(
         project.population,
         workspace,
@@ -51,9 +65,7 @@ def study_project(
     )
     progress("maps", 0, 1)
     write_study(study, folder, sampling_words(study.volumetric))
-    shown = draw_maps(study, folder, rng.maps) + draw_path(study, folder)
-    remarks = write_study_page(study, folder, shown, str(project.path))
-    return [*remarks, *study_words(study)]
+    return study, draw_maps(study, folder, rng.maps) + draw_path(study, folder)
 
 
 def _where(project: Project, poses_file: str | None) -> tuple[Workspace, int | Array]:

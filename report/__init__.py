@@ -14,6 +14,8 @@ is a number in a result.
     plots   plans, proofs, residuals, effects
     scenes  pictures in three dimensions, rendered in a process of their own
     pages   HTML, one template a page in `pages/templates`
+    compensation
+            what compensation corrects and leaves, with its page
 
 A new picture is a function that takes a result and a path (`maps`, `plots` or `scenes`) and is
 called by the page that shows it; a new sentence is a function in `words`.
@@ -36,7 +38,7 @@ from report.plots import (
     write_proof_picture,
     write_touches_picture,
 )
-from report.scenes import Scene, draw_standard, draw_values, draw_volumes
+from report.scenes import Scene, draw_standard, draw_volumes
 from report.words import comparison_sentence, study_words, verdict_sentence
 
 PARTS = (
@@ -49,6 +51,7 @@ PARTS = (
     "plots",
     "scenes",
     "pages",
+    "compensation",
 )
 """From bottom to top: each imports only from those before it."""
 
@@ -63,7 +66,6 @@ __all__ = [
     "draw_over_variables",
     "draw_path",
     "draw_standard",
-    "draw_values",
     "draw_volumes",
     "study_words",
     "verdict_sentence",

@@ -18,7 +18,7 @@ _NOUNS = {
     **{f"n{letter}": f"the normal's {letter}" for letter in "xyz"},
     **{f"F{letter}_N": f"load in {letter}" for letter in "xyz"},
 }
-_SHOWN = {"mm": ("µm", UM), "rad": ("µrad", URAD)}
+_SHOWN = {"mm": ("µm", UM), "rad": ("µrad", URAD), "s": ("ms", 1e-3)}
 """Base unit -> unit that a reader sees, and what one of it is in the base unit."""
 
 _UNITS = (("_mm", "mm"), ("_deg", "deg"), ("_degC", "°C"), ("_N", "N"), ("_rpm", "1/min"))

@@ -8,26 +8,29 @@ import pytest
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-pytest_plugins = ["machines", "standards", "runs"]
+pytest_plugins = ["bench", "machines", "standards", "runs"]
 """Fixtures that the tests of several rooms share, in `tests/fixtures`."""
 
 
 LONGEST = (
     "matstd/test_design.py",
-    "artefact/test_placement.py",
-    "matstd/test_design_machines.py",
-    "test_examples.py",
-    "test_examples_diagnosis.py",
-    "matstd/test_measure_commands.py",
-    "diagnosis/test_files_and_commands.py",
+    "diagnosis/test_hidden_effects.py",
+    "diagnosis/test_several_runs.py",
     "report/test_diagnosis_pictures.py",
-    "oracles/test_simulator.py",
-    "diagnosis/test_prediction.py",
+    "test_examples_diagnosis.py",
+    "diagnosis/test_one_set.py",
+    "diagnosis/test_files_and_commands.py",
+    "matstd/test_measure_commands.py",
     "matstd/test_sensitivity_command.py",
-    "matstd/test_reach.py",
+    "test_examples_runs.py",
+    "diagnosis/test_prediction.py",
+    "report/test_standard_scene.py",
+    "cad_out/test_export.py",
+    "diagnosis/test_periods.py",
     "probe_paths/test_simulate.py",
     "test_formats.py",
-    "test_notebooks.py",
+    "test_examples.py",
+    "matstd/test_design_machines.py",
 )
 """Files of more than ten seconds: begun first, so that no worker waits for one of them at the end;
 left to itself, xdist begins with the files of most tests."""

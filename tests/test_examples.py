@@ -111,6 +111,7 @@ def _unnumbered(text: str) -> str:
     return "\n".join(line.partition(" ")[2] for line in text.splitlines())
 
 
+@pytest.mark.slow  # tests/cad_out export another one
 def test_06_the_step_file_holds_one_solid_with_every_face_named(tmp_path: Path) -> None:
     result = load(6).main(tmp_path)
     assert result["solids"] == 1
@@ -175,6 +176,7 @@ def test_09_the_hidden_backlash_is_named_and_the_error_falls_to_the_noise() -> N
     assert result["held out, µm"][0] > 1.3
 
 
+@pytest.mark.slow  # the hose of tests/test_examples_diagnosis.py says the same
 def test_10_an_effect_of_ones_own_turns_unexplained_into_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -66,14 +66,14 @@ def truth(name: str) -> dict:
 
 @pytest.fixture(scope="module")
 def warm_up(tmp_path_factory):
-    """Words and result of the command."""
+    """Words and result of the command, and the model with what it found."""
     out = tmp_path_factory.mktemp("warm_up") / "out"
     words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "-o", out)
-    return words, result(out)
+    return words, result(out), out / "model.toml"
 
 
 def test_the_warm_up_is_named_and_the_error_falls_to_the_noise(warm_up):
-    words, found = warm_up
+    words, found, _ = warm_up
     (hidden,) = truth("warm_up")["hidden"]
     first, last = found["steps"][0], found["steps"][-1]
     assert found["verdict"] == "missing effect"
@@ -91,7 +91,7 @@ def test_the_warm_up_is_named_and_the_error_falls_to_the_noise(warm_up):
 
 
 def test_all_chips_of_the_warm_up_are_told_by_line(warm_up):
-    words, _ = warm_up
+    words, _, _ = warm_up
     text = (HIDDEN / "warm_up.csv").read_text(encoding="utf-8").splitlines()
     head = next(i for i, line in enumerate(text) if not line.startswith("#"))
     chips = {head + 2 + row for row in truth("warm_up")["chips"]}  # lines count from 1
@@ -99,11 +99,8 @@ def test_all_chips_of_the_warm_up_are_told_by_line(warm_up):
     assert {int(n) for n in told.group(1).replace("\n", " ").split(",")} == chips
 
 
-def test_the_model_with_the_effect_leaves_noise(tmp_path):
-    matstd(
-        "diagnose", "warm_up.csv", "--add", "thermal-lag(EZB)", "--no-report", "-o", tmp_path / "a"
-    )
-    model = tmp_path / "a" / "model.toml"
+def test_the_model_with_the_effect_leaves_noise(warm_up, tmp_path):
+    _, _, model = warm_up
     matstd("compare", "warm_up.csv", "--model", model, "--no-report", "-o", tmp_path / "c")
     left = json.loads((tmp_path / "c" / "comparison.json").read_text(encoding="utf-8"))
     assert left["depends_on"] == []
@@ -126,7 +123,7 @@ def test_the_hose_is_unexplained_and_seen_where_it_is(tmp_path):
 
 def test_the_users_own_effect_explains_the_hose(tmp_path):
     own = ["--effects", EXAMPLES / "my_effects.py"]
-    matstd("diagnose", "hose.csv", *own, "--auto", "-o", tmp_path / "out")
+    matstd("diagnose", "hose.csv", *own, "--auto", "--no-report", "-o", tmp_path / "out")
     found = result(tmp_path / "out")
     (hidden,) = truth("hose")["hidden"]
     assert found["verdict"] == "missing effect"
@@ -136,6 +133,12 @@ def test_the_users_own_effect_explains_the_hose(tmp_path):
     for name, value in planted.items():
         assert abs(step["parameters"][name] - value) < COVERED * step["uncertainty"][name]
     assert step["test_rms_um"] < NEAR * NOISE
+
+
+@pytest.mark.slow
+def test_the_page_shows_the_formula_of_the_users_own_effect(tmp_path):
+    own = ["--effects", EXAMPLES / "my_effects.py"]
+    matstd("diagnose", "hose.csv", *own, "--auto", "-o", tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "EZZ = a exp(-((X - x)/width)^2) for Y &gt; y" in page
 

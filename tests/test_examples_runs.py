@@ -64,6 +64,7 @@ def crash(tmp_path_factory):
     return out
 
 
+@pytest.mark.slow
 def test_the_crash_is_told_and_nothing_before_it(crash):
     planted = module(CRASH / "make_runs.py")
     trend = result(crash)["trend"]
@@ -80,6 +81,7 @@ def test_the_crash_is_told_and_nothing_before_it(crash):
     assert after > 4.0
 
 
+@pytest.mark.slow
 def test_the_growth_is_one_for_all_runs(crash):
     planted = module(CRASH / "make_runs.py")
     (step,) = [s for s in result(crash)["steps"] if s["effect"]]

@@ -81,6 +81,8 @@ class WorkshopTable(Table):
     approach_feed_mm_min: int = Field(default=2000, ge=100, le=5000)
     turning_feed_deg_min: int = Field(default=1000, ge=100, le=5000)
     touches_per_file: int = Field(default=400, ge=10)
+    minutes_per_file: float | None = Field(default=None, ge=1.0)
+    dry_run_mm: float = Field(default=100.0, ge=10.0)
     height_read: Literal["gauge", "tip"] = "gauge"
 
 

@@ -10,6 +10,7 @@ from twin.frames import Array, apply, inverse, pose
 from twin.machine import Chain, table_to_tool
 
 _ALONG = 0.7  # cosine above which two directions count as one axis: half a right angle
+_UPRIGHT = ("[0, 90, 0]", "[-90, 0, 0]", "[0, 0, 0]")  # takes z to x, y, z of the table
 _TURNED = {0: (1, 2, 0), 1: (2, 0, 1), 2: (0, 1, 2)}  # coordinate axes that become x, y, z
 
 
@@ -61,11 +62,13 @@ def standing_remarks(chain: Chain, T_table_artefact: Array) -> tuple[str, ...]:
     axis, face = _turns_about(chain), table_face(T_table_artefact)[:3, 2]
     if axis is None or abs(float(axis @ face)) > _ALONG:
         return ()
+    upright = _UPRIGHT[int(np.argmax(np.abs(axis)))]
     way = f"{'-' if face.min() < -0.5 else '+'}{'XYZ'[int(np.argmax(np.abs(face)))]}"
     return (
         f"The standard stands on a face that looks along {way} of the table frame, as on an angle "
-        f"plate, and {_innermost(chain)} turns about another direction: the table of "
-        f"{_innermost(chain)} itself is kept clear only where it stands under [[workshop.bodies]].",
+        f"plate, and {_innermost(chain)} turns about another direction. The table of "
+        f"{_innermost(chain)} itself is kept clear only where it stands under [[workshop.bodies]]; "
+        f"rotation_deg = {upright} of the set-up stands the standard on it.",
     )
 
 

@@ -17,7 +17,7 @@ from cad_out.build.mesh import (
     write_stl,
 )
 from cad_out.build.part import as_part
-from cad_out.build.process import note_refusal, run_apart
+from cad_out.build.process import run_apart
 from cad_out.build.worker import FACTS, MESH, STANDARD, STEP
 
 __all__ = [
@@ -32,7 +32,6 @@ __all__ = [
     "is_watertight",
     "manifold_volume",
     "mesh_volume",
-    "note_refusal",
     "owners",
     "read_stl",
     "run_apart",

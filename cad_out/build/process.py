@@ -7,12 +7,18 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from twin.errors import DesignError
-
 REFUSAL = "refusal.txt"
 """File in the shared folder that holds the reason of a refusal."""
 
 _ROOT = Path(__file__).resolve().parent.parent
+
+_CALL = """\
+import pathlib, {module}, twin.errors
+try:
+    {module}.{task}{arguments}
+except twin.errors.DesignError as refusal:
+    pathlib.Path({refusal!r}).write_text(str(refusal), encoding="utf-8")
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +63,8 @@ def run_apart(
 
     Args:
         module: Where the task is defined.
-        task: A function that takes the folder and the arguments.
+        task: A function that takes the folder and the arguments; a `DesignError` that it raises is
+            its refusal.
         folder: Through which the two processes speak.
         arguments: Further arguments.
         timeout: After which the process is stopped, s.
@@ -66,7 +73,10 @@ def run_apart(
     Returns:
         How it ended; nothing is raised.
     """
-    call = f"import {module}; {module}.{task}({str(folder)!r}, *{arguments!r})"
+    refusal = folder / REFUSAL
+    call = _CALL.format(
+        module=module, task=task, arguments=(str(folder), *arguments), refusal=str(refusal)
+    )
     path = os.pathsep.join(filter(None, [str(_ROOT), os.environ.get("PYTHONPATH")]))
     try:
         done = subprocess.run(
@@ -81,12 +91,6 @@ def run_apart(
         )
     except subprocess.TimeoutExpired:
         return Ending(None, "", "")
-    refusal = folder / REFUSAL
     reason = refusal.read_text(encoding="utf-8") if refusal.exists() else ""
     lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
     return Ending(done.returncode, reason, lines[-1] if lines else "")
-
-
-def note_refusal(folder: Path, refusal: DesignError) -> None:
-    """Leave the reason of a refusal for the process that asked."""
-    (folder / REFUSAL).write_text(str(refusal), encoding="utf-8")

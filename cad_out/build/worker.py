@@ -12,8 +12,7 @@ import numpy as np
 
 from artefact.body import Standard, read_standard
 from cad_out.build.mesh import Mesh, chord_errors, welded
-from cad_out.build.process import note_refusal
-from twin.errors import DesignError, NotBuildable
+from twin.errors import NotBuildable
 
 if TYPE_CHECKING:
     from cad_out.build.solid import Solid
@@ -30,33 +29,15 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
     """Build the standard of a folder: STEP file, triangles, facts about the solid.
 
     Args:
-        folder: Holds standard.toml; takes the results, or the reason of a refusal.
+        folder: Holds standard.toml; takes the results.
         chord: Largest distance of the mesh from the exact faces, mm.
         author: For the header of the STEP file.
         organisation: The same.
     """
-    try:
-        _build(Path(folder), chord, author, organisation)
-    except DesignError as refusal:
-        note_refusal(Path(folder), refusal)
-
-
-def reread(folder: str) -> None:
-    """Read the STEP file of a folder anew and write down what the kernel finds in it."""
-    from cad_out.build.exchange import read_step
-
-    place = Path(folder)
-    try:
-        facts = asdict(read_step(place / STEP))
-        (place / FACTS).write_text(json.dumps(facts), encoding="utf-8")
-    except DesignError as refusal:
-        note_refusal(place, refusal)
-
-
-def _build(place: Path, chord: float, author: str, organisation: str) -> None:
     from cad_out.build.exchange import Origin, write_step
     from cad_out.build.solid import build_solid
 
+    place = Path(folder)
     standard = read_standard(place / STANDARD)
     solid = build_solid(standard)
     design = hashlib.sha256((place / STANDARD).read_bytes()).hexdigest()
@@ -64,6 +45,14 @@ def _build(place: Path, chord: float, author: str, organisation: str) -> None:
     mesh = _mesh(standard, solid, chord)
     np.savez(place / MESH, corners=mesh.corners, triangles=mesh.triangles, owner=mesh.owner)
     (place / FACTS).write_text(json.dumps({"volume": solid.volume}), encoding="utf-8")
+
+
+def reread(folder: str) -> None:
+    """Read the STEP file of a folder anew and write down what the kernel finds in it."""
+    from cad_out.build.exchange import read_step
+
+    facts = asdict(read_step(Path(folder) / STEP))
+    (Path(folder) / FACTS).write_text(json.dumps(facts), encoding="utf-8")
 
 
 def _mesh(standard: Standard, solid: Solid, chord: float) -> Mesh:

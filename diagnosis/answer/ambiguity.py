@@ -150,7 +150,7 @@ def confusion_class(
     A = projected(complement, others)
     base = EffectSet(complement, A if fixed is None else np.hstack([fixed, A]))
     scores = score_all(base, pool)
-    top, _ = addition(base, projected(complement, [ScaledEffect(found.effect)]))
+    top, _ = addition(base, found.effect)
     names = {found.effect.name} | {o.effect.name for o in others}
     rivals = [Rival(found, 0.0, 1.0)]
     explained = _explained(base, found)

@@ -1,4 +1,4 @@
-"""Effects that a user adds together and that these touches cannot tell apart, or tell at all."""
+"""Effects that these touches cannot tell apart, or tell at all: added by a user, or found."""
 
 from collections.abc import Sequence
 
@@ -8,8 +8,12 @@ from diagnosis.answer.verdict import Step
 from diagnosis.evidence import SAME, ResidualSpace, ScaledEffect
 from diagnosis.fit import Reported, Role
 from diagnosis.remarks import NotSignificant
+from diagnosis.search import CHANCE
 from twin.errors import DesignError
 from twin.frames import Array
+
+LIKELY = 0.05
+"""Probability by chance from which nothing is said against chance."""
 
 SIGNIFICANT = 2.0
 """Standard uncertainties from which a size is significant (GUM, k = 2)."""
@@ -70,6 +74,29 @@ def not_significant(steps: Sequence[Step]) -> tuple[NotSignificant, ...]:
                 )
             )
     return tuple(out)
+
+
+def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
+    """Name of the found effect that says least, if it is no more than chance or uncertainty.
+
+    Args:
+        steps: Of found effects.
+        is_weighed: Whether the set was chosen by what it predicts: then its members stand together,
+            and one falls only if neither its size nor its probability speaks for it.
+    """
+    out, least = None, SIGNIFICANT
+    for step in steps:
+        size = _size(step.reported)
+        if step.effect is None:
+            continue
+        worth = np.inf if size is None or not size.u else abs(size.value) / size.u
+        if is_weighed:
+            worth = worth if step.p_value > LIKELY else np.inf
+        elif step.p_value >= CHANCE:
+            worth = 0.0
+        if worth < least:
+            out, least = step.effect.name, worth
+    return out
 
 
 def _size(numbers: Sequence[Reported]) -> Reported | None:

@@ -14,6 +14,7 @@ import numpy as np
 from diagnosis.answer.alike import periods_alike
 from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
 from diagnosis.evidence import EffectSet, ScaledEffect, projected
+from diagnosis.residual import find_structure
 from diagnosis.search import (
     Member,
     Search,
@@ -71,11 +72,11 @@ def _refined(final: SearchState) -> tuple[SearchState, Mapping[str, Verified]]:
     if final.is_weighed:
         return final, _by_name(final)
     grid = tuple(ScaledEffect(m.effect, m.scale) for m in final.chosen.members)
-    state = placed(final, final.effects)
+    state = with_members(final, final.effects)
     tests = _by_name(state)
     if _stands(tests):
         return state, tests
-    state = placed(state, grid)
+    state = with_members(state, grid)
     return state, _by_name(state)
 
 
@@ -84,14 +85,14 @@ def _tried(
 ) -> tuple[SearchState, Mapping[str, Verified]]:
     """The set with another effect for one of it where all stand then, else as it was."""
     before = state.effects
-    other = placed(state, (*before[:i], sized, *before[i + 1 :]))
+    other = with_members(state, (*before[:i], sized, *before[i + 1 :]))
     others_tests = _by_name(other)
     if state.is_weighed or _stands(others_tests):
         return other, others_tests
-    return placed(other, before), tests
+    return with_members(other, before), tests
 
 
-def placed(state: SearchState, effects: Sequence[ScaledEffect]) -> SearchState:
+def with_members(state: SearchState, effects: Sequence[ScaledEffect]) -> SearchState:
     """The state with other effects for its members, one for one, and their points of the grids.
 
     The signatures are changed in place, so the state that was given is lost.
@@ -147,3 +148,13 @@ def _by_name(state: SearchState) -> dict[str, Verified]:
 
 def _stands(tests: Mapping[str, Verified]) -> bool:
     return all(v.stands for v in tests.values())
+
+
+def without(state: SearchState, name: str) -> SearchState:
+    """The state less one effect of its set; what it explained is left to be explained."""
+    kept = [i for i, s in enumerate(state.effects) if s.effect.name != name]
+    chosen = state.search.evaluate(state.chosen.members[i] for i in kept)
+    effects = tuple(state.effects[i] for i in kept)
+    return replace(
+        state, chosen=chosen, effects=effects, left=tuple(find_structure(chosen.effects))
+    )

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.answer.alike import period_value
 from diagnosis.answer.ambiguity import ConfusionClass
-from diagnosis.answer.collinear import check_distinct, not_significant
+from diagnosis.answer.collinear import check_distinct, not_significant, weakest
 from diagnosis.answer.detectable import detectable
 from diagnosis.answer.next_measurement import (
     Plan,
@@ -15,17 +15,17 @@ from diagnosis.answer.next_measurement import (
     candidate_touches,
     plan,
 )
-from diagnosis.answer.one_set import ToldSet, told_set
-from diagnosis.answer.several import settled
+from diagnosis.answer.one_set import ToldSet, told_set, without
+from diagnosis.answer.several import with_trend
 from diagnosis.answer.sizes import sizes
 from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
 from diagnosis.choice import (
+    candidate_effects,
+    choice_remarks,
     chosen_by_prediction,
     field_shares,
     followed,
-    offered,
-    remembered,
-    ways_tried,
+    found_in,
 )
 from diagnosis.evidence import (
     EffectSet,
@@ -50,7 +50,6 @@ from diagnosis.search import (
     SearchState,
     most_evident,
     refined_named,
-    search_until_stable,
 )
 from twin.compute import one_blas_thread
 from twin.library import ordinary_model
@@ -96,7 +95,7 @@ def diagnose(
     start = model or ordinary_model(run.touches.chain)
     belief = prior_for(run, start) if prior is None else prior
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
-    return settled(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
+    return with_trend(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
 
 
 def _diagnosed(
@@ -108,15 +107,14 @@ def _diagnosed(
 ) -> Diagnosis:
     """What a task lacks; arguments as of `diagnose`."""
     touches = task.run.touches
-    library = offered(touches) if candidates is None else list(candidates)
+    library = candidate_effects(touches) if candidates is None else list(candidates)
     added = refined_named(task, named, progress)
     if len(added) > 1:
         check_distinct(ResidualSpace.of(task.fit()), added)
     known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
-    final = search_until_stable(task, added, single, progress)
-    task, final = remembered(task, added, final, single, progress)
+    task, final = found_in(task, added, single, progress)
     if task.model.chain.is_serial_arm:  # whose lines bend like what it lacks
         task = task.suited((*added, *final.effects))
     choice = chosen_by_prediction(task, added, final, library, progress)
@@ -126,7 +124,10 @@ def _diagnosed(
     if choice is None:
         return result
     fields = [e for e in result.found if isinstance(e, ThermalField)]
-    told: tuple[Remark, ...] = (*ways_tried(choice), *(field_shares(result.fit, e) for e in fields))
+    told: tuple[Remark, ...] = (
+        *choice_remarks(choice),
+        *(field_shares(result.fit, e) for e in fields),
+    )
     return replace(result, choice=choice, remarks=(*told, *result.remarks))
 
 
@@ -139,9 +140,8 @@ def _result(
 ) -> Diagnosis:
     """Everything that is told of the last round."""
     progress(0.5, "what cannot be told apart")
-    tested = told_set(final)
+    tested, steps = _told(task, added, final)
     final, classes, gross = tested.state, tested.classes, final.base.gross
-    steps = _steps(task, added, tested, gross)
     unexplained = bool(final.nameless or final.left)
     verdict = (
         Verdict.UNEXPLAINED
@@ -174,6 +174,23 @@ def _result(
         faults=description_faults(steps[0].fit, progress),
         remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
     )
+
+
+def _told(
+    task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
+) -> tuple[ToldSet, tuple[Step, ...]]:
+    """The set that is told, every member beyond chance and of a size beyond its uncertainty.
+
+    A search weighs an effect beside a machine as it is expected to be; a size that rests on the
+    touches alone may be nothing, and such an effect is not told. The weakest goes first.
+    """
+    while True:
+        tested = told_set(final)
+        steps = _steps(task, added, tested, final.base.gross)
+        weak = weakest(steps[1 + len(added) :], final.is_weighed)
+        if weak is None:
+            return tested, steps
+        final = without(tested.state, weak)
 
 
 def _remarks(fit: Fit, final: SearchState) -> tuple[Remark, ...]:

@@ -25,7 +25,7 @@ from diagnosis.search import FREEDOM, DiagnosisTask
 from twin.model import Model
 
 
-def settled(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]) -> Diagnosis:
+def with_trend(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]) -> Diagnosis:
     """The diagnosis with those changes of the geometry that the runs show.
 
     Args:
@@ -45,7 +45,7 @@ def settled(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]
         runs=run_errors(result.fit),
         changed=tuple(shown),
         rows=apart,
-        settled=geometry_rows(result.fit),
+        pooled=geometry_rows(result.fit),
         alone=alone,
     )
     return replace(result, trend=trend)

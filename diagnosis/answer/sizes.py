@@ -142,14 +142,7 @@ def _weighed(base: EffectSet, effect: Tunable, index: int, edges: Array) -> tupl
     """Mean and deviation of an instant over the intervals between some edges."""
     middle, length = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     value = list(effect.tuning.values())[index]
-    evidence = np.array(
-        [
-            addition(
-                base, projected(base.complement, [ScaledEffect(shifted(effect, index, t - value))])
-            )[0]
-            for t in middle
-        ]
-    )
+    evidence = np.array([addition(base, shifted(effect, index, t - value))[0] for t in middle])
     weight = length * np.exp(evidence - evidence.max())
     weight /= weight.sum()
     mean = float(weight @ middle)

@@ -67,7 +67,7 @@ class Trend:
         changed: Runs, by number, whose geometry differs from that of the run before; 0 stands for
             the first beside the model that the diagnosis began with.
         rows: The geometry with its course, every run by itself.
-        settled: The same with runs between which nothing changed as one: what did change is known
+        pooled: The same with runs between which nothing changed as one: what did change is known
             better by it.
         alone: By run, the one change that is beyond chance if nothing else changed, where none is
             while everything may.
@@ -76,12 +76,12 @@ class Trend:
     runs: tuple[RunErrors, ...]
     changed: tuple[int, ...]
     rows: tuple[GeometryRow, ...]
-    settled: tuple[GeometryRow, ...]
+    pooled: tuple[GeometryRow, ...]
     alone: Mapping[int, SingleChange] = field(default_factory=dict)
 
     def known_best(self, run: int) -> tuple[GeometryRow, ...]:
         """The rows, in the same order, by which what changed into a run is known best."""
-        return self.settled if run in self.changed else self.rows
+        return self.pooled if run in self.changed else self.rows
 
 
 def run_errors(fit: Fit) -> tuple[RunErrors, ...]:

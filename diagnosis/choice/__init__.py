@@ -6,17 +6,17 @@ was chosen, which from here on is the set that is told, drawn and saved. Blocks 
 are correlated: poses, set-ups, stretches of time longer than the memory of what is left.
 """
 
-from diagnosis.choice.following import field_shares, followed, ways_tried
-from diagnosis.choice.prediction import Choice, Way, chosen_by_prediction, offered
-from diagnosis.choice.remembering import remembered
+from diagnosis.choice.following import choice_remarks, field_shares, followed
+from diagnosis.choice.long_runs import found_in
+from diagnosis.choice.prediction import Choice, ChoiceRule, candidate_effects, chosen_by_prediction
 
 __all__ = [
     "Choice",
-    "Way",
+    "ChoiceRule",
+    "candidate_effects",
+    "choice_remarks",
     "chosen_by_prediction",
     "field_shares",
     "followed",
-    "offered",
-    "remembered",
-    "ways_tried",
+    "found_in",
 ]

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import ttest_1samp
 
-from diagnosis.choice.prediction import SETS, Choice, Way
+from diagnosis.choice.prediction import SETS, Choice, ChoiceRule
 from diagnosis.choice.remembering import LOUDEST
 from diagnosis.evidence import (
     Grid,
@@ -51,6 +51,7 @@ def followed(
         progress: Told of every stage.
     """
     gross, best = final.base.gross, choice.best
+    task = replace(task, memory=None)
     plain = task.fit((*added, *best.effects), gross)
     task = replace(task, memory=_slow(choice.memory, int(plain.used.sum())))
     base = task.fit(added, gross)
@@ -118,7 +119,7 @@ def _chance(choice: Choice) -> float:
     Student's test of the logarithms of the errors, block by block: of few blocks it can never be
     small, and that is honest.
     """
-    nothing: Way = choice.ways[0]
+    nothing: ChoiceRule = choice.rules[0]
     gain = np.log(nothing.errors / choice.best.errors)
     return float(ttest_1samp(gain, 0.0, alternative="greater").pvalue)
 
@@ -133,8 +134,8 @@ def field_shares(fit: Fit, effect: ThermalField) -> FieldShares:
     return FieldShares(effect.axis, tuple(ranked[:LISTED]))
 
 
-def ways_tried(choice: Choice) -> tuple[Remark, ...]:
+def choice_remarks(choice: Choice) -> tuple[Remark, ...]:
     """Every way of a choice with its plain error of blocks left out, and a limit that was met."""
-    ways = tuple((w.name, w.error) for w in choice.ways)
-    told = ChosenByPrediction(choice.best.name, choice.blocks, ways)
+    tried = tuple((rule.name, rule.error) for rule in choice.rules)
+    told = ChosenByPrediction(choice.best.name, choice.blocks, tried)
     return (told, SearchEnded(SETS)) if choice.is_ended else (told,)

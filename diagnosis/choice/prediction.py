@@ -21,7 +21,15 @@ from diagnosis.choice.remembering import memory_of
 from diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
 from diagnosis.fit import Fit
 from diagnosis.regression import CLEARLY, GrossErrors, Memory
-from diagnosis.search import Budget, DiagnosisTask, Library, SearchState, refined_set, searched
+from diagnosis.search import (
+    Budget,
+    DiagnosisTask,
+    Library,
+    SearchState,
+    best_set,
+    refined_set,
+    scaled,
+)
 from twin.effects import again
 from twin.frames import Array
 from twin.library import proposals
@@ -43,9 +51,17 @@ PLAINLY = 0.97
 few, and 3 % are well inside their scatter."""
 
 
+LOUD = 1.3
+"""Noise with memory over stated noise from which it may be a cause that drives something."""
+
+REMEMBERED = 0.85
+"""Share of the error of a set in noise with memory that a way must reach to take its place: that
+set was found with all rows in sight, and noise that remembers is the simpler cause."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class Way:
-    """A way of choosing, judged.
+class ChoiceRule:
+    """A way of choosing effects, judged.
 
     Attributes:
         name: `nothing`, `two time constants`, `single effects`, `thermal field`.
@@ -71,15 +87,15 @@ class Choice:
     """The result of a choice by prediction.
 
     Attributes:
-        ways: All that were judged, the simplest first.
+        rules: All that were judged, the simplest first.
         best: The one to follow.
         blocks: Number of blocks that were left out, one after the other.
         memory: Of what is left with it; None where it is white.
         is_ended: Whether a search for single effects was ended by its limit, `SETS`.
     """
 
-    ways: tuple[Way, ...]
-    best: Way
+    rules: tuple[ChoiceRule, ...]
+    best: ChoiceRule
     blocks: int
     memory: Memory | None
     is_ended: bool = False
@@ -97,8 +113,8 @@ def chosen_by_prediction(
 ) -> Choice | None:
     """The way that predicts best, or None where there is nothing to choose.
 
-    There is where structure is left, what is left is slow, and the run recorded something that may
-    drive it.
+    There is where structure is left, or noise with memory that is larger than stated, what is left
+    is slow, and the run recorded something that may drive it.
 
     Args:
         added: Effects that the user added.
@@ -106,8 +122,13 @@ def chosen_by_prediction(
         candidates: Effects that may be found, fields among them.
         progress: Told of every block.
     """
-    if not (final.left or final.nameless) or not drives(task.run.touches):
+    remembers = task.memory is not None
+    is_open = bool(final.left or final.nameless)
+    if remembers:
+        is_open = task.fit((*added, *final.effects), final.base.gross).noise.factor > LOUD
+    if not is_open or not drives(task.run.touches):
         return None
+    task = replace(task, memory=None)
     fit = task.fit((*added, *final.effects), final.base.gross)
     memory, gain = memory_of(fit)
     if gain < CLEARLY or memory.per_independent < SLOW:
@@ -118,18 +139,23 @@ def chosen_by_prediction(
     budgets: list[Budget] = []
     choosers = _choosers(added, candidates, groups, budgets)
     gross = final.base.gross
-    ways = []
+    rules = []
     for done, (name, chooser) in enumerate(choosers.items()):
         progress(done / len(choosers), "choice by prediction")
         errors = _errors(task, added, gross, groups, chooser)
-        ways.append(Way(name, chooser(task, gross), errors, np.array([len(g) for g in groups])))
-    best = ways[0]
-    for way in ways[1:]:
-        if way.error < PLAINLY * best.error:
-            best = way
+        counts = np.array([len(g) for g in groups])
+        rules.append(ChoiceRule(name, chooser(task, gross), errors, counts))
+    best = rules[0]
+    for rule in rules[1:]:
+        if rule.error < PLAINLY * best.error:
+            best = rule
+    if remembers:
+        errors = _errors(task, added, gross, groups, lambda task, gross: final.effects)
+        if best.error > REMEMBERED * replace(best, errors=errors).error:
+            return None
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(
-        ways=tuple(ways),
+        rules=tuple(rules),
         best=best,
         blocks=len(groups),
         memory=left[0] if left[1] >= CLEARLY else None,
@@ -137,7 +163,7 @@ def chosen_by_prediction(
     )
 
 
-def offered(touches: Touches) -> list[Effect]:
+def candidate_effects(touches: Touches) -> list[Effect]:
     """All that a diagnosis may find in a run: proposals of the library and the field of drives."""
     warm = field(touches)
     return [*proposals(touches), *([warm] if warm is not None else [])]
@@ -221,7 +247,7 @@ def named(
     for _ in range(2):
         library = Library.of(complement, [*candidates, *more])
         budgets.append(Budget(SETS))
-        chosen = searched(library, [s.effect.name for s in found], budgets[-1])
+        chosen = scaled(best_set(library, found, budgets[-1])[1])
         found = list(refined_set(complement, chosen))
         more = [a for s in found if (a := again(s.effect)) is not None]
         if not more:

@@ -13,7 +13,7 @@ import numpy as np
 
 from diagnosis.evidence import Progress, ScaledEffect, quiet
 from diagnosis.fit import Fit
-from diagnosis.regression import CLEARLY, Memory, likely_memory
+from diagnosis.regression import CLEARLY, GrossErrors, Memory, likely_memory
 from diagnosis.search import DiagnosisTask, SearchState, search_until_stable
 from twin.model import Effect
 
@@ -24,8 +24,12 @@ is uncertain by about the root of two over their number, 37 % here."""
 LOUDEST = 3.0
 """Noise over stated noise from which what wanders is no noise of the instrument."""
 
-TURNS = 2
+TURNS = 3
 """Searches in which effects and memory settle beside one another."""
+
+SETTLED = 0.1
+"""Change of a memory, as atanh of its correlation, below which it has settled: its uncertainty in a
+run of a hundred touches."""
 
 
 def memory_of(fit: Fit) -> tuple[Memory, float]:
@@ -47,6 +51,9 @@ def remembered(
 ) -> tuple[DiagnosisTask, SearchState]:
     """The task and its result with memory in the noise, or as they were where there is none.
 
+    Memory and effects settle beside one another: beside too few effects what they do passes for a
+    memory, beside too many those mop it up.
+
     Args:
         task: What is diagnosed, noise white.
         added: Effects that the user added.
@@ -54,24 +61,41 @@ def remembered(
         candidates: Effects that may be found.
         progress: Told of every stage.
     """
-    if not (final.left or final.nameless):
-        return task, final
     best = (_evidence(final), task, final)
-    effects: Sequence[ScaledEffect] = ()
-    for _ in range(TURNS):
-        fit = task.fit((*added, *effects))
-        memory, gain = memory_of(fit)
-        if gain < CLEARLY or not is_noise(memory, int(fit.used.sum())):
-            break
-        other = replace(task, memory=memory)
-        found = search_until_stable(other, added, candidates, progress)
-        if found.left or found.nameless or found.base.noise.factor > LOUDEST:
-            break
-        best = max(best, (_evidence(found), other, found), key=lambda b: b[0])
-        if {s.effect.name for s in found.effects} == {s.effect.name for s in effects}:
-            break
-        effects = found.effects
+    tried = [0.0]
+    for beside in _beside(final):
+        effects = beside
+        for _ in range(TURNS):
+            memory = memory_beside(task, (*added, *effects), final.base.gross)
+            at = 0.0 if memory is None else float(np.arctanh(memory.correlation))
+            if memory is None or min(abs(at - t) for t in tried) < SETTLED:
+                break
+            tried.append(at)
+            other = replace(task, memory=memory)
+            found = search_until_stable(other, added, candidates, progress)
+            if found.base.noise.factor > LOUDEST:
+                break
+            best = max(best, (_evidence(found), other, found), key=lambda b: b[0])
+            effects = found.effects
     return best[1], best[2]
+
+
+def _beside(final: SearchState) -> list[tuple[ScaledEffect, ...]]:
+    """Sets beside which a memory is looked for: what was found, and where much is left, nothing."""
+    sets = [final.effects]
+    if final.effects and (final.left or final.nameless):
+        sets.append(())
+    return sets
+
+
+def memory_beside(
+    task: DiagnosisTask, effects: Sequence[ScaledEffect], gross: GrossErrors | None = None
+) -> Memory | None:
+    """Memory of the noise beside some effects; None where there is none that the run can tell."""
+    fit = replace(task, memory=None).fit(effects, gross)
+    memory, gain = memory_of(fit)
+    is_told = gain >= CLEARLY and is_noise(memory, int(fit.used.sum()))
+    return memory if is_told and fit.noise.factor <= LOUDEST else None
 
 
 def _evidence(final: SearchState) -> float:

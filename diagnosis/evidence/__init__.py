@@ -16,7 +16,6 @@ from diagnosis.evidence.effect_signatures import (
     quiet,
     signatures,
     tuned_variants,
-    whole_grids,
 )
 from diagnosis.evidence.evidence import (
     SAME,
@@ -54,5 +53,4 @@ __all__ = [
     "signatures",
     "strongest",
     "tuned_variants",
-    "whole_grids",
 ]

@@ -125,7 +125,7 @@ class ResidualSpace:
     def project(self, C: Array) -> Array:
         """Columns (N, K) freed of what the model can imitate, (N + P, K)."""
         n = len(C)
-        out = -self.Q @ (self.Q[:n].T @ C)
+        out = self.Q @ -(self.Q[:n].T @ C)
         out[:n] += C
         return out
 
@@ -246,12 +246,6 @@ class Grid:
     effect: Effect
     variants: tuple[Effect, ...]
     tries: int
-
-
-def whole_grids(candidates: Sequence[Effect], touches: Touches) -> list[Grid]:
-    """Candidates at every point of their grids."""
-    variants = [tuple(tuned_variants(effect, touches)) for effect in candidates]
-    return [Grid(e, v, len(v)) for e, v in zip(candidates, variants, strict=True)]
 
 
 def blocks(variants: Sequence[Effect]) -> list[tuple[int, int]]:

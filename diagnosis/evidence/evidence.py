@@ -10,6 +10,7 @@ from scipy.special import betainc
 from diagnosis.evidence.effect_signatures import IntArray, ResidualSpace, Signatures
 from diagnosis.regression import PRIOR_DOF, LeftOut, left_out
 from twin.frames import Array
+from twin.model import Effect
 
 VISIBLE = 0.25
 """Squared signature per unit of prior, over the noise, below which a direction of an effect's
@@ -64,6 +65,13 @@ class EffectSet:
         """Lower triangle of ``A^T A + 1``, the unit matrix being the prior of the effects."""
         G = self.A.T @ self.A + np.eye(self.A.shape[1])
         return np.tril(cho_factor(G, lower=True)[0])
+
+    @cached_property
+    def basis(self) -> Array:
+        """Data rows of model, effects and residual, (N, P + K + 1)."""
+        n = len(self.complement.u)
+        parts = (self.complement.Q[:n], self.A[:n], self.complement.residual[:n])
+        return np.column_stack(parts)
 
     def whiten(self, B: Array) -> Array:
         """``L^-1 A^T B``: (K, M) from columns (N + P, M)."""
@@ -282,15 +290,20 @@ def _scaled_evidence(effects: EffectSet, values: Array, along: Array) -> tuple[A
     return np.max(tried, axis=0), np.array(SCALES)[best]
 
 
-def addition(effects: EffectSet, C: Array) -> tuple[float, float]:
+def addition(effects: EffectSet, effect: Effect) -> tuple[float, float]:
     """Log evidence of a set with one effect more, and the likeliest scale of the effect.
+
+    From inner products alone: what is projected out of its columns is never written down.
 
     Args:
         effects: The set without it.
-        C: Its projected columns at scale 1, (N + P, k).
+        effect: With its inner parameters.
     """
-    E = effects.whiten(C)
-    S = C.T @ C - E.T @ E
-    g = C.T @ effects.complement.residual - E.T @ effects.along
+    C = effects.complement.columns([effect])
+    inside = effects.basis.T @ C
+    B, A, r = np.split(inside, [effects.complement.Q.shape[1], len(inside) - 1])
+    E = effects.lower_solve(A)
+    S = C.T @ C - B.T @ B - E.T @ E
+    g = r[0] - E.T @ effects.along
     evidence, scale = _scaled_evidence(effects, *_principal(S[None], g[None]))
     return float(evidence[0]), float(scale[0])

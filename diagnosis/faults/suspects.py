@@ -175,12 +175,14 @@ def recomputed(run: Run, touches: Touches) -> Run:
     Where the standard stands was perhaps found with the wrong description.
     """
     if _is_computed(run):
-        return placed(replace(run, touches=touches, deviation=computed_deviation(touches)))
+        return with_setups_placed(
+            replace(run, touches=touches, deviation=computed_deviation(touches))
+        )
     before, after = computed_deviation(run.touches), computed_deviation(touches)
     return replace(run, touches=touches, deviation=run.deviation + after - before)
 
 
-def placed(run: Run) -> Run:
+def with_setups_placed(run: Run) -> Run:
     """The run with its set-ups where its touches say, if its readings tell that."""
     return aligned(run)[0] if _is_computed(run) else run
 

@@ -21,8 +21,8 @@ from diagnosis.faults.suspects import (
     corrected,
     free_sd,
     has_minutes_for_seconds,
-    placed,
     suspects,
+    with_setups_placed,
 )
 from diagnosis.fit import Fit, fit_run, unit_mistake
 from diagnosis.regression import PRIOR_DOF, solve
@@ -133,7 +133,7 @@ def description_faults(before: Fit, progress: Progress = quiet) -> tuple[Descrip
     named = [_clock(before)] if has_minutes_for_seconds(run) else []
     excess = max(before.widened, before.noise.factor)
     is_absurd = excess > ABSURD or unit_mistake(before) is not None
-    few = placed(_few(run))
+    few = with_setups_placed(_few(run))
     right = _evidence(few, (), np.zeros(0))[0] - _moved_setups(run.touches.setups, few.touches)
     trials = []
     for i, suspect in enumerate(suspects(few, is_absurd)):

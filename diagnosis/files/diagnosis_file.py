@@ -185,11 +185,11 @@ def choice_table(choice: Choice) -> dict[str, Any]:
         "blocks": choice.blocks,
         "ways": [
             {
-                "way": way.name,
-                "held_out_um": _um(way.error),
-                "effects": [s.effect.name for s in way.effects],
+                "way": rule.name,
+                "held_out_um": _um(rule.error),
+                "effects": [s.effect.name for s in rule.effects],
             }
-            for way in choice.ways
+            for rule in choice.rules
         ],
     }
 

@@ -26,7 +26,7 @@ ALIKE = 1e-6
 SEEN = 0.1
 """Share of the largest lever below which a row says little of a curve, and noise would tell."""
 
-_HEADS = {"mm": ("um", UM), "rad": ("urad", URAD)}
+_HEADS = {"mm": ("um", UM), "rad": ("urad", URAD), "s": ("ms", 1e-3)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
 
 
@@ -99,7 +99,7 @@ def reported(
     fit: Fit,
     effect: Effect,
     wider: float = 1.0,
-    settled: Mapping[int, tuple[float, float]] | None = None,
+    without_tangent: Mapping[int, tuple[float, float]] | None = None,
 ) -> tuple[Reported, ...]:
     """Inner parameters, the size, and every linear parameter of a fitted effect.
 
@@ -108,11 +108,11 @@ def reported(
             uncertainty is wanted.
         effect: As it stands in the fit.
         wider: Factor on the uncertainties of the fit.
-        settled: Inner parameters that have no tangent with their standard uncertainties, by index.
+        without_tangent: Inner parameters that have none, with their uncertainties, by index.
     """
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
-    out = list(_inner(fit, effect, wider, settled or {}))
+    out = list(_inner(fit, effect, wider, without_tangent or {}))
     if getattr(effect, "is_shrunk", False):
         out.append(explained_rms(fit, effect, theta, covariance))
     elif getattr(effect, "is_curve", False):
@@ -247,7 +247,7 @@ def size(
 
 
 def _inner(
-    fit: Fit, effect: Effect, wider: float, settled: Mapping[int, tuple[float, float]]
+    fit: Fit, effect: Effect, wider: float, without_tangent: Mapping[int, tuple[float, float]]
 ) -> Sequence[Reported]:
     """Inner parameters with the uncertainty that their tangents give."""
     u = {
@@ -260,7 +260,7 @@ def _inner(
     for i, (inner, value) in enumerate(inner_values(effect, fit.run.touches)):
         suffix, factor = inner_unit(inner)
         bound = _bound(inner, value)
-        value, own = settled.get(i, (value, u.get(i)))
+        value, own = without_tangent.get(i, (value, u.get(i)))
         out.append(
             Reported(
                 quantity=inner.name,

@@ -14,6 +14,7 @@ from diagnosis.geometry.changes import (
 )
 from diagnosis.geometry.learnt import (
     CHANGED,
+    CLEAR,
     Correction,
     Estimate,
     GeometryRow,
@@ -27,6 +28,7 @@ from diagnosis.geometry.quantities import Quantity
 
 __all__ = [
     "CHANGED",
+    "CLEAR",
     "Correction",
     "Estimate",
     "GeometryRow",

@@ -5,15 +5,15 @@ correlation ``a_i`` to the touch before, ``z_i = (e_i - a_i e_before) / sqrt(1 -
 again; columns and deviations are filtered alike, and every test downstream holds as it stands.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_banded
+from scipy.linalg import cho_factor, cho_solve, solve_banded
 from scipy.optimize import minimize_scalar
 
-from diagnosis.regression.linear import BoolArray, solve
+from diagnosis.regression.linear import BoolArray
 from diagnosis.regression.noise import PRIOR_DOF
 from twin.frames import Array
 from twin.record import IntArray, Touches
@@ -98,6 +98,16 @@ class Whitener:
         shape = (-1,) + (1,) * (M.ndim - 1)
         kept, alone = self.kept.reshape(shape), self.alone.reshape(shape)
         return np.asarray((M - kept * M[np.maximum(self.before, 0)]) / alone)
+
+    def picked(self, values: Callable[[IntArray], Array], rows: IntArray) -> Array:
+        """Values over their uncertainty at some of the rows, (R, K), made white.
+
+        Args:
+            values: Of rows by number; asked for these, and for those before them.
+            rows: By number, (R,).
+        """
+        before = values(np.maximum(self.before[rows], 0))
+        return (values(rows) - self.kept[rows, None] * before) / self.alone[rows, None]
 
     def coloured(self, z: Array) -> Array:
         """Values (n,) of which white ones are the filter's result."""
@@ -221,9 +231,14 @@ def _marginal(X: Array, y: Array, log_det: float) -> float:
     ``-n log s - log det R - (objective + nu)/(2 s^2)`` at the likeliest size s of the noise.
     """
     n, s = len(y), 1.0
-    for _ in range(SIZINGS):
-        fit = solve(X / s, y / s)
-        s *= float(np.sqrt((fit.objective + PRIOR_DOF) / (n + PRIOR_DOF)))
-    fit = solve(X / s, y / s)
-    spread = float(np.log(np.abs(np.diag(fit.R))).sum())
-    return -n * float(np.log(s)) - spread - 0.5 * fit.objective + log_det
+    G, g, square = X.T @ X, X.T @ y, float(y @ y)
+    for remaining in reversed(range(SIZINGS + 1)):
+        M = G / s**2
+        M[np.diag_indices_from(M)] += 1.0
+        low = cho_factor(M, lower=True, check_finite=False)
+        along = float(g @ cho_solve(low, g, check_finite=False)) / s**4
+        objective = max(square / s**2 - along, 0.0)
+        if remaining:
+            s *= float(np.sqrt((objective + PRIOR_DOF) / (n + PRIOR_DOF)))
+    spread = float(np.log(np.diag(low[0])).sum())
+    return -n * float(np.log(s)) - spread - 0.5 * objective + log_det

@@ -15,6 +15,10 @@ FEW_DOF = 30.0
 DOUBTFUL = 2.0
 """Error of held-out touches over the stated noise from which few touches leave all open."""
 
+FELT = 1e-3
+"""Effect of a parameter of its expected size on all touches together, over the noise, below which
+they do not feel it: a rotary axis that stands still."""
+
 FEWEST_REPLICATES = 10
 """Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
 
@@ -28,7 +32,7 @@ class ReaderRemark:
 
 @dataclass(frozen=True, slots=True)
 class FewTouches:
-    """Fewer touches than parameters: the prior decides the rest."""
+    """Fewer touches than parameters that they feel: the prior decides the rest."""
 
     touches: int
     parameters: int
@@ -84,10 +88,12 @@ class OutliersLeftOut:
     Attributes:
         lines: Of the run file, what stands out most first.
         largest: Largest distance from what the other touches predict, outwards positive, mm.
+        runs: Names of the runs that the lines stand in, one each; empty for a single run.
     """
 
     lines: tuple[int, ...]
     largest: float
+    runs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +137,7 @@ class ChosenByPrediction:
 
     chosen: str
     blocks: int
-    ways: tuple[tuple[str, float], ...]
+    tried: tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,7 +203,8 @@ def remarks(fit: Fit) -> tuple[Remark, ...]:
 def _touches(fit: Fit) -> list[Remark]:
     """Too few touches or poses."""
     out: list[Remark] = []
-    n, p = int(fit.used.sum()), len(fit.parameters)
+    n, felt = int(fit.used.sum()), np.linalg.norm(fit.X[fit.used], axis=0) > FELT
+    p = int(felt.sum())
     if n < p:
         out.append(FewTouches(n, p))
     if fit.solution.dof < FEW_DOF:
@@ -253,4 +260,6 @@ def _outliers(fit: Fit) -> list[Remark]:
         return []
     rows = rows[np.argsort(-np.abs(gross.score[rows]))]
     largest = float(fit.residual[rows[np.argmax(np.abs(fit.residual[rows]))]])
-    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest)]
+    t = fit.run.touches
+    of = tuple(t.runs[k] for k in t.run[rows]) if len(t.runs) > 1 else ()
+    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest, of)]

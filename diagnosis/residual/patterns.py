@@ -105,7 +105,7 @@ def paired(values: tuple[Array, Array]) -> tuple[Array, Array]:
 
 
 def groups(touches: Touches) -> dict[str, IntArray]:
-    """Labels of the touches with a moderate number of values, (N,) each."""
+    """Labels of the touches with a moderate number of values, (N,) each; each grouping once."""
     pose = np.unique(np.column_stack([touches.setup, touches.pose]), axis=0, return_inverse=True)
     labels = {
         "feature": np.unique(touches.feature, return_inverse=True)[1],
@@ -116,6 +116,9 @@ def groups(touches: Touches) -> dict[str, IntArray]:
         if axis in touches.chain.programmed_axes:
             sides = np.unique(np.sign(touches.approach[:, i]), return_inverse=True)[1]
             labels[f"dir{axis}"] = sides.reshape(-1)
+    both = len(np.unique(np.column_stack([labels["feature"], labels["pose"]]), axis=0))
+    if both == 1 + labels["feature"].max() == 1 + labels["pose"].max():
+        del labels["pose"]  # cycles of a positioning test, holes of a list
     return {k: v for k, v in labels.items() if 1 < len(np.unique(v)) <= MOST_GROUPS}
 
 

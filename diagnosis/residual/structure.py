@@ -26,6 +26,10 @@ from twin.record import IntArray, Touches
 CHANCE = 1e-3
 """Probability, all tests together, that white noise is said to have structure."""
 
+MATERIAL = 0.01
+"""Share of the squared residual that a pattern must hold to count: in ten thousand rows less is
+beyond chance too, but whoever knew it would predict no more than half a per cent better."""
+
 SIZES = np.geomspace(0.3, 3e4, 11) ** 2
 """Variances of a pattern over the noise variance of one touch that are tried for its evidence."""
 
@@ -51,6 +55,7 @@ class Structure:
         variables: What the pattern varies with.
         direction: Along what it acts.
         p_value: Probability in white noise, corrected for all the tests made.
+        share: Of the squared residual that it holds beyond chance.
         evidence: Log evidence for the pattern against noise alone.
         columns: Projected features scaled to their most likely size, (N + P, K): a prior of one
             each; None for tests that name no pattern.
@@ -61,6 +66,7 @@ class Structure:
     variables: tuple[str, ...]
     direction: str
     p_value: float
+    share: float
     evidence: float
     columns: Array | None
     period: float = 0.0
@@ -69,7 +75,7 @@ class Structure:
 def find_structure(
     effects: EffectSet, progress: Progress = quiet, most: int = 12
 ) -> list[Structure]:
-    """Everything that a residual varies with beyond chance, the most certain first.
+    """Everything material that a residual varies with beyond chance, the most certain first.
 
     The statistic of a smooth pattern is the squared correlation of its features with the residual,
     weighted by the spectrum (the score of a random function of that roughness); its distribution in
@@ -94,19 +100,26 @@ def find_structure(
     neighbours = [*_neighbours(effects), *_crowds(complement)]
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
     found = [_as_structure(p, t, count) for p, t in zip(known, tested, strict=True)]
-    found += [_wave_structure(effects, wave, count), *(_corrected(n, count) for n in neighbours)]
-    found = sorted((f for f in found if f.p_value < CHANCE), key=lambda f: f.p_value)
+    found += [
+        _wave_structure(effects, wave, count, rows),
+        *(_corrected(n, count) for n in neighbours),
+    ]
+    counts = (f for f in found if f.p_value < CHANCE and f.share > MATERIAL)
+    found = sorted(counts, key=lambda f: f.p_value)
     progress(1.0, "structure left")
     return [_with_columns(effects, known, f, rows) for f in found[:most]] + found[most:]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Tested:
-    """Probabilities (L,) and log evidences (L,) of a pattern's roughnesses, with the best size."""
+    """Probabilities (L,) and log evidences (L,) of a pattern's roughnesses, with the best size, and
+    the share of the squared residual that each holds so (L,).
+    """  # noqa: D205
 
     p: Array
     evidence: Array
     size: Array
+    share: Array
 
 
 def _tested(effects: EffectSet, pattern: Pattern, rows: IntArray) -> _Tested:
@@ -122,7 +135,11 @@ def _tested(effects: EffectSet, pattern: Pattern, rows: IntArray) -> _Tested:
     sizes = SIZES / max(float(np.mean(np.trace(S, axis1=1, axis2=2))), 1e-300)
     gained = _evidence(effects, values, along, sizes)
     best = np.argmax(gained, axis=0)
-    return _Tested(p, gained[best, np.arange(len(p))], sizes[best])
+    scaled = sizes[best][:, None]
+    by_chance = values * objective / max(effects.dof, 1.0)
+    fall = (scaled * (along - by_chance) / (1.0 + scaled * values)).sum(axis=1)
+    whole = fall * (len(effects.complement.u) / len(rows)) / objective
+    return _Tested(p, gained[best, np.arange(len(p))], sizes[best], whole)
 
 
 def _evidence(effects: EffectSet, values: Array, along: Array, sizes: Array) -> Array:
@@ -145,6 +162,7 @@ def _as_structure(pattern: Pattern, tested: _Tested, count: int) -> Structure:
         variables=pattern.variables,
         direction=pattern.direction,
         p_value=p,
+        share=float(tested.share.max()),
         evidence=float(tested.evidence.max()),
         columns=None,
     )
@@ -171,7 +189,7 @@ def _corrected(found: Structure, count: int) -> Structure:
     return replace(found, p_value=min(1.0, found.p_value * count))
 
 
-def _wave_structure(effects: EffectSet, wave: Wave, count: int) -> Structure:
+def _wave_structure(effects: EffectSet, wave: Wave, count: int, rows: IntArray) -> Structure:
     """The best wave in time as a structure; its two amplitudes are as free as the data like."""
     n = effects.complement.count + PRIOR_DOF
     fall = -np.log(max(1.0 - wave.drop / effects.objective, 1e-9))
@@ -182,19 +200,21 @@ def _wave_structure(effects: EffectSet, wave: Wave, count: int) -> Structure:
         variables=("time_s",),
         direction=wave.direction,
         p_value=p,
+        share=wave.drop * (len(effects.complement.u) / len(rows)) / effects.objective,
         evidence=float(gained),
         columns=effects.complement.project(wave.columns) if p < CHANCE else None,
         period=wave.period,
     )
 
 
-def _without_columns(shape: Shape, variables: tuple[str, ...], p: float) -> Structure:
+def _without_columns(shape: Shape, variables: tuple[str, ...], p: float, share: float) -> Structure:
     """A test that names no pattern."""
     return Structure(
         shape=shape,
         variables=variables,
         direction="normal",
         p_value=p,
+        share=share,
         evidence=-np.inf,
         columns=None,
     )
@@ -214,8 +234,11 @@ def _neighbours(effects: EffectSet) -> list[Structure]:
     out = []
     for variables, left, right in _neighbour_pairs(touches):
         mean = -float(np.einsum("np,np->", Q[left], Q[right]))
-        score = (float(r[left] @ r[right]) - mean) / np.sqrt(max(len(left), 1))
-        out.append(_without_columns(Shape.NEIGHBOURS, variables, float(ndtr(-score))))
+        pairs = max(len(left), 1)
+        common = float(r[left] @ r[right]) - mean
+        p = float(ndtr(-common / np.sqrt(pairs)))
+        # a neighbour that correlates by c tells c^2 of the square of a touch
+        out.append(_without_columns(Shape.NEIGHBOURS, variables, p, (common / pairs) ** 2))
     return out
 
 
@@ -223,7 +246,7 @@ def _crowds(complement: ResidualSpace) -> list[Structure]:
     """Do gross errors lie together?"""
     allowed = complement.used | complement.gross
     found = crowds(complement.touches, allowed, complement.gross)
-    return [_without_columns(Shape.CROWD, names, p) for names, p in found.items()]
+    return [_without_columns(Shape.CROWD, names, p, 1.0) for names, p in found.items()]
 
 
 def _neighbour_pairs(touches: Touches) -> list[tuple[tuple[str, ...], IntArray, IntArray]]:

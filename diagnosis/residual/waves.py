@@ -117,9 +117,12 @@ def _of_rows(
     effects: EffectSet, time: Array, frequency: Array, weight: Array, rows: IntArray
 ) -> Array:
     """Waves at some of the touches, freed of the noise's memory where it has one."""
-    if effects.complement.whitener is None:
-        return _wave(time[rows], frequency, weight[rows])
-    return _seen(effects, _wave(time, frequency, weight))[rows]
+
+    def wave(at: IntArray) -> Array:
+        return _wave(time[at], frequency, weight[at])
+
+    filter_ = effects.complement.whitener
+    return wave(rows) if filter_ is None else filter_.picked(wave, rows)
 
 
 def _seen(effects: EffectSet, F: Array) -> Array:

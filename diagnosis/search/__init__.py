@@ -7,13 +7,13 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 """
 
 from diagnosis.search.refine import refined, refined_set, with_moved_points
-from diagnosis.search.screening import Library
+from diagnosis.search.screened import best_set, scaled
+from diagnosis.search.screening import WHOLE_BELOW, Library
 from diagnosis.search.search_loop import (
     SearchState,
     most_evident,
     refined_named,
     search_until_stable,
-    searched,
 )
 from diagnosis.search.selection import (
     CHANCE,
@@ -32,6 +32,7 @@ __all__ = [
     "FREEDOM",
     "LISTED",
     "MOST_SETS",
+    "WHOLE_BELOW",
     "WORTH",
     "Budget",
     "DiagnosisTask",
@@ -40,11 +41,12 @@ __all__ = [
     "Search",
     "SearchState",
     "Verified",
+    "best_set",
     "most_evident",
     "refined",
     "refined_named",
     "refined_set",
+    "scaled",
     "search_until_stable",
-    "searched",
     "with_moved_points",
 ]

@@ -50,7 +50,7 @@ def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[Scal
         effect: At the best point of its grid.
         levels: Number of scans.
     """
-    best, (top, scale) = effect, _addition(base, effect)
+    best, (top, scale) = effect, addition(base, effect)
     several = len(continuous_inner(effect, base.complement.touches)) > 1
     for _ in range(SWEEPS if several else 1):
         before = top
@@ -72,7 +72,7 @@ def _sweep(
             half = spacing(inner, value) / 4.0**level
             for point in np.clip(np.linspace(value - half, value + half, POINTS), low, high):
                 trial = _moved(best, index, float(point))
-                found, size = _addition(base, trial)
+                found, size = addition(base, trial)
                 if found > top:
                     best, top, scale = trial, found, size
             if level >= FEWEST and top - before < SETTLED:
@@ -84,10 +84,6 @@ def _moved(effect: Tunable, index: int, value: float) -> Tunable:
     values = list(effect.tuning.values())
     values[index] = value
     return effect.tuned(*values)
-
-
-def _addition(base: EffectSet, effect: Effect) -> tuple[float, float]:
-    return addition(base, projected(base.complement, [ScaledEffect(effect)]))
 
 
 def refined_set(

@@ -111,7 +111,10 @@ class Library:
         best: dict[int, list[int]] = {}
         for variant in np.argsort(-scores.evidence, kind="stable"):
             best.setdefault(int(self.sample.owner[variant]), []).append(int(variant))
-        return {index: frozenset(best[index][:POINTS]) for index in list(best)[:SHORT]}
+        names = {s.effect.name for s in found}
+        known = [i for i, grid in enumerate(self.grids) if grid.effect.name in names]
+        let_through = dict.fromkeys([*list(best)[:SHORT], *known])
+        return {i: frozenset(best[i][:POINTS]) for i in let_through}
 
     def _screen(self, found: Sequence[ScaledEffect], effects: EffectSet) -> Scores:
         """Scores of all variants beside a set of effects."""

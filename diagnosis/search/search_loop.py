@@ -34,8 +34,8 @@ from diagnosis.fit import Fit
 from diagnosis.residual import Structure, find_structure
 from diagnosis.search.edges import unexplained_near_slip, without
 from diagnosis.search.refine import refined_set
-from diagnosis.search.regrid import regridded
-from diagnosis.search.screening import Library, joined_shortlists
+from diagnosis.search.screened import best_set, scaled
+from diagnosis.search.screening import Library
 from diagnosis.search.selection import Budget, EffectSubset, Search
 from diagnosis.search.task import DiagnosisTask
 from twin.effects import Again, again
@@ -60,19 +60,12 @@ CLEARLY = 15.0
 """Log odds by which one pattern without a name must beat all library effects together to say that
 they only imitate it."""
 
-SCREENINGS = 3
-"""Most screenings of the library in one round of a long run."""
-
 STRETCHES = 5
 """Stretches of time that are left out to weigh patterns against named effects."""
 
 BETTER = 0.97
 """Share of the held-out error of named effects that patterns without a name, or tables, must reach
 to push one of them out: as far as both predict alike, the name stays."""
-
-LONG = 2000
-"""Rows from which laws and tables are searched for together: a search of laws that do not explain a
-log goes on for minutes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,22 +136,26 @@ def search_until_stable(
     added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
     progress: Progress = quiet,
+    start: Sequence[ScaledEffect] = (),
 ) -> SearchState:
     """Search among laws, then with tables, which say where an axis is wrong and not why.
 
     A table is followed only where it predicts plainly better than what the laws came to: it can
-    imitate any of them. A long log tells them apart by its evidence, in one search.
+    imitate any of them.
 
     Args:
         added: Effects that the user added.
         candidates: Effects that may be found.
         progress: Told of every stage.
+        start: A set to begin with, inner parameters refined, as a choice of the rows gave it: what
+            tables there are, it holds.
     """
-    laws = [e for e in candidates if not getattr(e, "is_table", False)]
-    if len(laws) == len(candidates) or len(task.run) > LONG:
-        return _with_further_periods(task, added, candidates, progress)
-    state = _with_further_periods(task, added, laws, progress)
-    other = _with_further_periods(task, added, candidates, progress)
+    begun = {s.effect.name for s in start}
+    laws = [e for e in candidates if not getattr(e, "is_table", False) or e.name in begun]
+    state = _with_further_periods(task, added, laws, progress, start)
+    if start or len(laws) == len(candidates):
+        return state
+    other = _with_further_periods(task, added, candidates, progress, ())
     return other if _held_out(other) < BETTER * _held_out(state) else state
 
 
@@ -174,14 +171,16 @@ def _with_further_periods(
     added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
     progress: Progress,
+    start: Sequence[ScaledEffect],
 ) -> SearchState:
     """Search, and again with further periods of what repeats where structure is left.
 
     A screw and its encoder repeat with two periods. A second one is offered only beside a first,
     and only where something is left.
     """
-    offered = list(candidates)
-    state = _until_gross_errors_stay(task, added, offered, progress)
+    names = {e.name for e in candidates}
+    offered = [*candidates, *(s.effect for s in start if s.effect.name not in names)]
+    state = _until_gross_errors_stay(task, added, offered, progress, start)
     for number in range(2, PERIODS + 1):
         before = {s.effect.name for s in state.effects}
         repeat = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
@@ -190,7 +189,7 @@ def _with_further_periods(
         if not further or not (state.left or state.nameless):
             break
         offered += further
-        other = _until_gross_errors_stay(task, added, offered, progress)
+        other = _until_gross_errors_stay(task, added, offered, progress, start)
         if not {a.name for a in further} & {s.effect.name for s in other.effects}:
             break
         state = other
@@ -201,7 +200,8 @@ def _until_gross_errors_stay(
     task: DiagnosisTask,
     added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
-    progress: Progress = quiet,
+    progress: Progress,
+    start: Sequence[ScaledEffect],
 ) -> SearchState:
     """Search in turns, until the gross errors stay what they are.
 
@@ -212,18 +212,20 @@ def _until_gross_errors_stay(
         added: Effects that the user added.
         candidates: Effects that may be found.
         progress: Told of every stage.
+        start: A set to begin with.
     """
     touches = task.run.touches
-    base = task.fit(added)
-    tried = unexplained_near_slip(touches, base.gross, ())
+    whole = task.fit((*added, *start))
+    base = task.fit(added, whole.gross, whole) if start else whole
+    tried = unexplained_near_slip(touches, base.gross, start)
     if tried.any():
-        base = task.fit(added, gross=without(base.gross, tried))
-    found: Sequence[str] = ()
+        base = task.fit(added, without(base.gross, tried), whole if start else None)
+    found: Sequence[ScaledEffect] = start
     budget = Budget()
     for remaining in reversed(range(ROUNDS)):
         library = Library.of(ResidualSpace.of(base), candidates, progress)
-        search, chosen = _searched(library, found, budget, progress)
-        effects = refined_set(library.complement, _scaled(chosen))
+        search, chosen = best_set(library, found, budget, progress)
+        effects = refined_set(library.complement, scaled(chosen))
         whole = task.fit((*added, *effects))
         further = unexplained_near_slip(touches, whole.gross, effects) & ~tried & (remaining > 1)
         is_same = np.array_equal(whole.gross.rows, base.gross.rows) and not further.any()
@@ -231,7 +233,7 @@ def _until_gross_errors_stay(
             break
         tried |= further
         base = task.fit(added, without(whole.gross, further), whole)
-        found = [s.effect.name for s in effects]
+        found = effects
     return _with_structure(base, library, search, chosen, progress)
 
 
@@ -265,7 +267,7 @@ def _with_structure(
         library=library,
         search=search,
         chosen=chosen,
-        effects=tuple(refined_set(library.complement, _scaled(chosen))),
+        effects=tuple(refined_set(library.complement, scaled(chosen))),
         at_start=tuple(at_start),
         left=tuple(left),
         nameless=tuple(nameless),
@@ -291,50 +293,6 @@ def _by_stretches(effects: EffectSet) -> float:
     order = np.argsort(complement.touches.time[complement.used], kind="stable")
     groups = tuple(np.array_split(order, STRETCHES))
     return EffectSet(replace(complement, groups=groups), effects.A).held_out.rms
-
-
-def _scaled(chosen: EffectSubset) -> list[ScaledEffect]:
-    return [ScaledEffect(m.effect, m.scale) for m in chosen.members]
-
-
-def _searched(
-    library: Library, found: Sequence[str], budget: Budget, progress: Progress
-) -> tuple[Search, EffectSubset]:
-    """The best set of effects; of a long run among those that screenings let through."""
-    complement = library.complement
-    empty = EffectSet(complement, np.zeros((len(complement.residual), 0)))
-    shortlist = library.shortlist((), empty)
-    for _ in range(SCREENINGS):
-        search = Search(library.pool(shortlist), None, progress, budget)
-        nothing = search.evaluate(())
-        ranked = search.ranking(nothing)
-        start = [search.member(nothing, v) for v in ranked if search.name_of(v) in found]
-        search, chosen = regridded(search, search.run(start))
-        further = library.shortlist(_scaled(chosen), chosen.effects)
-        if joined_shortlists(shortlist, further) == dict(shortlist) or _found_again(chosen, found):
-            break
-        shortlist = joined_shortlists(shortlist, further)
-        found = [m.effect.name for m in chosen.members]
-    return search, chosen
-
-
-def searched(
-    library: Library, found: Sequence[str], budget: Budget, progress: Progress = quiet
-) -> list[ScaledEffect]:
-    """Effects of the best set, without a look at patterns or at gross errors.
-
-    Args:
-        library: Candidates.
-        found: Names of effects to begin with.
-        budget: Sets that may be tried.
-        progress: Told of every step.
-    """
-    return _scaled(_searched(library, found, budget, progress)[1])
-
-
-def _found_again(chosen: EffectSubset, found: Sequence[str]) -> bool:
-    """Whether a search among more candidates found what was found before."""
-    return bool(chosen.members) and {m.effect.name for m in chosen.members} == set(found)
 
 
 def most_evident(found: Sequence[Structure]) -> Structure:

@@ -62,6 +62,12 @@ one of near copies, asks for more, and is told when it did not get it."""
 LARGE = 5e7
 """Touches times squared columns from which a set counts for more than one."""
 
+USUAL_POOL = 1.3e6
+"""Touches times columns of all candidates in a usual run; a set of a small one counts for less."""
+
+LEAST = 0.1
+"""What any set counts for."""
+
 
 @dataclass(slots=True)
 class Budget:
@@ -73,9 +79,10 @@ class Budget:
 
     left: float = MOST_SETS
 
-    def spend(self, touches: int, columns: int) -> None:
-        """Charge for one set."""
-        self.left -= 1.0 + float(touches) * columns * columns / LARGE
+    def spend(self, touches: int, columns: int, pool: int) -> None:
+        """Charge for one set, and for all columns of the pool beside it."""
+        beside = min(LEAST + float(touches) * pool / USUAL_POOL, 1.0)
+        self.left -= beside + float(touches) * columns * columns / LARGE
 
     @property
     def is_spent(self) -> bool:
@@ -188,7 +195,8 @@ class Search:
         """Put a set into the projection; the budget is charged for it."""
         members = tuple(members)
         effects = effect_set(self.complement, self.pool, members, self.fixed)
-        self.budget.spend(*effects.A.shape)
+        rows, own = effects.A.shape
+        self.budget.spend(rows, own, self.pool.C.shape[1])
         return EffectSubset(members, effects)
 
     def member(self, chosen: EffectSubset, variant: int) -> Member:

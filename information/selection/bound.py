@@ -25,8 +25,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from information.criteria import DesignCriterion
-from information.selection.shares import largest_sum
-from information.selection.touch_selection import Quota
 from twin.frames import Array
 
 
@@ -72,24 +70,3 @@ def slope(criterion: DesignCriterion, information: Array) -> Slope:
         value=criterion.measure.shown(raw),
         degree=sum(t.degree(i) for t, i in zip(tangents, inverse, strict=True)),
     )
-
-
-def bound_at(
-    criterion: DesignCriterion,
-    W: Array,
-    information: Array,
-    count: int,
-    quotas: tuple[Quota, ...] = (),
-) -> float:
-    """What no choice of rows can beat, by the tangent at some information.
-
-    Args:
-        criterion: What the choice is for.
-        W: Rows of all candidates, (N, R).
-        information: ``W^T diag(x) W`` of fractions or of a choice, (R, R); any will do, the nearer
-            to the best the tighter.
-        count: Number of touches.
-        quotas: Shares that every choice has to keep.
-    """
-    here = slope(criterion, information)
-    return here.bound(largest_sum(here.gains(W), count, quotas).most)

@@ -8,13 +8,10 @@ start for exchanges.
 from dataclasses import dataclass
 
 from information.criteria import DesignCriterion
-from information.selection.bound import bound_at
-from information.selection.relaxation import Relaxed, relaxed
+from information.selection.relaxation import relaxed
 from information.selection.shares import heaviest
 from information.selection.touch_selection import Mask, Quota, Selection, exchange
 from twin.frames import Array
-
-__all__ = ["Certificate", "Relaxed", "bound_at", "certificate", "relaxed", "rounded"]
 
 
 @dataclass(frozen=True)

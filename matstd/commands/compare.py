@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 
 from matstd.options import (
     REPORT_FILES,
-    add_pdf,
-    add_pitch,
-    add_start,
+    add_measured,
     asked_printer,
     first_model,
     model_file,
@@ -28,15 +26,7 @@ OURS = ("pictures/*.png", *REPORT_FILES)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
-    add_start(parser, "predict with it; without one the ordinary geometric model is fitted")
-    add_pitch(parser)
-    parser.add_argument(
-        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
-    )
-    parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
-    add_pdf(parser)
-    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
-    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
+    add_measured(parser, "predict with it; without one the ordinary geometric model is fitted")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from matstd.commands.simulate import add_planted, checked_noise, virtual_machine
+from matstd.options import add_output, seen_from
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,10 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--user", default="", help="who runs LinuxCNC where you are root, which it refuses"
     )
-    parser.add_argument(
-        "-o", "--output", metavar="FOLDER", required=True, help="for programs, log and run file"
-    )
-    parser.add_argument("--force", action="store_true", help="replace what is in the folder")
+    add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -38,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from artefact.body import read_standard
-    from matstd.console import say
+    from matstd.console import say, say_each
     from probe_paths.language import read_dialect
     from probe_paths.linuxcnc import installed, rehearse
     from twin.files import write_run
@@ -58,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
         say(f"{touches} touches on LinuxCNC, about {made.duration / MINUTE:.0f} min")
 
     made = rehearse(files, standard, machine, for_noise, out, args.touches, user, told)
-    write_run(out / "run.csv", made.run, _seen_from(design / "machine.toml", out))
+    write_run(out / "run.csv", made.run, seen_from(out, design / "machine.toml"))
     say(
         f"{out / 'run.csv'}: {len(made.run)} touches from LinuxCNC's own log, "
         f"u = {made.u / UM:.3f} µm with the latch"
@@ -68,10 +66,8 @@ def run(args: argparse.Namespace) -> int:
         f"- latched {low:.3f} to {high:.3f} µm beyond the twin's contact, mean {mean:.3f}; "
         f"modelled 0 to {made.modelled / UM:.3f} µm"
     )
-    for text in args.add:
-        say(f"- planted: {text}")
-    for remark in made.run.remarks:
-        say(f"- {remark}")
+    say_each(f"planted: {text}" for text in args.add)
+    say_each(made.run.remarks)
     return 0
 
 
@@ -101,10 +97,3 @@ def _programs(design: Path) -> list[Path]:
     if not found:
         raise BadFile(folder, "folder", "no program", "the folder that `matstd design` made")
     return sorted(found, key=lambda p: (len(p.name), p.name))
-
-
-def _seen_from(file: Path, folder: Path) -> str:
-    import os
-    from pathlib import Path
-
-    return Path(os.path.relpath(file, folder.resolve())).as_posix()

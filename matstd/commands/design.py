@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import REPORT_FILES, add_output, add_pdf, asked_printer, print_report
 from matstd.workers import add_scheduler
 
 if TYPE_CHECKING:
@@ -44,7 +44,6 @@ _ALWAYS = "blank.base_mm and blank.height_mm (larger)"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("project", metavar="PROJECT.toml", help="what to design, for which machine")
-    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
     parser.add_argument(
         "--control",
         metavar="NAME|FILE.toml",
@@ -52,16 +51,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_scheduler(parser)
     add_pdf(parser)
-    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
+    add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from artefact.brief import read_project
     from artefact.reach import standing_remarks
-    from matstd.console import say, say_assumed
+    from matstd.console import say, say_assumed, say_each
     from matstd.folder import results_folder
-    from matstd.from_project import dialect
+    from matstd.from_project import dialect, feeds
     from matstd.workers import connected
     from report.words import design_lines, proof_line
 
@@ -71,8 +70,7 @@ def run(args: argparse.Namespace) -> int:
         project = replace(project, control=own if own.endswith(".toml") else args.control)
     dialect(project)  # a control that nobody knows is refused before any work
     say_assumed(project.chain)
-    for remark in standing_remarks(project.chain, project.setup.T_table_artefact):
-        say(f"- {remark}")
+    say_each(standing_remarks(project.chain, project.setup.T_table_artefact))
     leftovers = (*REPORT_FILES, *SHEET_FILES)
     with (
         results_folder(args.output, args.force, leftovers, [REFUSED, NO_ROOM]) as folder,
@@ -80,6 +78,7 @@ def run(args: argparse.Namespace) -> int:
     ):
         from matstd.design import design
         from matstd.progress import stages
+        from probe_paths.emit import make_dry_run
         from report.pages import write_design_page, write_setup_page
 
         with stages() as progress, connected(args.scheduler) as workers:
@@ -87,19 +86,16 @@ def run(args: argparse.Namespace) -> int:
             progress("report", 0, 1)
             remarks = write_design_page(made, folder)
             print_report(folder, printed_by)
-            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, dialect(project))
+            words, raised = dialect(project), project.workshop.dry_run_mm
+            dry_run = make_dry_run(made.plan, raised, words, feeds(project))
+            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, dry_run, words)
             print_report(sheet.parent, printed_by, sheet.stem)
-    for remark in remarks:
-        say(f"- {remark}")
+    say_each(remarks)
     verdict, *others = design_lines(made.placement)
     say(verdict, style="bold")
-    for line in others:
-        say(f"- {line}")
-    for refusal in made.plan.refused:
-        say(f"- touch dropped: {refusal}")
-    for machine in made.machines:
-        told = proof_line(machine.seed + 1, machine.in_workspace, machine.proof, machine.fit)
-        say(f"- {told}")
+    say_each(others)
+    say_each(f"touch dropped: {refusal}" for refusal in made.plan.refused)
+    say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0
 

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 
 from matstd.options import (
     REPORT_FILES,
-    add_pdf,
-    add_pitch,
-    add_start,
+    add_measured,
     asked_printer,
     first_model,
     model_file,
@@ -54,8 +52,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="measurements; several runs of one machine (days, set-ups, standards) in their order",
     )
-    add_start(parser, "begin with it; without one begin with the ordinary geometric model")
-    add_pitch(parser)
     for option, word, meaning in LISTS:
         parser.add_argument(
             option, metavar=word, action="extend", nargs="+", default=[], help=meaning
@@ -63,13 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--auto", action="store_true", help="add whatever the diagnosis finds, step by step"
     )
-    parser.add_argument(
-        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
-    )
-    parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
-    add_pdf(parser)
-    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
-    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
+    add_measured(parser, "begin with it; without one begin with the ordinary geometric model")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.options import add_effects, load_effects
+
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
@@ -20,22 +22,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="one kind, such as thermal-lag, or any words for it: spindle growth",
     )
-    parser.add_argument(
-        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
-    )
+    add_effects(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Print the table, the kinds that words may mean, or the whole story of one kind."""
-    from pathlib import Path
-
     from matstd import console as words
     from twin.errors import UnknownEffect
-    from twin.library import find_kinds, kinds, load_installed_effects, load_user_effects
+    from twin.library import find_kinds, kinds
 
-    load_installed_effects()
-    for path in args.effects:
-        load_user_effects(Path(path))
+    load_effects(args.effects)
     console = words.console()
     query = " ".join(args.kind)
     found = find_kinds(query) if query else kinds()

@@ -2,6 +2,8 @@
 
 import argparse
 
+from matstd.options import add_output, seen_from
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
@@ -26,19 +28,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="temperatures by the clock of the control: columns clock (2031-05-06T07:08:09) and "
         "T_<sensor>_degC",
     )
-    parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
-    parser.add_argument("--force", action="store_true", help="overwrite the output")
+    add_output(parser, "RUN.csv")
 
 
 def run(args: argparse.Namespace) -> int:
     """Write the run file and say what the logs hold."""
-    import os
     from pathlib import Path
 
     import numpy as np
 
     from artefact.body import read_standard
-    from matstd.console import say, say_assumed
+    from matstd.console import say, say_assumed, say_each
     from probe_paths.campaign import evaluate
     from probe_paths.control import read_log
     from probe_paths.language import Dialect
@@ -55,17 +55,17 @@ def run(args: argparse.Namespace) -> int:
     measured = evaluate(parts, standard, chain, args.u_um * UM, Dialect(result_height=args.z))
     if args.sensors:
         measured = read_sensors(args.sensors).joined(measured, min(part.begin for part in parts))
-    folder = Path(args.output).resolve().parent
-    write_run(args.output, measured, Path(os.path.relpath(args.machine, folder)).as_posix())
+    write_run(args.output, measured, seen_from(Path(args.output).parent, args.machine))
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
     say(
         f"{args.output}: {len(measured)} touches at {len(np.unique(measured.touches.pose))} table "
         f"poses, deviations {rms:.3f} µm rms after the set-up was fitted"
     )
     say_assumed(chain)
-    for remark in measured.remarks:
-        say(f"- {remark}")
-    for part in parts:
-        if not part.is_complete:
-            say(f"- {part.path}: {part.program} stopped after {len(part.number)} touches")
+    say_each(measured.remarks)
+    say_each(
+        f"{part.path}: {part.program} stopped after {len(part.number)} touches"
+        for part in parts
+        if not part.is_complete
+    )
     return 0

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from matstd.options import add_output, seen_from
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
     "dev_um = -(actual - target) along the direction of motion",
+    "circle": "a radial deviation (actual - nominal) is where the tool really went; in the run it "
+    "stands as dev_um = -(actual - nominal) along the radius outwards",
     "arm": "the tracker says where the reflector really is, the readings where the controller "
     "believes it; in the run stands dev_um = believed - measured along x, y and z of the tracker",
     "part": "measured - nominal is where the tool really went; in the run it stands as "
@@ -33,9 +37,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="csv, txt, xlsx, xls or ods; of several lists of points each is a set-up of its own",
     )
+    _add_kinds(parser)
+    _add_details(parser)
+    parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
+    parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
+    parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
+    parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
+    parser.add_argument(
+        "--columns", metavar="NAME,...", help="names of the columns of a table without a header"
+    )
+    parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
+    add_output(parser, "RUN.csv", "overwrite the outputs")
+
+
+def _add_kinds(parser: argparse.ArgumentParser) -> None:
+    """What the files are: one of them."""
     kind = parser.add_mutually_exclusive_group(required=True)
     kind.add_argument(
         "--positioning", metavar="AXIS", help="ISO 230-2 table of this axis: targets, cycles"
+    )
+    kind.add_argument(
+        "--circle",
+        metavar="PLANE",
+        help="circular test (ISO 230-4, ball bar) in XY, YZ or ZX: angles, radial deviations",
     )
     kind.add_argument(
         "--part", action="store_true", help="nominal/measured list of a part this machine made"
@@ -51,42 +75,46 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="serial arm under a tracker: columns j1, j2 ... of joints and x, y, z of a reflector",
     )
     kind.add_argument("--map", metavar="MAP.toml", help="any other table, by a mapping file")
-    parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
-    parser.add_argument(
-        "--dh",
-        metavar="DH.csv",
-        help="with --arm, for --machine: Denavit and Hartenberg's a alpha d theta, a row a joint",
-    )
-    parser.add_argument(
-        "--modified", action="store_true", help="the parameters of --dh are modified ones (Craig)"
-    )
-    parser.add_argument(
-        "--reflector",
-        metavar=("X", "Y", "Z"),
-        type=float,
-        nargs=3,
-        help="with --arm: place of the reflector, mm, in the tool frame, or with --dh in the frame "
-        "of the flange; found from the data where it is not stated",
-    )
-    parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
-    parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
-    parser.add_argument(
+
+
+def _add_details(parser: argparse.ArgumentParser) -> None:
+    """What only one kind of file needs."""
+    test = parser.add_argument_group("with --positioning")
+    test.add_argument(
         "--target",
         metavar="COLUMN",
         default="",
-        help="with --positioning: where the axis was told to go, if the header does not say; of "
-        "two encoders the one that the control believes",
+        help="where the axis was told to go, if the header does not say; of two encoders the one "
+        "that the control believes",
     )
-    parser.add_argument(
+    test.add_argument(
         "--actual",
         metavar="COLUMN",
         default="",
-        help="with --positioning: where the axis really was, by the better instrument",
+        help="where the axis really was, by the better instrument",
     )
-    parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
-    parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
-    parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
-    parser.add_argument("--force", action="store_true", help="overwrite the outputs")
+    circle = parser.add_argument_group("with --circle")
+    circle.add_argument("--radius", type=float, help="nominal radius, mm")
+    circle.add_argument("--feed", type=float, help="mm/min, from which times and speeds follow")
+    place: dict[str, Any] = {"metavar": ("X", "Y", "Z"), "type": float, "nargs": 3}
+    circle.add_argument(
+        "--centre", default=(0.0, 0.0, 0.0), help="readings at its centre, mm (0 0 0)", **place
+    )
+    arm = parser.add_argument_group("with --arm")
+    arm.add_argument(
+        "--dh",
+        metavar="DH.csv",
+        help="for --machine: Denavit and Hartenberg's a alpha d theta, a row a joint",
+    )
+    arm.add_argument(
+        "--modified", action="store_true", help="the parameters of --dh are modified ones (Craig)"
+    )
+    arm.add_argument(
+        "--reflector",
+        help="place of the reflector, mm, in the tool frame, or with --dh in the frame of the "
+        "flange; found from the data where it is not stated",
+        **place,
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -100,8 +128,9 @@ def run(args: argparse.Namespace) -> int:
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
-    sheets = [read_sheet(path, args.sheet) for path in args.files]
-    if len(sheets) > 1 and (args.map or args.positioning or args.arm):
+    names = [n.strip() for n in args.columns.split(",")] if args.columns else ()
+    sheets = [read_sheet(path, args.sheet, names) for path in args.files]
+    if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:
         if sheet.left_out:
@@ -119,12 +148,12 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     import tempfile
     from pathlib import Path
 
-    from matstd.console import say
+    from matstd.console import say, say_each
     from twin.errors import BadFile
     from twin.files import read_machine, read_run, write_whole
     from twin.foreign import mapped_run
 
-    text = mapped_run(sheet, args.map)
+    text, left_out = mapped_run(sheet, args.map)
     with tempfile.TemporaryDirectory() as folder:
         trial = Path(folder) / output.name
         write_whole(trial, text)
@@ -137,8 +166,10 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
             raise BadFile(args.map, where, facts["found"], str(facts["expected"])) from error
     write_whole(output, text)
     say(f"{output}: {len(found)} readings by {args.map}")
-    for remark in found.remarks:
-        say(f"- {remark}")
+    if left_out:
+        readings = "1 reading" if left_out == 1 else f"{left_out} readings"
+        say(f"- {readings} left out: no deviation stands there")
+    say_each(found.remarks)
 
 
 def _named_machine(args: argparse.Namespace, text: str, output: Path) -> Chain:
@@ -155,7 +186,6 @@ def _named_machine(args: argparse.Namespace, text: str, output: Path) -> Chain:
 
 def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> None:
     """A positioning test or a list of points."""
-    import os
     from pathlib import Path
 
     import numpy as np
@@ -168,17 +198,21 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     meaning = next(m for m in _SIGN if getattr(args, m))
     if args.positioning:
         measured, chain = _positioning(args, sheets[0])
+    elif args.circle:
+        measured, chain = _circle(args, sheets[0])
     elif args.arm:
         measured, chain = _arm(args, sheets[0])
     else:
         measured, chain = _points(args, sheets, meaning)
+    for sheet in sheets:
+        if sheet.unused:
+            say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
     machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
     if not args.machine:
         refuse_to_overwrite(machine, args.force)
         source = ", ".join(s.path.name for s in sheets)
         write_whole(machine, machine_text(chain, source, is_known=args.arm))
-    relative = Path(os.path.relpath(machine, output.resolve().parent)).as_posix()
-    write_run(output, measured, relative)
+    write_run(output, measured, seen_from(output.parent, machine))
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
     say(f"{output}: {len(measured)} readings, deviations {rms:.3f} µm rms")
     say(f"- sign: {_SIGN[meaning]}")
@@ -233,6 +267,35 @@ def _say_positioning(test: PositioningTest) -> None:
         )
 
 
+def _circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
+    """A circular test as a run."""
+    from matstd.console import say
+    from twin.errors import DesignError
+    from twin.files import read_machine
+    from twin.foreign import circle_machine, circle_run, read_circle
+    from twin.units import UM
+
+    plane = args.circle.upper()
+    if plane not in ("XY", "YZ", "ZX", "YX", "ZY", "XZ"):
+        raise DesignError(f"--circle {args.circle}: expected two axes such as XY, YZ or ZX")
+    for option, value in (("--radius", args.radius), ("--feed", args.feed)):
+        if value is None and option == "--feed":
+            continue
+        if value is None or not 0.0 < value < 1e6:
+            found = "not given" if value is None else f"{value:g}"
+            raise DesignError(f"{option}: {found}; expected a number above 0")
+    test = read_circle(sheet, plane, args.radius, args.unit)
+    for run in dict.fromkeys(test.run):
+        rows = test.run == run
+        way = "from the first axis to the second" if test.sense[rows][0] > 0 else "the other way"
+        say(f"- {run}: {int(rows.sum())} readings, {way}")
+    if args.feed is None:
+        say("- without --feed nothing is known of speeds: a servo lag cannot be told")
+    chain = read_machine(args.machine) if args.machine else circle_machine(plane, args.radius)
+    u = _uncertainty(args, "u_um", UM)
+    return circle_run(test, chain, u, args.centre, args.feed), chain
+
+
 def _arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """An arm under a tracker as a run."""
     import numpy as np
@@ -266,7 +329,8 @@ def _points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tupl
     from twin.foreign import joined_points, linear_machine, points_run, read_points
     from twin.units import UM
 
-    points = joined_points([read_points(sheet, args.unit) for sheet in sheets])
+    lists = [read_points(sheet, args.unit) for sheet in sheets]
+    points = joined_points(lists, [sheet.path.stem for sheet in sheets])
     chain = read_machine(args.machine) if args.machine else linear_machine(points)
     u = _uncertainty(args, "u_um", UM)
     return points_run(points, "part" if meaning == "part" else "standard", chain, u), chain

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.options import add_effects, add_output, load_effects, seen_from
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -37,18 +39,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="whose words the programs have; needed for a dialect of your own (itnc530)",
     )
     parser.add_argument("--logs", metavar="FOLDER", help="also write the logs")
-    parser.add_argument("-o", "--output", metavar="RUN.csv", required=True, help="to be written")
-    parser.add_argument("--force", action="store_true", help="overwrite the output")
+    add_output(parser, "RUN.csv")
 
 
 def run(args: argparse.Namespace) -> int:
     """Write the run file; a touch without contact stops the program and writes nothing."""
-    import os
-
     import numpy as np
 
     from artefact.body import read_standard
-    from matstd.console import say, say_assumed
+    from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
     from probe_paths.campaign import simulate
     from probe_paths.control import stated_probe
@@ -69,19 +68,16 @@ def run(args: argparse.Namespace) -> int:
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
     for name, text in campaign.logs.items() if args.logs else ():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
-    folder = Path(args.output).resolve().parent
-    write_run(args.output, run, Path(os.path.relpath(args.machine, folder)).as_posix())
+    write_run(args.output, run, seen_from(Path(args.output).parent, args.machine))
     rms = float(np.sqrt(np.mean(run.deviation**2))) / UM
     minutes = campaign.runs[-1].end / 60.0
     say(
         f"{args.output}: {len(run)} touches in {minutes:.0f} min, "
         f"deviations {rms:.3f} µm rms after the set-up was fitted"
     )
-    for text in args.add:
-        say(f"- planted: {text}")
+    say_each(f"planted: {text}" for text in args.add)
     say_assumed(run.touches.chain)
-    for remark in run.remarks:
-        say(f"- {remark}")
+    say_each(run.remarks)
     return 0
 
 
@@ -104,9 +100,7 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
         help="plant effects: 'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', "
         "'drift=X=2um/h'; every size with its unit",
     )
-    parser.add_argument(
-        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
-    )
+    add_effects(parser)
     parser.add_argument(
         "--setup-error",
         metavar="NAME=SIZE",
@@ -153,18 +147,11 @@ def virtual_machine(
     from sensitivity.population import Population, drawn_errors
     from twin.files import read_errors, read_machine
     from twin.frames import fixed_xyz, pose
-    from twin.library import (
-        load_installed_effects,
-        load_user_effects,
-        parse_sized_effect,
-        parse_sizes,
-    )
+    from twin.library import parse_sized_effect, parse_sizes
     from twin.units import UM
 
     chain = read_machine(machine_file)
-    load_installed_effects()
-    for path in args.effects:
-        load_user_effects(Path(path))
+    load_effects(args.effects)
     errors = read_errors(args.errors, chain) if args.errors else []
     if args.random_errors:
         errors = drawn_errors(Population(chain), rng)

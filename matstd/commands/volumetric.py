@@ -2,14 +2,15 @@
 
 import argparse
 
+from matstd.options import add_output
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("machine", metavar="MACHINE.toml", help="the machine")
     parser.add_argument("errors", metavar="ERRORS.toml", help="its errors")
     parser.add_argument("poses", metavar="POSES.csv", help="axis readings, one row per pose")
-    parser.add_argument("-o", "--output", metavar="OUT.csv", required=True, help="to be written")
-    parser.add_argument("--force", action="store_true", help="overwrite the output")
+    add_output(parser, "OUT.csv")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -22,7 +22,7 @@ from probe_paths.control.structure import (
     program_name,
     promise,
 )
-from probe_paths.language import Dialect, interlocks, language_of, read_blocks
+from probe_paths.language import Dialect, Q, interlocks, language_of, read_blocks
 from probe_paths.plan import Heading, Probe, ProgramFrame
 from twin.errors import BadFile
 from twin.machine import Chain
@@ -135,13 +135,20 @@ def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], 
     ):
         if said != done:
             raise BadFile(path, "head", f"{what} {said}", f"{done}, as the program calls it")
-    if [touch.number for touch in touches] != list(stated.touches):
-        made = len(touches)
+    made, wanted = [touch.number for touch in touches], list(stated.touches)
+    start = state.parameters.get(Q.START, 1.0)
+    if start != 1.0:  # at a later visit
+        if not made and wanted:
+            what = f"start at visit {start}, after which there is no touch"
+            raise BadFile(path, "head", what, f"Q{Q.START:d} = +1 or a later visit of the program")
+        wanted = wanted[-len(made) :] if made else []
+    if made != wanted:
+        promised = f"touches {wanted[0]} to {wanted[-1]} in order" if wanted else "none: a dry run"
         raise BadFile(
             path,
             f"line {touches[-1].line}" if touches else "file",
-            f"{made} touches before M30",
-            f"touches {stated.touches[0]} to {stated.touches[-1]} in order, as the head says",
+            f"{len(made)} touches before M30",
+            f"{promised}, as the head says",
         )
 
 

@@ -14,6 +14,7 @@ from probe_paths.language import (
     Block,
     Interlock,
     Kind,
+    Label,
     MaskLine,
     Q,
     head_mask,
@@ -119,6 +120,8 @@ class Runner:
             return self._jump(i, block, state)
         if block.kind in _SILENT:
             return i + 1
+        if block.kind is Kind.LABEL and Label.is_behind(int(block.word("label"))):
+            return i + 1
         step = self._execute(i, block, state)
         if step is not None:
             steps.append(step)
@@ -127,7 +130,10 @@ class Runner:
     def _jump(self, i: int, block: Block, state: State) -> int:
         """FN 11, 12: a number decides at once; a touch's status is taken as good, and as missed."""
         is_less = block.words["q"] is not None
-        value = state.value(block, int(block.word("q" if is_less else "q_greater")))
+        q = int(block.word("q" if is_less else "q_greater"))
+        value = state.value(block, q)
+        if q == Q.START or Label.is_behind(int(block.word("label"))):
+            self._check_skip(i, block, state)
         target, limit = self.places[int(block.word("label"))] + 1, block.number("limit")
         if not isinstance(value, Result):
             return target if (value < limit if is_less else value > limit) else i + 1
@@ -141,6 +147,22 @@ class Runner:
         self.touches[value.touch].on_miss.extend(self.run(target, missed, is_branch=True))
         self.branches -= 1
         return i + 1
+
+    def _check_skip(self, i: int, block: Block, state: State) -> None:
+        """A visit is skipped after its turn and all tests, up to the retract of the next one."""
+        state.check_is_as_planned(block)
+        label = int(block.word("label"))
+        place = self.places[label]
+        after = next(b for b in self.blocks[place + 1 :] if b.kind is not Kind.STRUCTURE)
+        is_retract = after.kind is Kind.LINE and "M91" in after.word("functions")
+        is_start = block.words["q_greater"] == str(int(Q.START)) and Label.is_behind(label)
+        if not (is_start and place > i and is_retract and state.is_retracted):
+            raise state.refusal(
+                block,
+                repr(block.text),
+                f"Q{Q.START:d} GT, a label behind the visit, a retract ({state.says.retract}) "
+                "before it and there",
+            )
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
         """Every block that changes the state or does something."""

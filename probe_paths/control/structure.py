@@ -5,11 +5,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from probe_paths.language import Block, Kind
+from probe_paths.language import Block, Kind, Label
 from probe_paths.plan import Heading, parse_heading
 from twin.errors import BadFile
 
 _TOUCHES = re.compile(r"TOUCHES (\d+) TO (\d+),.*")
+_DRY = re.compile(r"DRY RUN, RAISED BY [+-][\d.]+ MM, NO TOUCH")
 _PRESET = re.compile(r"PRESET (\d+):.*")
 _TOOL = re.compile(r"TOOL (\d+) IS THE PROBE: L([+-][\d.]+) R([+-][\d.]+),.*")
 _FEATURE = re.compile(r"FEATURE (\d+) IS (\S+)")
@@ -30,7 +31,7 @@ class Promise(NamedTuple):
     """What the head of a program promises of its blocks.
 
     Attributes:
-        touches: Numbers of the touches.
+        touches: Numbers of the touches; none of a dry run.
         tool: Number of the probe in the tool table.
         preset: Row of the preset table.
     """
@@ -86,18 +87,23 @@ def labels(blocks: Sequence[Block], path: Path) -> dict[int, int]:
         number = int(block.word("label"))
         if number in found:
             raise BadFile(path, f"line {block.line}", f"LBL {number} again", "every label once")
-        if i < stop:
+        if i < stop and not Label.is_behind(number):
             raise BadFile(path, f"line {block.line}", f"LBL {number}", "subprograms after M30")
         found[number] = i
     for block in blocks:
         if block.kind in (Kind.CALL, Kind.JUMP) and int(block.word("label")) not in found:
-            available = ", ".join(str(n) for n in found) or "none"
+            available = ", ".join(str(n) for n in found if not Label.is_behind(n)) or "none"
             raise BadFile(
                 path,
                 f"line {block.line}",
                 f"LBL {block.word('label')}",
                 f"a label that is defined; available: {available}",
             )
+    asked = {int(b.word("label")) for b in blocks if b.kind is Kind.JUMP}
+    for number in sorted(set(found) - asked):
+        if Label.is_behind(number):
+            line, lost = f"line {blocks[found[number]].line}", f"LBL {number} that nothing goes to"
+            raise BadFile(path, line, lost, "a test of the visit to start at")
     return found
 
 
@@ -153,7 +159,11 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
         BadFile: One of the three remarks is missing, or states another probe than the heading.
     """
     remarks = _remarks(blocks)
-    touches, _ = _remark(_TOUCHES, ";TOUCHES <first> TO <last>, ...", remarks, path)
+    if any(_DRY.fullmatch(text) for _, text in remarks):
+        made = range(0)
+    else:
+        touches, _ = _remark(_TOUCHES, ";TOUCHES <first> TO <last>, ...", remarks, path)
+        made = range(int(touches[0]), int(touches[1]) + 1)
     preset, _ = _remark(_PRESET, ";PRESET <row>: ...", remarks, path)
     tool, line = _remark(
         _TOOL, ";TOOL <number> IS THE PROBE: L<signed> R<signed>, ...", remarks, path
@@ -164,7 +174,7 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
     ):
         if abs(float(stated) - planned) > _DIGITS:
             raise BadFile(path, f"line {line}", f"{name}{stated}", f"{planned:+.4f} as PROBE says")
-    return Promise(range(int(touches[0]), int(touches[1]) + 1), int(tool[0]), int(preset[0]))
+    return Promise(made, int(tool[0]), int(preset[0]))
 
 
 def _remark(

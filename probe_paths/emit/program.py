@@ -6,7 +6,6 @@ before it is handed out.
 """
 
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +15,8 @@ from probe_paths.emit.writer import Feeds, Writer
 from probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
 from probe_paths.plan import TouchPlan
 from twin.files import write_whole
+from twin.record import IntArray
+from twin.units import MINUTE
 
 
 @dataclass(frozen=True)
@@ -44,10 +45,17 @@ class Program:
 
 @dataclass(frozen=True)
 class ProgramSet:
-    """Programs of one plan, and the masks that they print through, by file name."""
+    """Programs of one plan.
+
+    Attributes:
+        programs: In order.
+        masks: That they print through, by file name.
+        raised: Of a dry run, mm.
+    """
 
     programs: tuple[Program, ...]
     masks: dict[str, str]
+    raised: float | None = None
 
     @property
     def duration(self) -> float:
@@ -82,53 +90,102 @@ def make_programs(
         BadFile: The strict interpreter does not accept what was written.
         DesignError: A name or number that cannot stand in a program.
     """
-    dialect = dialect or Dialect()
-    language = LANGUAGES[dialect.language]
-    masks = shared_masks(language.LOG, dialect.log_decimals, plan.chain.rotary_axes)
-    writer = Writer(plan, dialect, feeds or Feeds(), masks)
-    parts = _parts(plan, writer.feeds.touches_per_file)
-    programs = []
-    for i, part in enumerate(parts):
-        setup = "".join(c for c in plan.setup.name.upper() if c.isalnum() or c == "_")
-        name = checked_name(f"{dialect.prefix}_{setup}_{i + 1}")
-        masks[f"{name}.A"] = head_mask(language.LOG, name, writer.heading.log_lines)
-        title = f"FREEFORM STANDARD, PART {i + 1} OF {len(parts)}"
-        file = f"{name}{language.ENDING}"
-        # the head states the duration, which is known once the program has been read back
-        read_back = partial(_duration, file=file, masks=masks, writer=writer, clock=clock)
-        duration = read_back(writer.text(name, title, part, 0.0))
-        text = writer.text(name, title, part, duration)
-        read_back(text)
-        touches = int(np.isin(plan.visit, part).sum())
-        programs.append(
-            Program(
-                name=name,
-                ending=language.ENDING,
-                text=text,
-                touches=touches,
-                duration=duration,
-            )
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock())
+    limits, sizes = made.writer.feeds, np.bincount(plan.visit, minlength=len(plan.visits))
+    count = max(int(np.ceil(sizes.sum() / limits.touches_per_file)), 1)
+    while True:
+        parts = _parts(sizes, count)
+        programs = made.programs(parts)
+        too_long = [
+            program.duration > limits.minutes_per_file * MINUTE and len(part) > 1
+            for program, part in zip(programs, parts, strict=True)
+        ]
+        if not any(too_long):
+            return ProgramSet(programs, made.printed_masks)
+        count += 1
+
+
+def make_dry_run(
+    plan: TouchPlan,
+    raised: float,
+    dialect: Dialect | None = None,
+    feeds: Feeds | None = None,
+    clock: Clock | None = None,
+) -> ProgramSet:
+    """One program that goes where a plan's programs go, higher, and touches nothing.
+
+    Args:
+        plan: Of one set-up.
+        raised: By how much, mm; moves that would end above the retract end there.
+        dialect: Words of the control.
+        feeds: Feeds.
+        clock: For its duration.
+    """
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), raised)
+    return ProgramSet(made.programs([list(range(len(plan.visits)))]), {}, raised)
+
+
+class _Maker:
+    """Makes programs of parts of a plan, each read back before it is handed out."""
+
+    def __init__(
+        self,
+        plan: TouchPlan,
+        dialect: Dialect,
+        feeds: Feeds,
+        clock: Clock,
+        raised: float | None = None,
+    ) -> None:
+        self.plan, self.dialect, self.clock = plan, dialect, clock
+        self.language = LANGUAGES[dialect.language]
+        form, rotary = self.language.LOG, plan.chain.rotary_axes
+        self.masks = shared_masks(form, dialect.log_decimals, rotary)
+        self.writer = Writer(plan, dialect, feeds, self.masks, raised)
+
+    @property
+    def printed_masks(self) -> dict[str, str]:
+        """Mask files, where the control has them."""
+        return dict(self.masks) if self.language.HAS_MASKS else {}
+
+    def programs(self, parts: list[list[int]]) -> tuple[Program, ...]:
+        """One program of each part."""
+        setup = "".join(c for c in self.plan.setup.name.upper() if c.isalnum() or c == "_")
+        is_dry, count = self.writer.raised is not None, len(parts)
+        names = ["DRY"] if is_dry else [str(i + 1) for i in range(count)]
+        titles = [f"FREEFORM STANDARD, PART {i + 1} OF {count}" for i in range(count)]
+        named = zip(names, titles, parts, strict=True)
+        return tuple(
+            self._program(checked_name(f"{self.dialect.prefix}_{setup}_{name}"), title, part)
+            for name, title, part in named
         )
-    if not language.HAS_MASKS:
-        masks = {}
-    return ProgramSet(tuple(programs), masks)
+
+    def _program(self, name: str, title: str, part: list[int]) -> Program:
+        heading = self.writer.heading
+        self.masks[f"{name}.A"] = head_mask(self.language.LOG, name, heading.log_lines)
+        # the head states the duration, which is known once the program has been read back
+        duration = self._duration(name, self.writer.text(name, title, part, 0.0))
+        text = self.writer.text(name, title, part, duration)
+        self._duration(name, text)
+        touches = 0 if self.writer.raised is not None else np.isin(self.plan.visit, part).sum()
+        return Program(
+            name=name,
+            ending=self.language.ENDING,
+            text=text,
+            touches=int(touches),
+            duration=duration,
+        )
+
+    def _duration(self, name: str, text: str) -> float:
+        """Duration of a program, read back from its text, s."""
+        plan, path = self.plan, Path(f"{name}{self.language.ENDING}")
+        data, masks = text.encode("ascii"), self.masks.get
+        read = interpret(data, path, masks, plan.chain, plan.probe, self.dialect)
+        travel = np.full(len(read.touches), plan.options.standoff)
+        return float(step_times(plan.chain, read.steps, self.clock, travel)[-1])
 
 
-def _duration(
-    text: str, file: str, masks: dict[str, str], writer: Writer, clock: Clock | None
-) -> float:
-    """Duration of a program, read back from its text."""
-    plan = writer.plan
-    data = text.encode("ascii")
-    read = interpret(data, Path(file), masks.get, plan.chain, plan.probe, writer.dialect)
-    travel = np.full(len(read.touches), plan.options.standoff)
-    return float(step_times(plan.chain, read.steps, clock or Clock(), travel)[-1])
-
-
-def _parts(plan: TouchPlan, touches_per_file: int) -> list[list[int]]:
-    """Visits of each file: whole visits, as evenly as their sizes allow."""
-    sizes = np.bincount(plan.visit, minlength=len(plan.visits))
-    count = max(int(np.ceil(sizes.sum() / touches_per_file)), 1)
+def _parts(sizes: IntArray, count: int) -> list[list[int]]:
+    """Visits of each of `count` files: whole visits, as evenly as their sizes allow."""
     before = np.cumsum(sizes) - sizes
     part = np.minimum(before * count // max(int(sizes.sum()), 1), count - 1)
     return [list(np.flatnonzero(part == i)) for i in range(count) if np.any(part == i)]

@@ -48,21 +48,38 @@ class Feeds:
         approach: Along Z below the clearance height, and back from a touch.
         turning: Of the last motion towards a rotary position.
         touches_per_file: After so many touches the next visit begins a new file.
+        minutes_per_file: A file takes no longer, unless one visit does.
     """
 
     probing: float = 250.0
     approach: float = 2000.0
     turning: float = 1000.0
     touches_per_file: int = 400
+    minutes_per_file: float = np.inf
 
 
 class Writer:
-    """Writes the text of one plan's programs."""
+    """Writes the text of one plan's programs.
+
+    Args:
+        plan: Of one set-up.
+        dialect: Of the control.
+        feeds: Feeds.
+        masks: By file name.
+        raised: By how much a dry run is raised, which goes where the program goes and touches
+            nothing, mm; None for the program itself.
+    """
 
     def __init__(
-        self, plan: TouchPlan, dialect: Dialect, feeds: Feeds, masks: Mapping[str, str]
+        self,
+        plan: TouchPlan,
+        dialect: Dialect,
+        feeds: Feeds,
+        masks: Mapping[str, str],
+        raised: float | None = None,
     ) -> None:
         self.plan, self.dialect, self.feeds, self.masks = plan, dialect, feeds, masks
+        self.raised = raised
         self.language = LANGUAGES[dialect.language]
         self.frame = ProgramFrame(plan.chain, plan.probe)
         self.rotary = plan.chain.rotary_axes
@@ -84,13 +101,18 @@ class Writer:
         """Whole text of a program that makes the visits `part`."""
         k, rows = self.language, np.flatnonzero(np.isin(self.plan.visit, part))
         head = [k.begin(name), k.comment(title), *self._remarks(rows, duration), *self._stock()]
-        main = [*self._reset(), *self._calibration(name)]
+        main = [*self._reset(len(part)), *self._calibration(name)]
         here = home_readings(self.plan.chain)
         for count, v in enumerate(part):
             visit = self.plan.visits[v]
             main.append(k.structure(visit_title(self.rotary, count + 1, len(part), visit)))
             main += self._turn(here, visit)
-            main += self._touches(visit, np.flatnonzero(self.plan.visit == v))
+            touches = self._touches(visit, np.flatnonzero(self.plan.visit == v))
+            behind = Label.behind(count)
+            if behind is not None:
+                skip = k.skip_if_greater(Q.START, count + 1, behind)
+                touches = [skip, *touches, k.skipped(behind)]
+            main += touches
             here = visit.rotary
         main += self._finish(name)
         called = self._subprograms(name)
@@ -108,6 +130,8 @@ class Writer:
             *(k.comment(f"FEATURE {self.number[f]} IS {f}") for f in features),
             k.comment(
                 f"TOUCHES {rows[0] + 1} TO {rows[-1] + 1}, ABOUT {duration / MINUTE:.0f} MIN"
+                if self.raised is None
+                else f"DRY RUN, RAISED BY {self.raised:+.1f} MM, NO TOUCH"
             ),
             k.comment(
                 f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT"
@@ -126,9 +150,10 @@ class Writer:
             list(np.floor(corners.min(axis=0))), list(np.ceil(corners.max(axis=0)))
         )
 
-    def _reset(self) -> list[str]:
+    def _reset(self, visits: int) -> list[str]:
         k, dialect = self.language, self.dialect
-        first = [k.structure("RESET"), *k.RESET, self.retract, k.tool_call(dialect.tool)]
+        start = [k.comment(f"START AT VISIT 1 TO {visits}:"), k.assign(Q.START, 1)]
+        first = [*start, k.structure("RESET"), *k.RESET, self.retract, k.tool_call(dialect.tool)]
         return [*first, k.preset(dialect.preset), self.retract, *self._home()]
 
     def _home(self) -> list[str]:
@@ -144,7 +169,7 @@ class Writer:
     def _calibration(self, name: str) -> list[str]:
         """Log of the probe's calibration, the tool and the preset."""
         k = self.language
-        return [
+        log = [
             k.structure("LOG THE PROBE"),
             k.WAIT,
             k.read(Q.PROBE_RADIUS, Datum.RADIUS),
@@ -154,7 +179,11 @@ class Writer:
             k.read(Q.TOOL, Datum.TOOL),
             k.assign(Q.PRESET, self.dialect.preset),
             self._print(f"{name}.A", name),
+        ]
+        return [
+            *(log if self.raised is None else []),
             k.structure("TEST PROBE, PRESET AND MACHINE"),
+            *([] if self.raised is None else [k.WAIT]),
             *(block for test in self.tests for block in self._tested(test)),
         ]
 
@@ -204,6 +233,8 @@ class Writer:
     def _touches(self, visit: Visit, rows: IntArray) -> list[str]:
         """All touches of a visit, each from the clearance height and back to it."""
         k, options, feeds = self.language, self.plan.options, self.feeds
+        if self.raised is not None:
+            return self._dry(visit, rows)
         up, out = k.line({"Z": self.frame.coordinate("Z", visit.height)}, None), []
         for count, row in enumerate(rows):
             start = self.frame.coordinates(self.plan.start[row], LINEAR)
@@ -226,9 +257,28 @@ class Writer:
             ]
         return out
 
+    def _dry(self, visit: Visit, rows: IntArray) -> list[str]:
+        """The same places, higher, without a touch."""
+        assert self.raised is not None
+        k, z = self.language, self.plan.chain.axis_index("Z")
+        high = min(visit.height + self.raised, self.top)
+        up, out = k.line({"Z": self.frame.coordinate("Z", high)}, None), []
+        for count, row in enumerate(rows):
+            start = self.frame.coordinates(self.plan.start[row], "XY")
+            low = min(float(self.plan.start[row, z]) + self.raised, high)
+            out += [
+                k.comment(f"PLACE OF TOUCH {row + 1} ON {self.plan.feature[row]}"),
+                k.line(start, None),
+                *([up] if count == 0 else []),
+                k.line({"Z": self.frame.coordinate("Z", low)}, self.feeds.approach),
+                up,
+            ]
+        return out
+
     def _finish(self, name: str) -> list[str]:
         k, printed = self.language, self._print(f"{SharedMask.END}.A", name)
-        end = [k.structure("END"), self.retract, k.WAIT, printed]
+        logged = [k.WAIT, printed] if self.raised is None else []
+        end = [k.structure("END"), self.retract, *logged]
         return [*end, *self._home(), k.PROGRAM_STOP]
 
     def _subprograms(self, name: str) -> list[str]:
@@ -242,6 +292,8 @@ class Writer:
             k.OPERATOR_STOP,
             k.stop_with_error(ErrorText.TOUCH_POINT_INACCESSIBLE),
         ]
+        if self.raised is not None:
+            return self._alarms()
         return [
             k.label(Label.LOG, "CHECK AND LOG ONE TOUCH"),
             k.jump_if_less(Q.STATUS, 0, Label.NO_CONTACT),

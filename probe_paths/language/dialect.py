@@ -27,6 +27,7 @@ class Q(IntEnum):
     CHECK_WORK = 1615
     ROTARY_1 = 1631
     ROTARY_2 = 1632
+    START = 1640
 
 
 TOOL_LENGTH = 114
@@ -36,8 +37,15 @@ FREE = range(1600, 2000)
 """Parameters that a program may write."""
 
 
+_ENDS_OF_VISITS = range(111, 255)  # up to the last label that the oldest software has
+
+
 class Label(IntEnum):
-    """Subprograms of our programs; from `OTHER_PROBE` on alarms, which docs/alarms.md explains."""
+    """Subprograms of our programs; from `OTHER_PROBE` on alarms, which docs/alarms.md explains.
+
+    Labels in the program itself stand behind the visits: a program that is started at a later one
+    goes there past the touches.
+    """
 
     LOG = 90
     NO_CONTACT = 91
@@ -50,6 +58,16 @@ class Label(IntEnum):
     PRESET_Z = 106
     ZERO_1 = 107
     ZERO_2 = 108
+
+    @staticmethod
+    def behind(count: int) -> int | None:
+        """Label behind a visit, counted from 0; None where there are no more."""
+        return _ENDS_OF_VISITS[count] if count < len(_ENDS_OF_VISITS) else None
+
+    @staticmethod
+    def is_behind(number: int) -> bool:
+        """Whether a number is that of such a label."""
+        return number in _ENDS_OF_VISITS
 
 
 class ErrorText(IntEnum):

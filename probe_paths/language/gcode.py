@@ -100,6 +100,8 @@ G90
 O294 ENDIF
 O{TOUCH} ENDSUB"""
 
+SKIP = 1000  # added to the number of a label: those of the tests are below
+
 _CLOCKS = {"SECONDS": WAIT, "CALENDAR": DATE}
 _FORMAT = re.compile(r"%[\d.]+LF")
 
@@ -188,6 +190,16 @@ def jump_if_less(q: int, limit: float, label: int) -> str:
 def jump_if_greater(q: int, limit: float, label: int) -> str:
     """The same when it is greater."""
     return _test(q, "GT", limit, label, 200 + label)
+
+
+def skip_if_greater(q: int, limit: float, label: int) -> str:
+    """Go on behind a part of the program when a parameter is greater than a number."""
+    return f"O{SKIP + label} IF [#{q:d} LE {parameter(limit)}]"
+
+
+def skipped(number: int) -> str:
+    """End of a part that may be skipped."""
+    return f"O{SKIP + number} ENDIF"
 
 
 def _test(q: int, comparison: str, limit: float, label: int, number: int) -> str:

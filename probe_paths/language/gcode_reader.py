@@ -6,7 +6,7 @@ from pathlib import Path
 
 from probe_paths.language import gcode as g
 from probe_paths.language.blocks import Block, Kind, physical_lines
-from probe_paths.language.dialect import TOOL_LENGTH, Q
+from probe_paths.language.dialect import TOOL_LENGTH, Label, Q
 from probe_paths.language.text import parameter
 from twin.errors import BadFile
 
@@ -45,9 +45,14 @@ _LINES = {
 }
 _PATTERNS = {kind: re.compile(pattern + r"\Z") for kind, pattern in _LINES.items()}
 _IF = re.compile(r"O(\d+) IF \[#(?P<q>\d+) (?P<than>LT|GT) (?P<limit>[+-]\d+(?:\.\d+)?)\]\Z")
+_SKIP_IF = re.compile(r"O(?P<number>\d+) IF \[#(?P<q>\d+) LE (?P<limit>[+-]\d+(?:\.\d+)?)\]\Z")
+_SKIPPED = re.compile(r"O(\d+) ENDIF\Z")
 _LOG = re.compile(r"\(LOG,(.*)\)\Z")
 _APPEND = re.compile(r"\(LOGAPPEND,([A-Z0-9_.]+)\)\Z")
 _VALUE = re.compile(r"#(\d+)")
+
+LONGEST = 255
+"""Characters of a line that LinuxCNC reads."""
 
 _EXPECTED = (
     (r"G[01] |G53", "G53 G0 Z<signed>, G0 <axis><signed> ... or G1 <axis><signed> ... F<whole>"),
@@ -69,15 +74,22 @@ def read_gcode(data: bytes, path: str | Path) -> list[Block]:
         path: Its name, for messages.
 
     Raises:
-        BadFile: A byte outside ASCII, mixed line ends, a last line cut off, another touch than
-            ours, a line that is not in the closed list.
+        BadFile: A byte outside ASCII, mixed line ends, a last line cut off or one that is too long,
+            another touch than ours, a line that is not in the closed list.
     """
     lines = [" ".join(raw.split()) for raw in physical_lines(data, path)]
+    for number, line in enumerate(lines, 1):
+        if len(line) > LONGEST:
+            found = f"{len(line)} characters: {line[:40]!r}..."
+            raise BadFile(path, f"line {number}", found, f"{LONGEST} at most, as LinuxCNC reads")
     blocks = list(_Reader(lines, path).blocks())
     inside: list[Block] = []
     outside: list[Block] = []
     within = False
     for block in blocks:
+        if block.kind is Kind.LABEL and Label.is_behind(int(block.word("label"))):
+            outside.append(block)
+            continue
         ends = block.kind is Kind.LABEL and block.word("label") == "0"
         begins = block.kind is Kind.LABEL and not ends
         if begins == within and (begins or ends):
@@ -104,6 +116,8 @@ class _Reader:
                 yield self._printed()
             elif _IF.match(text):
                 yield self._test()
+            elif match := _SKIP_IF.match(text) or _SKIPPED.match(text):
+                yield self._skip(match, text)
             else:
                 yield from self._single(text)
 
@@ -136,6 +150,18 @@ class _Reader:
         key = "q" if match["than"] == "LT" else "q_greater"
         words: Words = {"q": None, "q_greater": None, "limit": match["limit"]}
         return Block(line, Kind.JUMP, {**words, key: match["q"], "label": called["label"]}, text)
+
+    def _skip(self, match: re.Match[str], text: str) -> Block:
+        """Begin or end of a visit that may be skipped."""
+        self.i += 1
+        found = match.groupdict()
+        number = int(match[1]) - g.SKIP
+        if not Label.is_behind(number):
+            raise BadFile(self.path, f"line {self.i}", repr(text), "an IF or ENDIF of our programs")
+        if not found:
+            return Block(self.i, Kind.LABEL, {"label": str(number)}, text)
+        words: Words = {"q": None, "q_greater": found["q"], "limit": found["limit"]}
+        return Block(self.i, Kind.JUMP, {**words, "label": str(number)}, text)
 
     def _printed(self) -> Block:
         """Lines of a log as those of a mask file."""

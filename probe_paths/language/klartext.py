@@ -119,6 +119,16 @@ def jump_if_greater(q: int, limit: float, label: int) -> str:
     return f"FN 11: IF +Q{q:d} GT {parameter(limit)} GOTO LBL {label:d}"
 
 
+def skip_if_greater(q: int, limit: float, label: int) -> str:
+    """FN 11 again: go on behind a part of the program when a parameter is greater than a number."""
+    return jump_if_greater(q, limit, label)
+
+
+def skipped(number: int) -> str:
+    """End of a part that may be skipped."""
+    return label(number)
+
+
 def stop_with_error(number: int) -> str:
     """FN 14: end the program with one of the control's error texts."""
     return f"FN 14: ERROR= {number:d}"

@@ -1,11 +1,13 @@
 """Makes a plan: works out every touch, refuses what cannot be made, puts the rest in order."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from artefact.body import Standard
 from artefact.reach import ProbeReach, Requests, joined
+from probe_paths.plan.approach import Approaches
 from probe_paths.plan.clearance import (
     SMALLEST_GAP,
     ToolClearance,
@@ -36,6 +38,17 @@ class _Task:
     probe: Probe
     setup: Setup
     options: PlanOptions
+
+    @cached_property
+    def clearance(self) -> ToolClearance:
+        """Room for the tool."""
+        return ToolClearance(
+            chain=self.chain,
+            standard=self.standard,
+            setup=self.setup,
+            probe=self.probe,
+            workshop=self.options.workshop,
+        )
 
     @property
     def probing(self) -> ProbeReach:
@@ -100,10 +113,12 @@ def plan_touches(
     task = _Task(standard=standard, chain=chain, probe=probe, setup=setup, options=options)
     stops = visits(chain, rotary, options.overshoot, options.shortest_visit)
     stops = _with_heights(task, stops)
+    rounded = replace(requests, rotary=rotary)
+    stops = _raised(task, stops, rounded)
     height = np.empty(len(requests))
     for stop in stops:
         height[stop.rows] = stop.height
-    wanted = _swept(task, _examined(task, replace(requests, rotary=rotary), height), height)
+    wanted = _cleared(task, rounded, height)
     refused = [_refusal(task, wanted, i, i) for i, r in enumerate(wanted.reason) if r]
     if len(refused) > options.tolerated:
         raise NotReachable(
@@ -148,18 +163,29 @@ def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
     return [replace(stop, height=float(h)) for stop, h in zip(stops, heights, strict=True)]
 
 
-def _examined(task: _Task, wanted: Requests, height: Array) -> _Touches:
+def _raised(task: _Task, stops: list[Visit], wanted: Requests) -> list[Visit]:
+    """Visits above every start of theirs, as far as Z retracts."""
+    frame, z = ProgramFrame(task.chain, task.probe), task.chain.axis_index("Z")
+    retract = task.chain.link("Z").range[1] - task.options.retract
+    start = task.probing.readings(wanted, task.options.standoff)[:, z]
+    start = np.where(task.probing.is_reachable(wanted), start, -np.inf)
+    out = []
+    for stop in stops:
+        highest = float(start[stop.rows].max(initial=-np.inf))
+        if highest > stop.height:
+            whole = frame.reading("Z", np.ceil(frame.coordinate("Z", highest)))
+            stop = replace(stop, height=min(float(whole), retract))
+        out.append(stop)
+    return out
+
+
+def _examined(task: _Task, wanted: Requests) -> _Touches:
     """Touches in readings, with the first reason against each."""
     chain, options, probing = task.chain, task.options, task.probing
     contact = probing.readings(wanted)
     start = probing.readings(wanted, options.standoff)
     linear = [chain.axis_index(name) for name in LINEAR]
     direction = (contact - start)[:, linear] / options.standoff
-    against = probing.reasons(task.standard, wanted)
-    too_high = start[:, chain.axis_index("Z")] > height
-    against = np.where(
-        (against == "") & too_high, "its start lies above the clearance height", against
-    )
     return _Touches(
         feature=wanted.feature,
         point=wanted.point,
@@ -167,23 +193,57 @@ def _examined(task: _Task, wanted: Requests, height: Array) -> _Touches:
         start=start,
         contact=contact,
         direction=direction,
-        reason=against,
+        reason=probing.reasons(task.standard, wanted),
     )
+
+
+def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
+    """Touches in readings, some of them by another approach than along the normal.
+
+    Those that can be reached, and have room where the ball meets the surface, are tried from other
+    sides before they are refused; the reason that stays is that of the approach along the normal.
+    """
+    touches = _swept(task, _examined(task, wanted), height)
+    is_open = (touches.reason != "") & task.probing.is_reachable(wanted)
+    rows = np.flatnonzero(is_open)
+    room, _ = task.clearance.gap(touches.contact[rows])
+    rows = rows[room >= task.options.smallest_gap]
+    linear = [task.chain.axis_index(name) for name in LINEAR]
+    ways = Approaches(
+        chain=task.chain,
+        standard=task.standard,
+        setup=task.setup,
+        length=task.probe.length,
+        radius=task.probe.radius,
+        contact=touches.contact[rows],
+        normal=touches.normal[rows],
+        feature=touches.feature[rows],
+        back=task.options.standoff,
+        beyond=task.options.search,
+    )
+    for start, motion, is_good in ways.others() if len(rows) else ():
+        left = np.flatnonzero(is_good & (touches.reason[rows] != ""))
+        tried = replace(
+            touches[rows[left]],
+            start=start[left],
+            direction=motion[left][:, linear],
+            reason=np.full(len(left), "", dtype=touches.reason.dtype),
+        )
+        tried = _swept(task, tried, height[rows[left]])
+        free = tried.reason == ""
+        for name in ("start", "direction", "reason"):
+            getattr(touches, name)[rows[left[free]]] = getattr(tried, name)[free]
+    return touches
 
 
 def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     """Touches with a reason against those that bring the tool too near to something."""
-    rows = np.flatnonzero(touches.reason == "")
+    o, z, reason = task.options, task.chain.axis_index("Z"), touches.reason.copy()
+    reason[(reason == "") & (touches.start[:, z] > height)] = "its start lies above the retract"
+    rows = np.flatnonzero(reason == "")
     above = touches.start[rows].copy()
-    above[:, task.chain.axis_index("Z")] = height[rows]
-    o = task.options
-    clearance = ToolClearance(
-        chain=task.chain,
-        standard=task.standard,
-        setup=task.setup,
-        probe=task.probe,
-        workshop=o.workshop,
-    )
+    above[:, z] = height[rows]
+    clearance = task.clearance
     limit = min(SMALLEST_GAP, o.smallest_gap)
     start = touches.start[rows]
     direction = np.zeros(start.shape)
@@ -198,7 +258,6 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
         enough=max(limit, o.smallest_gap),
     )
     down = clearance.swept_gap(above, start, enough=limit)
-    reason = touches.reason.copy()
     for stage, (gap, nearest) in (*looks.items(), (Stage.WAY_IN, down)):
         least = o.smallest_gap if stage is Stage.TOUCH else limit
         for i in np.flatnonzero(gap < least):
@@ -220,7 +279,7 @@ def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, Refus
         return {}
     lots = [_anchor_requests(task, stop) for stop in poses]
     height = np.repeat([stop.height for stop in poses], [len(lot) for lot in lots])
-    examined = _examined(task, joined(lots), height)
+    examined = _examined(task, joined(lots))
     ends = np.cumsum([len(lot) for lot in lots])
     lot = np.repeat(np.arange(len(lots)), [len(one) for one in lots])
     # marching costs a hundred times as much as a look: only what would be chosen is marched

@@ -10,10 +10,10 @@ from report.geometry.fault_words import fault_sentences
 from report.geometry.geometry_words import (
     USUAL,
     correction_line,
+    estimate_words,
     geometry_lines,
     quantity_name,
     shown_unit,
-    sized,
 )
 from report.geometry.trend_words import change_sentences
 
@@ -23,9 +23,9 @@ __all__ = [
     "console_lines",
     "copy_lines",
     "correction_line",
+    "estimate_words",
     "fault_sentences",
     "geometry_lines",
     "quantity_name",
     "shown_unit",
-    "sized",
 ]

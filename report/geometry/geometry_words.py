@@ -2,7 +2,15 @@
 
 from dataclasses import dataclass
 
-from diagnosis.geometry import Correction, Estimate, GeometryRow, LearntGeometry, Quantity, Rung
+from diagnosis.geometry import (
+    CLEAR,
+    Correction,
+    Estimate,
+    GeometryRow,
+    LearntGeometry,
+    Quantity,
+    Rung,
+)
 from report.numbers import digits, with_uncertainty
 from report.words import microns
 from twin.units import UM, URAD
@@ -13,13 +21,10 @@ _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 _TURNS = {"A": "X", "B": "Y", "C": "Z"}
 """Direction about which a letter turns."""
 
-USUAL = (
-    Quantity.SQUARENESS,
-    Quantity.SCALE,
-    Quantity.JOINT_ZERO,
-    Quantity.LINK_LENGTH,
-    Quantity.JOINT_OFFSET,
-)
+ARM = (Quantity.JOINT_ZERO, Quantity.LINK_LENGTH, Quantity.JOINT_OFFSET)
+"""What the calibration of a serial arm finds."""
+
+USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
 """What a reader asks for first, of a machine tool and of a serial arm."""
 
 NOTED = 8
@@ -124,7 +129,7 @@ def shown_unit(unit: str) -> tuple[str, float]:
     return _UNITS[unit]
 
 
-def sized(estimate: Estimate, unit: str) -> str:
+def estimate_words(estimate: Estimate, unit: str) -> str:
     """`41.0 ± 2.0 µrad`, from an estimate in a base unit."""
     shown, factor = _UNITS[unit]
     return _value(estimate.value, estimate.u, factor, shown)
@@ -139,18 +144,17 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
 
     Without such, squareness and scales, zeros of joints and lengths of links, the clearest first.
     """
-    noted = [r for r in geometry.rows if r.has_changed or r.is_beyond_expected]
+    noted = [r for r in geometry.rows if r.has_changed or r.is_beyond_expected or _is_of_arm(r)]
     if not noted:
         noted = [r for r in geometry.rows if _is_usual(r) and r.is_determined]
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
-    lines = [_line(r) for r in by_size[:NOTED]]
-    told = [
-        f"{ln.name}: {ln.value}"
-        + (f", {ln.at_ends} over the travel" if ln.at_ends else "")
-        + (f"; {ln.note}" if ln.note else "")
-        for ln in lines
-    ]
-    more = len(noted) - len(lines)
+    told = []
+    for row in by_size[:NOTED]:
+        line = _line(row)
+        where = "at the end of the arm" if row.quantity in ARM else "over the travel"
+        at_ends = f", {line.at_ends} {where}" if line.at_ends else ""
+        told.append(f"{line.name}: {line.value}{at_ends}{f'; {line.note}' if line.note else ''}")
+    more = len(noted) - len(told)
     told += [f"and {more} more in the table"] if more > 0 else []
     if any(step.rung is Rung.MODEL for step in geometry.ladder) and not any(
         r.has_changed for r in noted
@@ -161,6 +165,15 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
             "beyond chance",
         )
     return told
+
+
+def _is_of_arm(row: GeometryRow) -> bool:
+    """Whether it is a zero or a length of an arm that stands clear of its uncertainty.
+
+    Whoever calibrates an arm enters them all, of whatever size.
+    """
+    is_clear = abs(row.estimate.value) > CLEAR * row.estimate.u
+    return row.quantity in ARM and row.is_determined and is_clear
 
 
 def _is_usual(row: GeometryRow) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from diagnosis.answer import Trend
 from diagnosis.geometry import CHANGED, Estimate, GeometryRow
 from report.effects import effect_title
-from report.geometry.geometry_words import USUAL, quantity_name, shown_unit, sized
+from report.geometry.geometry_words import USUAL, estimate_words, quantity_name, shown_unit
 from report.numbers import digits
 from report.words import microns
 from twin.units import UM
@@ -52,7 +52,7 @@ def _alone(trend: Trend, run: int) -> str:
     single = trend.alone.get(run)
     if single is None:
         return ", though no quantity by itself beyond chance"
-    size = sized(single.size, single.unit)
+    size = estimate_words(single.size, single.unit)
     return f"; if only one of its errors did, {effect_title(single.effect)} by {size}"
 
 
@@ -73,9 +73,9 @@ def _changed(row: GeometryRow, run: int) -> str:
     step, now, before = row.steps[run - 1], row.course[run], _last(row.course[:run])
     assert step is not None  # it has changed
     over = "" if row.unit == "mm" else f" ({digits(_at_ends(row, run) / UM, 2)} µm over the travel)"
-    was = "" if before is None else f" from {sized(before, row.unit)}"
-    to = "" if now is None else f" to {sized(now, row.unit)}"
-    return f"{quantity_name(row)} changed{was}{to}, by {sized(step, row.unit)}{over}"
+    was = "" if before is None else f" from {estimate_words(before, row.unit)}"
+    to = "" if now is None else f" to {estimate_words(now, row.unit)}"
+    return f"{quantity_name(row)} changed{was}{to}, by {estimate_words(step, row.unit)}{over}"
 
 
 def _last(course: Sequence[Estimate | None]) -> Estimate | None:

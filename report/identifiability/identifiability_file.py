@@ -18,7 +18,6 @@ from report.identifiability.identifiability_words import (
 )
 from report.identifiability.parameter_words import in_words, short
 from report.numbers import shown
-from report.words import alternative_words
 from twin.files import write_whole
 from twin.machine import Chain, Link
 from twin.units import DEG
@@ -83,7 +82,20 @@ def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:
 
 def _alternative(other: Alternative) -> dict[str, Any]:
     plain = {key: value for key, value in asdict(other).items() if key != "refusal"}
-    return plain | {"words": alternative_words(other)}
+    return plain | {"words": _alternative_words(other)}
+
+
+def _alternative_words(other: Alternative) -> str:
+    """What another stylus length or set-up would buy."""
+    if not other.is_possible:
+        return f"{other.name}: {other.refusal}"
+    gained, ratio = other.rank_gained, other.variance_ratio
+    seen = f"{gained} more combinations of machine errors" if gained else "no combination more is"
+    change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
+    return (
+        f"{other.name}: {seen} seen; mean predicted variance of the tool point {change} at equal "
+        "touches"
+    )
 
 
 def _reading(link: Link, limits: tuple[float, float]) -> tuple[str, list[float]]:

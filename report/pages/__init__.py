@@ -8,18 +8,22 @@ from report.pages.compare_page import write_compare_page
 from report.pages.design_page import write_design_page
 from report.pages.design_result import Design, Proven
 from report.pages.diagnosis_page import write_diagnosis_page
+from report.pages.page import write_page
 from report.pages.pdf import Printer, printer, write_pdf
+from report.pages.residual_section import Picture
 from report.pages.setup_page import write_setup_page
 from report.pages.study_page import write_study_page
 
 __all__ = [
     "Design",
+    "Picture",
     "Printer",
     "Proven",
     "printer",
     "write_compare_page",
     "write_design_page",
     "write_diagnosis_page",
+    "write_page",
     "write_pdf",
     "write_setup_page",
     "write_study_page",

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from probe_paths.campaign import setup_tolerance
 from probe_paths.emit import ProgramSet
-from probe_paths.language import LANGUAGES, Dialect, Label, interlocks
+from probe_paths.language import LANGUAGES, Dialect, Label, Q, interlocks
 from probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, TouchPlan, calibration_hash
 from report.pages.page import write_page
 from report.plots import write_setup_picture
@@ -27,16 +27,20 @@ _REMEDY = {
 }
 
 
-def write_setup_page(folder: Path, plan: TouchPlan, programs: ProgramSet, dialect: Dialect) -> Path:
-    """Write the sheet with its drawing; the path of the page.
+def write_setup_page(
+    folder: Path, plan: TouchPlan, programs: ProgramSet, dry_run: ProgramSet, dialect: Dialect
+) -> Path:
+    """Write the sheet with its drawing and the dry run; the path of the page.
 
     Args:
         folder: To be made.
         plan: Of the programs.
         programs: As written.
+        dry_run: Of the plan.
         dialect: Of the control.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    dry_run.write(folder)
     write_setup_picture(folder / PICTURE, plan)
     T = plan.setup.T_table_artefact
     tests = interlocks(LANGUAGES[dialect.language], ProgramFrame(plan.chain, plan.probe))
@@ -65,6 +69,9 @@ def write_setup_page(folder: Path, plan: TouchPlan, programs: ProgramSet, dialec
         visits=len(plan.visits),
         refused=[str(refusal) for refusal in plan.refused],
         alarms=[(int(t.label), t.what, f"{t.limit:g}", _REMEDY[t.label]) for t in tests],
+        dry_run=dry_run.programs[0],
+        raised=dry_run.raised,
+        start=int(Q.START),
         missed=int(Label.NO_CONTACT),
         tolerance=tolerance,
         clearance=SMALLEST_GAP,

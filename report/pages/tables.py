@@ -17,7 +17,8 @@ FOLDER, WORKBOOK = "tables", "tables.xlsx"
 
 _LONGEST = 31  # letters of a sheet's name, by the format
 _WIDEST = 60  # letters of a column before its text is cut off on the screen
-_NUMBER = re.compile(r"[+\-−]?\d+(\.\d+)?([eE][+\-]?\d+)?")
+_NUMBER = re.compile(r"[+\-−]?(\d+|\d{1,3}( \d{3})+)(\.\d+)?([eE][+\-]?\d+)?")
+_MINUS = re.compile(r"−(?=\d)")
 
 
 @dataclass(slots=True)
@@ -65,11 +66,11 @@ def write_tables(page: str | Path) -> list[Path]:
         name = f"{number:02d}-{_slug(table.section)}"
         out.append(page.parent / FOLDER / f"{name}.csv")
         text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows(table.rows)
+        csv.writer(text, lineterminator="\n").writerows(map(plain, row) for row in table.rows)
         write_whole(out[-1], text.getvalue())
         sheet = book.create_sheet(name[:_LONGEST])
         for row in ([table.caption], *table.rows):
-            sheet.append([value(cell) for cell in row])
+            sheet.append([value(plain(cell)) for cell in row])
         for heading in sheet.iter_rows(min_row=2, max_row=1 + table.headings):
             for cell in heading:
                 cell.font = Font(bold=True)
@@ -83,14 +84,25 @@ def write_tables(page: str | Path) -> list[Path]:
     return out
 
 
+def plain(cell: str) -> str:
+    """A cell with numbers as programs read them: a hyphen for a minus, no spaces in a number.
+
+    Example:
+        >>> plain("−21, 62"), plain("13 000"), plain("3 of 400")
+        ('-21, 62', '13000', '3 of 400')
+    """
+    cell = _MINUS.sub("-", cell)
+    return cell.replace(" ", "") if _NUMBER.fullmatch(cell) else cell
+
+
 def value(cell: str) -> float | str:
     """A cell as a number where it is nothing but one.
 
     Example:
-        >>> value("−12.5"), value("3 of 4"), value("FFS1")
+        >>> value("-12.5"), value("3 of 4"), value("FFS1")
         (-12.5, '3 of 4', 'FFS1')
     """
-    return float(cell.replace("−", "-")) if _NUMBER.fullmatch(cell) else cell
+    return float(cell) if _NUMBER.fullmatch(cell) else cell
 
 
 def _slug(text: str) -> str:

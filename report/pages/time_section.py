@@ -4,11 +4,17 @@ from typing import Any
 
 import numpy as np
 
-from probe_paths.campaign import Order, orders, probing_time
+from probe_paths.campaign import Order, Ordering, orders, probing_time
 from report.numbers import percent
 from report.pages.design_result import Design
-from report.words import ordering_words
 from twin.units import HOUR, MINUTE, UM, URAD
+
+_ORDERINGS = {
+    Ordering.AS_PLANNED: "as planned: mixed, twice, from both sides, anchor touches",
+    Ordering.WITHOUT_ANCHORS: "the same without the anchor touches",
+    Ordering.ONCE: "mixed, every pose once",
+    Ordering.SHORTEST: "shortest ways, every pose once, from whichever side",
+}
 
 
 def minutes(design: Design) -> dict[str, float]:
@@ -45,7 +51,7 @@ def order_content(design: Design) -> dict[str, Any]:
 
 def _row(order: Order) -> dict[str, Any]:
     return {
-        "name": ordering_words(order.ordering),
+        "name": _ORDERINGS[order.ordering],
         "touches": order.touches,
         "minutes": order.duration / MINUTE,
         "drift_um_h": order.drift / UM,

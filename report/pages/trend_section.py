@@ -6,7 +6,7 @@ from typing import Any
 
 from diagnosis.answer import Trend
 from diagnosis.geometry import Estimate, GeometryRow
-from report.geometry import USUAL, change_sentences, quantity_name, sized
+from report.geometry import USUAL, change_sentences, estimate_words, quantity_name
 from report.numbers import digits
 from report.plots import draw_trend
 from twin.units import UM
@@ -81,7 +81,7 @@ def trend_section(trend: Trend | None, place: Path) -> dict[str, Any] | None:
 
 
 def _sized(estimate: Estimate | None, row: GeometryRow) -> str:
-    return "" if estimate is None else sized(estimate, row.unit)
+    return "" if estimate is None else estimate_words(estimate, row.unit)
 
 
 def _um(value: float | None) -> str:

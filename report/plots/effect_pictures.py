@@ -123,6 +123,12 @@ def _value(ax: Any, x: float, y: float, above: bool, colour: str) -> None:
     )
 
 
+def _beside(ax: Any, x: float, y: float, points: float, text: str) -> None:
+    """Small words to the right of the end of a bar."""
+    at, style = (max(x, 0.0), y), {"va": "center", "fontsize": 7.5, "color": SOFT}
+    ax.annotate(text, at, xytext=(points, 0.0), textcoords="offset points", **style)
+
+
 def _noise_lines(ax: Any, fit: Fit, u: float) -> None:
     """Noise as stated, and as the last model finds it where that is another."""
     ax.axhline(u, color=INK, lw=1.1, label=f"noise as stated, {microns(u * UM)}")
@@ -148,15 +154,7 @@ def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
     ax.barh(y, odds, 0.72, color=[_class_colour(diagnosis, c) for c in shown])
     ax.axvline(0.0, color=INK, lw=0.9)
     for at, value, candidate in zip(y, odds, shown, strict=True):
-        ax.annotate(
-            f"held-out {candidate.test_rms / UM:.3g} µm",
-            (max(value, 0.0), at),
-            xytext=(4, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=7.5,
-            color=SOFT,
-        )
+        _beside(ax, value, at, 4.0, f"held-out {candidate.test_rms / UM:.3g} µm")
     chain = diagnosis.run.touches.chain
     ax.set_yticks(y, [_named(parse_effect(c.effect, chain)) for c in shown])
     ax.set_xlabel("evidence for the effect by itself against none: powers of ten of the odds")
@@ -223,15 +221,7 @@ def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE)
     ax.scatter(behind, y, s=48, c=colours, zorder=3)
     ax.hlines(y, 0.0, behind, color=colours, lw=1.6)
     for at, value, rival in zip(y[1:], behind[1:], rows, strict=True):
-        ax.annotate(
-            f"overlap {100.0 * rival.overlap:.1f} %",
-            (max(value, 0.0), at),
-            xytext=(7, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=7.5,
-            color=SOFT,
-        )
+        _beside(ax, value, at, 7.0, f"overlap {100.0 * rival.overlap:.1f} %")
     ax.set_yticks(y, names)
     ax.set_xlabel(
         "odds in favour of the first, powers of ten (shaded: below 1 : 100, not told apart)"

@@ -4,7 +4,7 @@ Files pass between the two processes, because a renderer without OpenGL ends the
 in; `*_scene` speaks to the rest of the house, `*_render` runs over there.
 """
 
-from report.scenes.standard_scene import draw_standard, draw_values
+from report.scenes.standard_scene import draw_standard
 from report.scenes.volume_scene import Scene, draw_volumes
 
-__all__ = ["Scene", "draw_standard", "draw_values", "draw_volumes"]
+__all__ = ["Scene", "draw_standard", "draw_volumes"]

@@ -6,14 +6,13 @@ from typing import Any
 import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch, Standard, read_standard
-from cad_out.build import note_refusal, owners, read_stl
-from report.scenes.standard_scene import PICTURE, STANDARD, STL, VALUES
-from report.style import DIVERGING, LINE, series
-from twin.errors import DesignError
-from twin.frames import Array, apply
+from cad_out.build import owners, read_stl
+from report.scenes.renderer import STL, screenshot
+from report.scenes.standard_scene import PICTURE, STANDARD
+from report.style import series
+from twin.frames import Array
 
 SIZE = (2000, 860)
-SIZE_WITH_BAR = (2200, 860)
 _BODY = "#b9bec4"
 _SPHERE = "#f0e442"  # a colour that no patch has
 _PLANE = "#8fae8b"
@@ -24,64 +23,25 @@ _VIEWS = ((38.0, 33.0), (218.0, 33.0))  # azimuth and elevation of the eye, deg
 
 def draw_body(folder: str) -> None:
     """Two views of the standard, faces and spheres coloured and named."""
-    _answered(Path(folder), coloured=False)
-
-
-def draw_coloured(folder: str) -> None:
-    """Two views of the standard, faces coloured by the values of the folder."""
-    _answered(Path(folder), coloured=True)
-
-
-def _answered(place: Path, coloured: bool) -> None:
-    try:
-        _render(place, coloured)
-    except DesignError as refusal:
-        note_refusal(place, refusal)
-
-
-def _render(place: Path, coloured: bool) -> None:
     import pyvista as pv
 
+    place = Path(folder)
     standard = read_standard(place / STANDARD)
     corners, triangles = read_stl(place / STL)
     owner = owners(standard, corners, triangles)
-    plotter = pv.Plotter(
-        off_screen=True,
-        shape=(1, 3 if coloured else 2),
-        col_weights=[10, 10, 2] if coloured else None,
-        window_size=SIZE_WITH_BAR if coloured else SIZE,
-        border=False,
-    )
-    with np.load(place / VALUES) as values:
-        facts = dict(values)
-    faces = [_face(patch, facts) for patch in standard.patches]
+    plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=SIZE, border=False)
+    faces = [_face(patch) for patch in standard.patches]
     for column, view in enumerate(_VIEWS):
         plotter.subplot(0, column)
-        _add_body(plotter, standard, corners, triangles, owner, _BODY if coloured else _SPHERE)
-        if coloured:
-            _add_values(plotter, faces, facts)
-        else:
-            _add_faces(plotter, faces)
+        _add_body(plotter, standard, corners, triangles, owner)
+        _add_faces(plotter, faces)
         _add_labels(plotter, standard, _eye(view))
         _aim(plotter, standard, _eye(view))
-    if coloured:
-        plotter.subplot(0, len(_VIEWS))
-        _add_bar(plotter, facts)
-    plotter.set_background("white", all_renderers=True)
-    plotter.enable_anti_aliasing("ssaa", all_renderers=True)
-    image = plotter.screenshot(None, return_img=True)
-    if image.std() < 1.0:
-        raise DesignError("no picture: the renderer gives an empty image")
-    plotter.screenshot(str(place / PICTURE))
+    screenshot(plotter, place / PICTURE)
 
 
 def _add_body(
-    plotter: Any,
-    standard: Standard,
-    corners: Array,
-    triangles: np.ndarray,
-    owner: np.ndarray,
-    sphere_colour: str,
+    plotter: Any, standard: Standard, corners: Array, triangles: np.ndarray, owner: np.ndarray
 ) -> None:
     """Body in grey, spheres in their colour, the datum plane in green, from the STL file."""
     sphere_names = [sphere.name for sphere in standard.spheres]
@@ -92,7 +52,7 @@ def _add_body(
     for mine, colour in (
         (~patches & ~spheres & ~top, _BODY),
         (top & ~patches, _PLANE),
-        (spheres, sphere_colour),
+        (spheres, _SPHERE),
     ):
         if mine.any():
             plotter.add_mesh(
@@ -118,71 +78,8 @@ def _add_faces(plotter: Any, faces: list[Any]) -> None:
         )
 
 
-def _add_values(plotter: Any, faces: list[Any], facts: dict[str, Any]) -> None:
-    """Faces in the colours of interpolated values, the touched points as dots of their own."""
-    import pyvista as pv
-
-    limit = float(facts["limit"])
-    points, values = facts["points"], facts["values"]
-    shown = {"cmap": DIVERGING, "clim": (-limit, limit), "show_scalar_bar": False, "ambient": 0.2}
-    for mesh in faces:
-        plotter.add_mesh(mesh, scalars="value", nan_color=LINE, smooth_shading=True, **shown)
-    dots = pv.PolyData(np.asarray(points, dtype=float))
-    dots["value"] = values
-    balls = dots.glyph(geom=pv.Sphere(radius=1.1), scale=False, orient=False)
-    plotter.add_mesh(balls, scalars="value", **shown)
-
-
-def _add_bar(plotter: Any, facts: dict[str, Any]) -> None:
-    """The scale of the values, in a room of its own."""
-    import pyvista as pv
-
-    limit = float(facts["limit"])
-    # The bar belongs to a mesh: a dot too small to be seen.
-    dot = pv.PolyData(np.zeros((1, 3)))
-    dot["value"] = np.zeros(1)
-    plotter.add_mesh(
-        dot,
-        scalars="value",
-        cmap=DIVERGING,
-        clim=(-limit, limit),
-        point_size=1,
-        opacity=0.0,
-        scalar_bar_args={
-            "title": str(facts["title"]) + "\n",
-            "n_labels": 5,
-            "fmt": "%.3g",
-            "color": "black",
-            "vertical": True,
-            "position_x": 0.25,
-            "position_y": 0.12,
-            "height": 0.74,
-            "width": 0.35,
-            "title_font_size": 24,
-            "label_font_size": 22,
-        },
-    )
-
-
-def _interpolated(patch: FreeformPatch, uv: Array, points: Array, values: Array) -> Array:
-    """Values at uv (K, 2) from those at points on this face; nan outside their hull."""
-    from scipy.interpolate import LinearNDInterpolator
-    from scipy.spatial import QhullError
-
-    local = apply(patch.T_patch_artefact, points)
-    off = np.abs(local[:, 2] - patch.height(local[:, :2]))
-    mine = patch.contains(local[:, :2]) & (off < 0.5)
-    if mine.sum() < 3:
-        return np.full(len(uv), np.nan)
-    try:
-        found: Array = LinearNDInterpolator(local[mine, :2], values[mine])(uv)
-    except QhullError:  # all in one line
-        return np.full(len(uv), np.nan)
-    return found
-
-
-def _face(patch: FreeformPatch, facts: dict[str, Any]) -> Any:
-    """Fine grid over the exact face with its exact normals, and the values if there are any."""
+def _face(patch: FreeformPatch) -> Any:
+    """Fine grid over the exact face with its exact normals."""
     import pyvista as pv
 
     a, b = patch.half_size
@@ -194,8 +91,6 @@ def _face(patch: FreeformPatch, facts: dict[str, Any]) -> Any:
     cells = np.column_stack([np.full(quads.size // 4, 4), quads.reshape(-1, 4)])
     mesh = pv.PolyData(patch.point(uv), cells.ravel())
     mesh.point_data.active_normals = patch.normal(uv).astype(np.float32)
-    if "values" in facts:
-        mesh["value"] = _interpolated(patch, uv, facts["points"], facts["values"])
     return mesh
 
 

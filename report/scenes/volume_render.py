@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from cad_out.build import note_refusal, read_stl
-from report.scenes.volume_scene import COLOURS, FACTS, IMAGE, PIXELS, STL, eye
+from cad_out.build import read_stl
+from report.scenes.renderer import FACTS, STL, screenshot
+from report.scenes.volume_scene import COLOURS, IMAGE, PIXELS, eye
 from report.style import INK, LINE
-from twin.errors import DesignError
 from twin.frames import Array
 
 _LEVELS = 5  # iso-surfaces between smallest and largest value
@@ -16,16 +16,9 @@ _LEVELS = 5  # iso-surfaces between smallest and largest value
 
 def render(folder: str) -> None:
     """Render every scene of a folder, side by side in one image without any text."""
-    place = Path(folder)
-    try:
-        _render(place)
-    except DesignError as refusal:
-        note_refusal(place, refusal)
-
-
-def _render(place: Path) -> None:
     import pyvista as pv
 
+    place = Path(folder)
     with np.load(place / FACTS) as stored:
         facts = dict(stored)
     count = int(facts["count"])
@@ -41,12 +34,7 @@ def _render(place: Path) -> None:
             placed = body.transform(scene["T"], inplace=False)
             plotter.add_mesh(placed, color=LINE, smooth_shading=True, ambient=0.25)
         _aim(plotter, scene["camera"])
-    plotter.set_background("white", all_renderers=True)
-    plotter.enable_anti_aliasing("ssaa", all_renderers=True)
-    image = plotter.screenshot(None, return_img=True)
-    if image.std() < 1.0:
-        raise DesignError("no picture: the renderer gives an empty image")
-    np.save(place / IMAGE, image)
+    np.save(place / IMAGE, screenshot(plotter))
 
 
 def _body(stl: Path) -> Any:

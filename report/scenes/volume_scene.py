@@ -6,8 +6,6 @@ and colour bars are put on it here, where the view is one linear map.
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,16 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cad_out.build import read_stl, run_apart
+from cad_out.build import read_stl
+from report.scenes.renderer import render, shared_folder
 from report.style import INK, RED, WIDTH, figure, save
-from twin.errors import DesignError, MissingLibrary, ShapeMismatch
+from twin.errors import DesignError, ShapeMismatch
 from twin.frames import Array, apply
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FACTS, STL, IMAGE = "scenes.npz", "standard.stl", "image.npy"
-"""Names of the files through which the two processes speak."""
+IMAGE = "image.npy"
+"""What the renderer leaves."""
 
 PIXELS = 900
 """Height and width of one rendered scene."""
@@ -137,34 +136,15 @@ def _across() -> Array:
 
 def _rendered(scenes: Sequence[Scene], stl: Path | None) -> list[Array]:
     """Images of the scenes without text, each (PIXELS, PIXELS, 3)."""
-    place = Path(tempfile.mkdtemp(prefix="volumes-"))
-    try:
-        facts: dict[str, Any] = {"count": len(scenes)}
-        for k, scene in enumerate(scenes):
-            T = scene.T_readings_artefact
-            facts |= {f"{name}_{k}": r for name, r in zip("xyz", scene.readings, strict=True)}
-            facts |= {f"values_{k}": scene.values, f"camera_{k}": _camera(scene)}
-            facts[f"T_{k}"] = np.full((4, 4), np.nan) if T is None else T
-        np.savez(place / FACTS, **facts)
-        if stl is not None:
-            shutil.copyfile(stl, place / STL)
-        # Without this the renderer looks for an X server and complains when there is none.
-        egl = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
-        ending = run_apart(
-            "report.scenes.volume_render", "render", place, timeout=90.0, environment=egl
-        )
-        if ending.refusal:
-            raise DesignError(ending.refusal)
-        if not ending.is_good:
-            raise MissingLibrary(
-                f"no map in three dimensions: the renderer {str(ending).split(':', 1)[0]}; it "
-                "needs OpenGL without a screen, on Debian and Ubuntu: "
-                "apt-get install libegl1 libgl1-mesa-dri",
-                exit_code=ending.code,
-            )
+    facts: dict[str, Any] = {"count": len(scenes)}
+    for k, scene in enumerate(scenes):
+        T = scene.T_readings_artefact
+        facts |= {f"{name}_{k}": r for name, r in zip("xyz", scene.readings, strict=True)}
+        facts |= {f"values_{k}": scene.values, f"camera_{k}": _camera(scene)}
+        facts[f"T_{k}"] = np.full((4, 4), np.nan) if T is None else T
+    with shared_folder(stl, facts) as place:
+        render("volume_render", "render", place, "map in three dimensions")
         image = np.load(place / IMAGE)
-    finally:
-        shutil.rmtree(place, ignore_errors=True)
     return [image[:, k * PIXELS : (k + 1) * PIXELS] for k in range(len(scenes))]
 
 

@@ -4,7 +4,7 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
-from report.words.artefact_words import alternative_words, comparison_remarks, criterion_words
+from report.words.artefact_words import comparison_remarks, criterion_words
 from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
 from report.words.diagnosis_words import (
     comparison_sentence,
@@ -19,7 +19,6 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.probe_words import ordering_words
 from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (
     dominant_words,
@@ -30,7 +29,6 @@ from report.words.sensitivity_words import (
 )
 
 __all__ = [
-    "alternative_words",
     "best_rival",
     "comparison_remarks",
     "comparison_sentence",
@@ -39,7 +37,6 @@ __all__ = [
     "dominant_words",
     "learnt_lines",
     "microns",
-    "ordering_words",
     "place_words",
     "promise_sentence",
     "proof_line",

@@ -1,7 +1,7 @@
-"""Sentences about a design: what its touches were chosen for, what another way would buy."""
+"""Sentences about a design: what its touches were chosen for, how it compares."""
 
 from artefact.brief import StandardTable
-from artefact.compare import ERROR, RISK, WANTED, Alternative
+from artefact.compare import ERROR, RISK, WANTED
 from artefact.place import Placement
 from report.numbers import digits, percent
 from twin.units import UM
@@ -28,22 +28,6 @@ def criterion_words(wanted: StandardTable) -> str:
             f"with a share of {percent(wanted.potential)} for showing effects of the library"
         )
     return ", ".join(words)
-
-
-def alternative_words(other: Alternative) -> str:
-    """What another stylus length or set-up would buy."""
-    if not other.is_possible:
-        return f"{other.name}: {other.refusal}"
-    gained = other.rank_gained
-    seen = (
-        f"{gained} more combinations of machine errors seen"
-        if gained
-        else ("no combination more is seen")
-    )
-    ratio = other.variance_ratio
-    change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
-    variance = f"mean predicted variance of the tool point {change} at equal touches"
-    return f"{other.name}: {seen}; {variance}"
 
 
 def identification_sentence(placement: Placement) -> str:

@@ -23,6 +23,9 @@ _WORDS = {
     "step": "per step of",
 }
 
+_GROUPS = ("feature", "pose", "setup")
+"""Columns that only tell rows apart: nothing grows with them."""
+
 PERIODS_TOLD = 4
 """Periods that look alike that are told one by one, the longest ones."""
 
@@ -114,11 +117,14 @@ def excess(fit: Fit) -> float:
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
 
 
-def _left(fit: Fit) -> str:
-    """How much a fit leaves, as a clause: beyond the stated noise, or within it."""
-    beyond, stated = excess(fit), stated_noise(fit.run)
-    if beyond < WITHIN * stated:
-        return f"{microns(fit.rms)} rms, within the stated noise of {microns(stated)}"
+def _left(diagnosis: Diagnosis) -> str:
+    """How much is left that is no noise, as a clause: beyond the stated noise, or within it."""
+    fit, stated = diagnosis.fit, stated_noise(diagnosis.run)
+    beyond = excess(fit)
+    if beyond < WITHIN * stated and diagnosis.left:
+        share = min(max(s.share for s in diagnosis.left), 1.0)
+        size = microns(stated * fit.noise.factor * math.sqrt(share))
+        return f"{size} rms, within the stated noise of {microns(stated)}"
     return f"{microns(beyond)} rms beyond the stated noise of {microns(stated)}"
 
 
@@ -140,6 +146,8 @@ def structure_words(found: Structure) -> str:
     names = listed([noun(name) for name in found.variables])
     along = "the normal" if found.direction == "normal" else found.direction
     match found.shape:
+        case Shape.SMOOTH if found.variables[0] in _GROUPS:
+            return f"differs from {names} to {names}, along {along}"
         case Shape.SMOOTH:
             return f"varies with {names}, along {along}"
         case Shape.WAVE:
@@ -158,7 +166,7 @@ def structure_clause(found: Structure) -> str:
 
 def _fall(diagnosis: Diagnosis) -> str:
     if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
-        first, best = diagnosis.choice.ways[0], diagnosis.choice.best
+        first, best = diagnosis.choice.rules[0], diagnosis.choice.best
         return (
             f"the plain error of blocks left out, the choice made anew without each, falls from "
             f"{microns(first.error)} to {microns(best.error)}"
@@ -232,7 +240,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
         return (
             f"Something is left that no effect of the library accounts for: "
-            f"{_left(diagnosis.fit)}. It is not noise: "
+            f"{_left(diagnosis)}. It is not noise: "
             f"{words or 'it varies with nothing that was recorded'}.{what}"
         )
     fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""

@@ -3,25 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+import diagnosis.remarks as noticed
 from diagnosis.fit import MistakenUnit, UnitMistake
-from diagnosis.remarks import (
-    ChosenByPrediction,
-    FewDegreesOfFreedom,
-    FewPoses,
-    FewTouches,
-    FieldShares,
-    HeldOutInDoubt,
-    NoiseMisstated,
-    NoiseRemembers,
-    NotSignificant,
-    OutliersKept,
-    OutliersLeftOut,
-    PriorWidened,
-    ReaderRemark,
-    Remark,
-    SearchEnded,
-    WorseThanReplicates,
-)
 from report.numbers import unit_words, with_uncertainty
 from twin.units import UM
 
@@ -29,9 +12,10 @@ LISTED = 20
 """Gross errors whose lines are told."""
 
 
-def remark_sentence(remark: Remark) -> str:
+def remark_sentence(remark: noticed.Remark) -> str:
     """One line about what was noticed, without a full stop."""
-    return _SENTENCES[type(remark)](remark)
+    told = _SENTENCES[type(remark)]
+    return told.format(r=remark) if isinstance(told, str) else told(remark)
 
 
 def memory_words(correlation: float, step: float, by_place: bool) -> str:
@@ -40,7 +24,7 @@ def memory_words(correlation: float, step: float, by_place: bool) -> str:
     return f"correlation {correlation:.2f} {over}{' at one place' if by_place else ''}"
 
 
-def _noise_remembers(r: NoiseRemembers) -> str:
+def _noise_remembers(r: noticed.NoiseRemembers) -> str:
     words = memory_words(r.correlation, r.step, r.by_place)
     count = f"{r.rows} touches count as {r.independent:.0f} independent ones"
     if r.is_noise:
@@ -48,15 +32,15 @@ def _noise_remembers(r: NoiseRemembers) -> str:
     return f"what is left is slow ({words}): in probabilities and uncertainties {count}"
 
 
-def _chosen(r: ChosenByPrediction) -> str:
-    ways = "; ".join(f"{name} {error / UM:.2f} µm" for name, error in r.ways)
+def _chosen(r: noticed.ChosenByPrediction) -> str:
+    tried = "; ".join(f"{name} {error / UM:.2f} µm" for name, error in r.tried)
     return (
         f"chosen by prediction: {r.chosen}. Plain error of {r.blocks} blocks left out in turn, the "
-        f"choice made anew without each: {ways}"
+        f"choice made anew without each: {tried}"
     )
 
 
-def _field_shares(r: FieldShares) -> str:
+def _field_shares(r: noticed.FieldShares) -> str:
     words = ", ".join(f"{drive} {size / UM:.1f}" for drive, size in r.sizes)
     return (
         f"the field of {r.axis} follows {words} µm rms, which partly cancel; sensors that share "
@@ -64,28 +48,7 @@ def _field_shares(r: FieldShares) -> str:
     )
 
 
-def _few_touches(r: FewTouches) -> str:
-    return (
-        f"{r.touches} touches for {r.parameters} parameters: the prior decides the rest; single "
-        "parameters are not known, only what they do together where it was probed"
-    )
-
-
-def _few_dof(r: FewDegreesOfFreedom) -> str:
-    return (
-        f"{r.dof:.0f} degrees of freedom are left for the noise: only large effects can be seen, "
-        "and the stated uncertainty is relied on"
-    )
-
-
-def _held_out_in_doubt(r: HeldOutInDoubt) -> str:
-    return (
-        f"the error of held-out touches is {r.ratio:.1f} times the stated noise, with too few "
-        "touches to say whether anything is missing: probe more"
-    )
-
-
-def _few_poses(r: FewPoses) -> str:
+def _few_poses(r: noticed.FewPoses) -> str:
     several = r.poses > 1
     if not r.has_rotary:
         return f"{r.poses} pose{'s' if several else ''} only: rows are held out in blocks instead"
@@ -96,55 +59,33 @@ def _few_poses(r: FewPoses) -> str:
     )
 
 
-def _worse_than_replicates(r: WorseThanReplicates) -> str:
-    return (
-        f"residuals are {r.ratio:.2f} times as large as the scatter of {r.dof} replicates: the "
-        "model lacks something"
-    )
-
-
-def _noise_misstated(r: NoiseMisstated) -> str:
+def _noise_misstated(r: noticed.NoiseMisstated) -> str:
     return (
         f"touches scatter by {r.found / UM:.2f} µm about the model; {r.stated / UM:.2f} µm is "
         "stated"
     )
 
 
-def _outliers_kept(_: OutliersKept) -> str:
-    return (
-        "more touches stand out than accidents can explain: all were kept, and the residual is "
-        "treated as structure"
-    )
-
-
-def _outliers_left_out(r: OutliersLeftOut) -> str:
+def _outliers_left_out(r: noticed.OutliersLeftOut) -> str:
     count = len(r.lines)
     several = count > 1
     side = "outside" if r.largest > 0 else "inside"
-    lines = ", ".join(str(line) for line in r.lines[:LISTED])
+    shown: dict[str, list[int]] = {}
+    for line, run in zip(r.lines[:LISTED], r.runs or ("",) * count, strict=False):
+        shown.setdefault(run, []).append(line)
+    lines = "; ".join(
+        f"line{'s' if len(some) > 1 else ''} {', '.join(map(str, some))}" + (run and f" of {run}")
+        for run, some in shown.items()
+    )
     more = f" and {count - LISTED} more" if count > LISTED else ""
     return (
         f"{count} gross error{'s were' if several else ' was'} left out, "
         f"{'the largest ' if several else ''}{abs(r.largest) / UM:.1f} µm {side} what the other "
-        f"touches predict: line{'s' if several else ''} {lines}{more}"
+        f"touches predict: {lines}{more}"
     )
 
 
-def _prior_widened(r: PriorWidened) -> str:
-    return (
-        f"the machine's errors are about {r.factor:.1f} times their stated distributions; the "
-        "prior was widened by that"
-    )
-
-
-def _search_ended(r: SearchEnded) -> str:
-    return (
-        f"the search was ended after {r.sets:.0f} sets of effects: what is named passed every "
-        "test, but another set may explain more"
-    )
-
-
-def _not_significant(r: NotSignificant) -> str:
+def _not_significant(r: noticed.NotSignificant) -> str:
     size = with_uncertainty(r.value, r.u, unit_words(r.unit))
     return (
         f"{r.effect} was added by name, but its size is not significant: {r.quantity} {size}; "
@@ -183,21 +124,30 @@ def _shown(size: float) -> str:
     return f"{float(f'{size / UM:.2g}'):g} µm"
 
 
-_SENTENCES: dict[type, Callable[[Any], str]] = {
+_SENTENCES: dict[type, str | Callable[[Any], str]] = {
     UnitMistake: _units,
-    NoiseRemembers: _noise_remembers,
-    ChosenByPrediction: _chosen,
-    FieldShares: _field_shares,
-    ReaderRemark: lambda r: r.text,
-    FewTouches: _few_touches,
-    FewDegreesOfFreedom: _few_dof,
-    HeldOutInDoubt: _held_out_in_doubt,
-    FewPoses: _few_poses,
-    WorseThanReplicates: _worse_than_replicates,
-    NoiseMisstated: _noise_misstated,
-    OutliersKept: _outliers_kept,
-    OutliersLeftOut: _outliers_left_out,
-    PriorWidened: _prior_widened,
-    SearchEnded: _search_ended,
-    NotSignificant: _not_significant,
+    noticed.NoiseRemembers: _noise_remembers,
+    noticed.ChosenByPrediction: _chosen,
+    noticed.FieldShares: _field_shares,
+    noticed.ReaderRemark: "{r.text}",
+    noticed.FewTouches: "{r.touches} touches for {r.parameters} errors that the machine may have "
+    "there: what is usual decides the rest; single ones are not known, only what they do together "
+    "where it was probed",
+    noticed.FewDegreesOfFreedom: "{r.dof:.0f} degrees of freedom are left for the noise: only "
+    "large effects can be seen, and the stated uncertainty is relied on",
+    noticed.HeldOutInDoubt: "the error of held-out touches is {r.ratio:.1f} times the stated "
+    "noise, with too few touches to say whether anything is missing: probe more",
+    noticed.FewPoses: _few_poses,
+    noticed.WorseThanReplicates: "residuals are {r.ratio:.2f} times as large as the scatter of "
+    "{r.dof} replicates: the model lacks something",
+    noticed.NoiseMisstated: _noise_misstated,
+    noticed.OutliersKept: "more touches stand out than accidents can explain: all were kept, and "
+    "the residual is treated as structure",
+    noticed.OutliersLeftOut: _outliers_left_out,
+    noticed.PriorWidened: "the machine's errors are about {r.factor:.1f} times their stated "
+    "distributions; the prior was widened by that",
+    noticed.SearchEnded: "the search was ended after {r.sets:.0f} sets of effects: what is named "
+    "passed every test, but another set may explain more",
+    noticed.NotSignificant: _not_significant,
 }
+"""What is told of each kind of remark: a text with its fields, or a function that makes one."""

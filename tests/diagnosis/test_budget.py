@@ -34,9 +34,15 @@ def test_a_search_at_its_limit_ends_and_says_so(case, monkeypatch) -> None:
     assert told(case(*KEY).run)[1]
 
 
+def test_sets_of_a_small_run_count_for_less() -> None:
+    budget = Budget()
+    budget.spend(100, 4, 200)
+    assert 0.1 < MOST_SETS - budget.left < 0.2
+
+
 def test_large_sets_count_for_more() -> None:
     small, large = Budget(), Budget()
-    small.spend(800, 6)
-    large.spend(20_000, 170)
+    small.spend(800, 6, 1600)
+    large.spend(20_000, 170, 1000)
     assert MOST_SETS - small.left < 1.01
     assert MOST_SETS - large.left > 10.0

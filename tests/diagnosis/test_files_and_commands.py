@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from simulator_case import simulate_case
 
-from diagnosis.files.diagnosis_file import write_diagnosis
 from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
 from diagnosis.fit.identification import fit_run
@@ -85,11 +84,23 @@ def changed(folder, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def table(diagnosed, tmp_path_factory):
-    """diagnosis.json of a run with a lag, which has rivals and thus a next measurement."""
-    path = tmp_path_factory.mktemp("json") / "diagnosis.json"
-    write_diagnosis(path, diagnosed(5, "hsm600u", ("thermal-lag(EXC)",)))
-    return json.loads(path.read_text(encoding="utf-8"))
+def warmed(tmp_path_factory):
+    """What the command writes of a run with a lag, which has rivals and thus a next measurement."""
+    place = tmp_path_factory.mktemp("warmed")
+    run, machine, _ = simulate_case(
+        np.random.default_rng(5), "hsm600u", ("thermal-lag(EXC)",), with_alike=False
+    )
+    (place / "run.csv").write_text(run, encoding="utf-8")
+    (place / "machine.toml").write_text(machine, encoding="utf-8")
+    words = ["diagnose", str(place / "run.csv"), "-o", str(place / "out"), "--no-report"]
+    assert main(words) == 0
+    return place
+
+
+@pytest.fixture(scope="module")
+def table(warmed):
+    """Its diagnosis.json."""
+    return json.loads((warmed / "out" / "diagnosis.json").read_text(encoding="utf-8"))
 
 
 def test_keys_and_types_are_those_of_the_contract(table) -> None:
@@ -287,19 +298,12 @@ def test_auto_finds_puts_in_and_goes_on_from_its_own_model(folder, tmp_path, cap
     assert sorted(p.name for p in tmp_path.iterdir()) == ["again", "out"]  # nothing half-written
 
 
-def test_plans_stand_beside_the_diagnosis(tmp_path, table) -> None:
+def test_plans_stand_beside_the_diagnosis(warmed, table) -> None:
     """Where effects are confused, a table of touches that has the columns of a run file."""
-    run_file, machine, _ = simulate_case(
-        np.random.default_rng(5), "hsm600u", ("thermal-lag(EXC)",), with_alike=False
-    )
-    (tmp_path / "run.csv").write_text(run_file, encoding="utf-8")
-    (tmp_path / "machine.toml").write_text(machine, encoding="utf-8")
-    out = tmp_path / "out"
-    assert main(["diagnose", str(tmp_path / "run.csv"), "-o", str(out), "--no-report"]) == 0
-    assert json.loads((out / "diagnosis.json").read_text(encoding="utf-8")) == table
+    out = warmed / "out"
     lines = (out / "next_measurement_1.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("# to tell thermal-lag(")
-    wanted = run_file.splitlines()
+    wanted = (warmed / "run.csv").read_text(encoding="utf-8").splitlines()
     header = next(line for line in wanted if not line.startswith("#")).split(",")
     assert set(lines[1].split(",")) <= set(header)
     assert len(lines) - 2 == len(table["next_measurement"][0]["touches"])
@@ -457,7 +461,7 @@ def backwards(rows):
         (with_value("T_spindle_degC", "nan"), "before and after it are joined by a line"),
         (lambda rows: [rows[0], *rows], "1 row stands twice; copies are left out"),
         (backwards, "time_s goes back"),
-        (lambda rows: rows[:26], "1 table pose only"),
+        (lambda rows: rows[:26], "1 pose only"),
         (lambda rows: rows[:60], "60 touches for"),
     ],
     ids=["constant sensor", "gap in a sensor", "copy", "clock", "one pose", "few touches"],

@@ -33,6 +33,8 @@ SINGLE = {
     "coupling(EBX,C)": (9, "hsm600u"),
     "artefact-slip": (10, "hmc1995"),
 }
+SLOW = {"coupling(EBX,C)", "artefact-slip"}
+"""The others are of as many kinds: a reversal, a lag, a period, an expansion."""
 TWO = (12, "hmc1995", ("backlash(Y)", "stylus-bending"))
 UNKNOWN = (2, "hsm600u", ("?pump",))
 WEAK = (14, "hmc1995", ("backlash(X)",), False, (1.5, 1.5))
@@ -68,7 +70,9 @@ def test_nothing_hidden_nothing_found(diagnosed) -> None:
     assert min(c.p_value for c in d.candidates) > 1e-3
 
 
-@pytest.mark.parametrize("name", SINGLE)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.slow if n in SLOW else ()) for n in SINGLE]
+)
 def test_one_effect_is_named_with_its_size(case, diagnosed, name) -> None:
     key = (*SINGLE[name], (name,))
     (told,) = case(*key).truth["hidden"]
@@ -89,6 +93,7 @@ def test_one_effect_is_named_with_its_size(case, diagnosed, name) -> None:
     assert verdict_sentence(d).startswith("The model lacks one effect: ")
 
 
+@pytest.mark.slow
 def test_most_single_effects_are_named_themselves_first(diagnosed) -> None:
     """Six of six, but for a lag, which any component of the same place and direction imitates."""
     first = [diagnosed(*SINGLE[n], (n,)).found[0].name == n for n in SINGLE]

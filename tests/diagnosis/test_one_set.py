@@ -10,9 +10,9 @@ from simulator_case import simulate_case
 from diagnosis.answer import one_set
 from diagnosis.answer.ambiguity import ConfusionClass, Rival
 from diagnosis.answer.collinear import left_by
-from diagnosis.answer.one_set import placed, told_set
-from diagnosis.choice.following import ways_tried
-from diagnosis.choice.prediction import SETS, Choice, Way
+from diagnosis.answer.one_set import told_set, with_members
+from diagnosis.choice.following import choice_remarks
+from diagnosis.choice.prediction import SETS, Choice, ChoiceRule
 from diagnosis.files.diagnosis_file import choice_table
 from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
@@ -104,9 +104,9 @@ def test_a_set_put_back_is_what_it_was(case) -> None:
         replace(s, effect=m.effect)
         for s, m in zip(final.effects, final.chosen.members, strict=True)
     )
-    moved = placed(final, final.effects)
+    moved = with_members(final, final.effects)
     assert np.abs(moved.search.pool.C - before).max() > 0.0
-    again = placed(moved, grid)
+    again = with_members(moved, grid)
     assert pytest.approx(before) == again.search.pool.C
 
 
@@ -175,7 +175,13 @@ def folder(tmp_path_factory):
     return place
 
 
-@pytest.mark.parametrize("option", [["--auto"], ["--add", "backlash(X)"]], ids=["auto", "added"])
+@pytest.mark.parametrize(
+    "option",
+    [
+        pytest.param(["--auto"], id="auto"),
+        pytest.param(["--add", "backlash(X)"], id="added", marks=pytest.mark.slow),
+    ],
+)
 def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, option) -> None:
     run = str(folder / "run.csv")
     narrow = ["--only", "thermal-lag(EXC)", "backlash"]
@@ -239,14 +245,14 @@ def test_an_addition_that_is_not_significant_is_commented(folder, tmp_path, caps
 
 
 def test_ways_of_a_choice_are_told_with_the_limit_that_was_met() -> None:
-    nothing = Way("nothing", (), np.array([3.0, 4.0]) * UM, np.array([10, 30]))
-    way = Way("single effects", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
+    nothing = ChoiceRule("nothing", (), np.array([3.0, 4.0]) * UM, np.array([10, 30]))
+    way = ChoiceRule("single effects", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
     choice = Choice((nothing, way), way, 2, None, is_ended=True)
-    told, ended = ways_tried(choice)
+    told, ended = choice_remarks(choice)
     plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
-    assert [error / UM for _, error in told.ways] == pytest.approx([plain, 1.0])
+    assert [error / UM for _, error in told.tried] == pytest.approx([plain, 1.0])
     assert ended == SearchEnded(SETS)
-    assert len(ways_tried(replace(choice, is_ended=False))) == 1
+    assert len(choice_remarks(replace(choice, is_ended=False))) == 1
     table = choice_table(choice)
     assert (table["chosen"], table["blocks"]) == ("single effects", 2)
     assert [w["held_out_um"] for w in table["ways"]] == pytest.approx([plain, 1.0], rel=1e-5)

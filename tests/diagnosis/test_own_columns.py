@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from diagnosis.answer.comparison import compare
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.choice.field import sized_field
-from diagnosis.choice.prediction import offered
+from diagnosis.choice.prediction import candidate_effects
 from diagnosis.evidence.effect_signatures import ScaledEffect
 from diagnosis.files.model_file import read_model
 from diagnosis.files.model_writer import write_model
@@ -62,7 +62,9 @@ def run() -> Run:
 
 def test_a_lag_after_an_own_column_is_found_with_its_size(run, tmp_path) -> None:
     kinds = ("thermal-lag", "follows", "thermal-field")
-    result = diagnose(run, candidates=[e for e in offered(run.touches) if e.kind in kinds])
+    result = diagnose(
+        run, candidates=[e for e in candidate_effects(run.touches) if e.kind in kinds]
+    )
     assert [e.name for e in result.found] == ["thermal-lag(EZZ,V_coolant_bar)"]
     told = {r.name: r for r in result.steps[-1].reported}
     assert abs(told["tau_min"].value - TAU / MINUTE) < 3.0 * told["tau_min"].u
@@ -87,7 +89,7 @@ def test_a_field_of_own_columns_predicts_what_a_lag_between_its_own_does(run) ->
     start = ordinary_model(run.touches.chain)
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
-    warm = next(e for e in offered(run.touches) if e.kind == "thermal-field")
+    warm = next(e for e in candidate_effects(run.touches) if e.kind == "thermal-field")
     assert warm.name == "thermal-field(Z,V_coolant_bar)"
     groups = np.array_split(np.arange(N), 5)
     sized = sized_field(task, (), gross, warm, groups)
@@ -102,7 +104,7 @@ def test_a_field_of_own_columns_predicts_what_a_lag_between_its_own_does(run) ->
 def test_a_field_of_own_columns_keeps_its_steps_in_a_model_file(run, tmp_path) -> None:
     start = ordinary_model(run.touches.chain)
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
-    warm = next(e for e in offered(run.touches) if e.kind == "thermal-field")
+    warm = next(e for e in candidate_effects(run.touches) if e.kind == "thermal-field")
     bare = parse_effect(warm.name, run.touches.chain)
     assert (bare.steps, warm.steps) == ((1.0,), (10.0,))
     write_model(tmp_path / "model.toml", task.fit((ScaledEffect(warm),)), "run.csv")

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,15 +12,18 @@ import rs274
 from artefact.body.limits import Limits
 from artefact.body.standard_file import read_standard
 from artefact.brief.project_file import read_project
+from artefact.compare import placed_spheres
 from artefact.place.placement import PlacementOptions
 from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
+from matstd import design, study_run
 from matstd.cli import main
 from matstd.from_project import blank, placement_options, probe_reach
 from probe_paths.control.interpreter import read_program
 from probe_paths.emit.program import make_programs
 from probe_paths.language.dialect_file import read_dialect
 from probe_paths.linuxcnc.replanned import shortened
+from report.pages import design_page
 from twin.files.machine_file import read_machine
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
@@ -54,9 +58,20 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The whole command with fewer candidates, one rival of spheres and no maps but the path.
+
+    `make proof` has them all; maps are those of `matstd sensitivity`, which has its own test.
+    """
     folder = tmp_path_factory.mktemp("design")
     out = folder / "out"
-    assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        fewer = lambda project: replace(placement_options(project), sites=60)  # noqa: E731
+        patch.setattr(design, "placement_options", fewer)
+        patch.setattr(placed_spheres, "_CANDIDATES", 60)
+        patch.setattr(placed_spheres, "COUNTS", (4,))
+        patch.setattr(study_run, "draw_maps", lambda *_: [])
+        patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
+        assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
     return out
 
 
@@ -284,4 +299,5 @@ def test_tenfold_for_every_seed_tried(tmp_path: Path) -> None:
     assert main(["design", str(project), "-o", str(out)]) == 0
     proof = json.loads((out / "identification.json").read_text())["volumetric_error"]
     assert len(proof) == 10
+    assert len(list((out / "sensitivity").glob("*_3d.png"))) == 2
     assert min(machine["times_smaller"] for machine in proof) > 10.0

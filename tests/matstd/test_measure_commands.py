@@ -34,8 +34,12 @@ def folder(tmp_path_factory):
     )
     (place / "run.csv").write_text(run, encoding="utf-8")
     (place / "machine.toml").write_text(machine, encoding="utf-8")
+    out = place / "added"
+    out.mkdir()
+    (out / "next_measurement_1.csv").write_text("of another day")
+    (out / "notes.txt").write_text("mine")
     words = ["diagnose", str(place / "run.csv"), "--add", "backlash(Y)", "--no-report"]
-    assert main([*words, "-o", str(place / "added")]) == 0
+    assert main([*words, "-o", str(out), "--force"]) == 0
     return place
 
 
@@ -147,14 +151,9 @@ def test_a_file_is_no_folder(folder, tmp_path, capsys) -> None:
     assert out.read_text() == "mine"
 
 
-def test_old_plans_do_not_outlive_their_diagnosis(folder, tmp_path) -> None:
-    out = tmp_path / "o"
-    out.mkdir()
-    (out / "next_measurement_1.csv").write_text("of another day")
-    (out / "notes.txt").write_text("mine")
-    words = ["diagnose", str(folder / "run.csv"), "--add", "backlash(Y)", "--no-report"]
-    assert main([*words, "-o", str(out), "--force"]) == 0
-    assert sorted(p.name for p in out.iterdir()) == ["diagnosis.json", "model.toml", "notes.txt"]
+def test_old_plans_do_not_outlive_their_diagnosis(folder) -> None:
+    names = sorted(p.name for p in (folder / "added").iterdir())
+    assert names == ["diagnosis.json", "model.toml", "notes.txt"]
 
 
 def test_a_full_disk_is_one_line(folder, tmp_path, capsys, monkeypatch) -> None:

@@ -144,6 +144,21 @@ def test_a_face_that_is_no_table_is_said() -> None:
     assert set(said.values()) == {()}
 
 
+def test_travels_of_a_table_entered_the_other_way_are_told(tmp_path: Path) -> None:
+    """Y carries the table: its readings are those of the tool relative to it."""
+    machine = {
+        r"(?<=^\[axis.Y\]\nrange = ).*": "[100.0, 700.0]",
+        r"(?<=^origin = )\[.*": "[0.0, -400.0, -500.0]",
+        r"(?<=^\[axis.A\]\nrange = \[-120.0, 30.0\]\npoint = ).*": "[0.0, -400.0, -450.0]",
+        r"(?<=^\[axis.C\]\nrange = \[-360.0, 360.0\]\npoint = ).*": "[0.0, -400.0, 0.0]",
+    }
+    wrong = changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)
+    told = refusal(read_project(wrong), tmp_path)
+    assert "axis.Y.range = [-700, -100] of the machine (readings move the tool" in told
+    machine[r"(?<=^\[axis.Y\]\nrange = ).*"] = "[-700.0, -100.0]"
+    check_reach(read_project(changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)), tmp_path)
+
+
 def test_patches_that_do_not_fit_are_told_with_a_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -105,6 +105,27 @@ SEEDED: dict[str, tuple[Change, str]] = {
     "unknown axis": (swap("L X+", "L U+"), "an axis of the machine: X, Y, Z"),
     "axis twice": (edit(r"^(L X[+-]\d+\.\d+) Y", r"\1 X"), "every axis once"),
     "byte of another code page": (swap("RESET", "R\xdcCKSETZEN"), "ASCII"),
+    # start at a later visit
+    "start at none": (swap("Q1640 = +1", "Q1640 = +9"), "a later visit of the program"),
+    "no start": (drop("FN 0: Q1640"), "a parameter set by this program"),
+    "skip of another parameter": (swap("+Q1640 GT", "+Q1621 GT"), "a label behind the visit"),
+    "skip to another visit": (swap("+1 GOTO LBL 111", "+1 GOTO LBL 112"), "nothing goes to"),
+    "skip lost": (drop("GOTO LBL 112"), "LBL 112 that nothing goes to"),
+    "skip behind the touches": (
+        both(drop("LBL 111", 1), insert("LBL 111", "L X+")),
+        "a retract .* before it and there",
+    ),
+    "skip while down": (
+        both(drop("GOTO LBL 111"), insert("FN 11: IF +Q1640 GT +1 GOTO LBL 111", "TCH PROBE 4.0")),
+        "a retract .* before it and there",
+    ),
+    "skip past the tests": (
+        both(
+            drop("GOTO LBL 111"),
+            insert("FN 11: IF +Q1640 GT +1 GOTO LBL 111", "* - TEST PROBE"),
+        ),
+        "a test that stops the program before it",
+    ),
     # frame and labels
     "no END PGM": (drop("END PGM"), "END PGM: cut off"),
     "other name at the end": (swap("END PGM MS_A_1", "END PGM MS_A_2"), "MS_A_1 as in BEGIN PGM"),

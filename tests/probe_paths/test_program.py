@@ -2,12 +2,16 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from probe_paths.campaign.collisions import check_moves
 from probe_paths.control.clock import Clock
-from probe_paths.emit.program import make_programs
+from probe_paths.control.interpreter import interpret
+from probe_paths.control.steps import Move
+from probe_paths.emit.program import make_dry_run, make_programs
 from probe_paths.emit.writer import Feeds, visit_title
 from probe_paths.language.blocks import Kind
 from probe_paths.language.dialect import Dialect
@@ -16,7 +20,7 @@ from probe_paths.language.text import MAX_LINE
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import PlanOptions, requests_at
-from twin.errors import DesignError
+from twin.errors import BadFile, DesignError
 from twin.machine.chain import Axis, make_chain
 from twin.record.touches import Setup
 from twin.units import DEG
@@ -102,6 +106,72 @@ def test_files_end_between_visits_and_share_all_touches(plan, programs):
     assert one.programs[0].touches == len(plan)
     visits = sum(p.text.count("* - VISIT") for p in programs.programs)
     assert visits == len(plan.visits)
+
+
+def test_no_file_takes_longer_than_asked(plan, programs):
+    made = make_programs(plan, feeds=Feeds(minutes_per_file=2.0)).programs
+    assert max(p.duration for p in made) <= 120.0
+    assert sum(p.touches for p in made) == len(plan)
+    assert len(made) < 2.0 * programs.duration / 120.0
+    # a visit is not cut however short a file shall be
+    assert len(make_programs(plan, feeds=Feeds(minutes_per_file=0.1)).programs) == len(plan.visits)
+
+
+def test_a_program_starts_at_any_visit(plan, programs, chain, golden):
+    """Its touches, their readings and their sides are those of the whole program from there on."""
+    rotary = [chain.axis_index(a) for a in chain.rotary_axes]
+    for control, program in (("itnc530", programs.programs[0]), ("linuxcnc", None)):
+        program = program or golden.programs(control).programs[0]
+        whole = interpreted(program, program.text, programs, chain)
+        sizes = np.unique([t.pose for t in whole.touches], return_counts=True)[1]
+        assert len(sizes) > 2
+        for start in range(1, len(sizes) + 1):
+            text = program.text.replace("1640 = +1", f"1640 = +{start}")
+            tail = interpreted(program, text, programs, chain).touches
+            wanted = whole.touches[len(whole.touches) - len(tail) :]
+            assert len({t.pose for t in tail}) == len(sizes) - start + 1
+            for one, other in zip(tail, wanted, strict=True):
+                assert (one.number, one.pose, one.feature) == (
+                    other.number,
+                    other.pose,
+                    other.feature,
+                )
+                assert np.array_equal(one.q, other.q)
+                assert np.array_equal(one.side[rotary], other.side[rotary])
+
+
+def interpreted(program, text, programs, chain):
+    return interpret(text.encode("ascii"), Path(program.file), programs.masks.get, chain)
+
+
+def test_a_dry_run_goes_to_every_place_and_touches_nothing(plan, chain, small):
+    (program,) = make_dry_run(plan, 100.0).programs
+    assert program.touches == 0
+    assert "TCH PROBE" not in program.text
+    assert "FN 16" not in program.text
+    read = interpret(program.text.encode("ascii"), Path(program.file), {}.get, chain)
+    check_moves(read, small, chain)
+    x, z = chain.axis_index("X"), chain.axis_index("Z")
+    down = [
+        step.q for step in read.steps if isinstance(step, Move) and step.feed and step.q[z] < 0.0
+    ]
+    there = [q for q in down if not np.isnan(q[x])]
+    top = chain.link("Z").range[1] - plan.options.retract
+    lows = np.array([q[z] for q in there if q[z] < top - 1e-6])
+    assert len(lows) > 0.5 * len(plan)
+    assert lows.min() > plan.start[:, z].min() + 99.9
+    spoilt = program.text.replace("DRY RUN, RAISED BY", "DRY RUN, BY")
+    with pytest.raises(BadFile, match="TOUCHES <first> TO <last>"):
+        interpret(spoilt.encode("ascii"), Path(program.file), {}.get, chain)
+
+
+def test_a_dry_run_that_touches_is_refused(plan, programs, chain):
+    text = programs.programs[0].text
+    text = re.sub(
+        r"TOUCHES 1 TO \d+, ABOUT \d+ MIN", "DRY RUN, RAISED BY +100.0 MM, NO TOUCH", text
+    )
+    with pytest.raises(BadFile, match="expected none: a dry run"):
+        interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
 
 
 def test_the_duration_is_that_of_the_read_text(plan, programs):

@@ -10,7 +10,7 @@ import pytest
 from report.pages import pdf
 from report.pages.page import with_contents
 from report.pages.pdf import printer, write_pdf
-from report.pages.tables import page_tables, write_tables
+from report.pages.tables import page_tables, plain, value, write_tables
 from twin.errors import DesignError, MissingLibrary
 
 PAGE = """<h2>What is <code>left</code></h2>
@@ -50,7 +50,7 @@ def test_tables_say_what_the_page_says(tmp_path: Path) -> None:
     assert rows == [
         ["artefact", "left, µm", "left, µm"],
         ["artefact", "rms", "95 %"],
-        ["block", "1.50", "−2"],
+        ["block", "1.50", "-2"],
         ["spheres four", "3 of 4", ""],
     ]
     sheet = openpyxl.load_workbook(files[-1]).worksheets[0]
@@ -58,6 +58,13 @@ def test_tables_say_what_the_page_says(tmp_path: Path) -> None:
     assert [cell.value for cell in sheet[4]] == ["block", 1.5, -2]
     assert sheet["A2"].font.bold
     assert not sheet["A4"].font.bold
+
+
+def test_numbers_are_written_as_programs_read_them() -> None:
+    """A typographic minus and spaces between thousands are for the eye."""
+    cells = ["−21, 62", "13\u202f000", "−1 300.5", "1 of 13 000", "27 31", "a − b"]
+    found = [value(plain(" ".join(cell.split()))) for cell in cells]
+    assert found == ["-21, 62", 13000.0, -1300.5, "1 of 13 000", "27 31", "a − b"]
 
 
 def test_a_row_with_a_heading_cell_is_data() -> None:

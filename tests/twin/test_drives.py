@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from twin.effects.second_time import Again
+from twin.effects.once_more import Again
 from twin.errors import BadFile, UnknownEffect
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run

@@ -22,6 +22,12 @@ SECOND_ORDER = 60 * NM
 RELATIVE_ROUNDING = 1e-9
 
 
+def on_a_path(touches):
+    """The same as a logger would see them that states the speeds of two axes."""
+    speeds = {f"v{axis}_mm_s": touches.reading(axis) / 10.0 for axis in "YZ"}
+    return replace(touches, instrument=Instrument.BALL_BAR, value=speeds)
+
+
 RUNS = {label: made_up(label) for label in MACHINES} | {"arm": arm_poses()}
 ALL = [
     (label, e)
@@ -30,6 +36,7 @@ ALL = [
     for e in (
         *proposals(touches),
         *proposals(replace(touches, instrument=Instrument.LASER), ["position-table"]),
+        *proposals(on_a_path(touches), ["servo-lag"]),
         field(touches),  # weighed against what is proposed
     )
 ]

@@ -13,6 +13,7 @@ from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from twin.errors import BadFile
 from twin.files.run_file import read_run
+from twin.foreign.circle import read_circle
 from twin.foreign.points import linear_machine, points_run, read_points
 from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
 from twin.foreign.serial_arm import arm_from_dh
@@ -317,7 +318,8 @@ def blocks_of_the_page(language: str) -> list[str]:
 
 
 def test_the_examples_of_the_page_are_read(tmp_path):
-    positioning, plate = blocks_of_the_page("csv")
+    positioning, circle, plate = blocks_of_the_page("csv")
+    assert len(read_circle(read_sheet(saved(tmp_path, circle)), "XY", 150.0).angle) == 6
     assert len(read_positioning(read_sheet(saved(tmp_path, positioning)), "X").target) == 12
     assert len(read_points(read_sheet(saved(tmp_path, plate))).nominal) == 3
     log, report, dh = blocks_of_the_page("text")

@@ -7,6 +7,7 @@ from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from twin.errors import BadFile, DesignError
 from twin.files.run_file import read_run
+from twin.files.run_writer import write_run
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
 from twin.foreign.sheet import read_sheet
 from twin.frames import apply
@@ -94,6 +95,20 @@ def test_tracker_and_reflector_are_found_wherever_they_are(tmp_path):
     assert run.touches.time[3] == 20.0
     stated = tracker_run(sheet, chain, readings, 5.0 * UM, turned @ REFLECTOR)
     assert np.abs(stated.deviation).max() < 1e-5
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_reflector_on_either_side_of_the_flange_is_written_and_read(tmp_path, monkeypatch, side):
+    """On the far side the distance along the tool is negative, which no probe's length is."""
+    monkeypatch.setitem(globals(), "REFLECTOR", side * REFLECTOR)
+    q = poses()
+    sheet = read_sheet(written(tmp_path, seen(q), q))
+    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
+    run = tracker_run(sheet, chain, joint_readings(sheet)[0], 5.0 * UM)
+    write_run(tmp_path / "run.csv", run, "none.toml")
+    again = read_run(tmp_path / "run.csv", chain)
+    np.testing.assert_allclose(again.touches.target, run.touches.target, atol=1e-6)
+    np.testing.assert_allclose(again.touches.target[0], turned @ REFLECTOR, atol=1e-5)
 
 
 def test_sign_of_an_arm_that_is_too_long(tmp_path):

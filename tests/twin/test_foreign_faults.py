@@ -43,3 +43,9 @@ def test_a_target_that_is_missing_in_a_log_costs_its_row_alone(tmp_path) -> None
     assert test.target.tolist() == [v for v in at if v is not None]
     assert test.direction.tolist() == [0, 1, 1, 1, -1, -1, -1]
     assert test.cycle.tolist() == [1, 1, 1, 1, 2, 2, 2]
+
+
+def test_a_log_without_a_whole_row_is_refused(tmp_path) -> None:
+    table = sheet(tmp_path, "time [s],motor [mm],scale [mm]\n0,1,\n1,,2\n2,3,\n")
+    with pytest.raises(BadFile, match="no row with a target and a reading"):
+        read_positioning(table, "X", None, ("motor", "scale"))

@@ -110,6 +110,32 @@ def test_readings_that_belong_to_other_touches_are_refused(tmp_path: Path) -> No
         read_run(write(tmp_path, table, stated()))
 
 
+@pytest.mark.parametrize(("column", "off"), [(1, 0.18), (2, -0.5), (3, 0.02)])
+def test_one_reading_beside_its_deviation_is_left_out(
+    tmp_path: Path, column: int, off: float
+) -> None:
+    """A slip of some hundredths along the normal, in a file where all else says the same twice."""
+    table = rows()
+    row = int(np.argmax(np.abs(table[:, 6 + column])))
+    table[row, column] += off
+    run = read_run(write(tmp_path, table, stated()))
+    (remark,) = run.remarks
+    assert re.search(
+        rf"line {row + 6}, column dev_um: .* µm where the readings say .* cannot be", remark
+    )
+    assert len(run) == COUNT - 1
+    assert row + 6 not in run.line
+
+
+def test_deviations_rounded_otherwise_than_readings_are_no_slips(tmp_path: Path) -> None:
+    """Readings to 2 µm, deviations to 0.1 µm."""
+    table = rows()
+    table[:, 1:4] = np.round(table[:, 1:4] / 2e-3) * 2e-3
+    run = read_run(write(tmp_path, table, stated()))
+    assert len(run) == COUNT
+    assert run.remarks == ()
+
+
 def test_readings_of_another_place_move_the_set_up_and_say_so(tmp_path: Path) -> None:
     table = rows()
     table[:, 1] += 80.0

@@ -47,6 +47,12 @@ def test_readings_between_two_times_are_shared_out(tmp_path, run):
     assert any("T_room_degC is constant" in remark for remark in joined.remarks)
 
 
+def test_a_column_that_nothing_reads_is_said(tmp_path):
+    text = TEXT.replace("T_room_degC", "S_spindle_rpm")
+    (remark,) = record(tmp_path, text).remarks
+    assert "column 'S_spindle_rpm' is not used" in remark
+
+
 def test_a_record_of_another_day_is_refused(tmp_path, run):
     with pytest.raises(BadFile, match="expected readings over the run, 2031-05-08 23:59"):
         record(tmp_path).joined(run, datetime(2031, 5, 8, 23, 59, 0))

@@ -4,12 +4,11 @@ A new effect is a new file here and one line in `twin.library.catalogue`; the ex
 the search and the reports know it from then on.
 """
 
-from twin.effects.change import Change
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
+from twin.effects.once_more import MARK, Again, Change, again
 from twin.effects.periodic import usual_distance
 from twin.effects.probe import ProbeRadius, normal_in_tool
-from twin.effects.second_time import MARK, Again, again
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, SetupError, setup_errors
 
 __all__ = [

@@ -23,15 +23,8 @@ from twin.units import UM, URAD
 
 
 @dataclass(frozen=True)
-class RamSag:
-    """Sag of a ram or column that travels out of its guide.
-
-    ``E = a s^3``, s the overhang as a share of the travel: a cantilever under a load at its end
-    sags by ``F L^3/(3 E I)``.
-
-    Attributes:
-        symbol: The component error, across the axis for a sag.
-    """
+class _Sag:
+    """A component error in proportion to the weight that an axis carries about."""
 
     symbol: Symbol
 
@@ -43,15 +36,27 @@ class RamSag:
         return f"gravity({self.symbol.name})"
 
     @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Its largest size."""
+        sd = 100 * URAD if self.symbol.is_angular else 20 * UM
+        return (Parameter("amplitude", self.symbol.unit, sd),)
+
+
+@dataclass(frozen=True)
+class RamSag(_Sag):
+    """Sag of a ram or column that travels out of its guide.
+
+    ``E = a s^3``, s the overhang as a share of the travel: a cantilever under a load at its end
+    sags by ``F L^3/(3 E I)``.
+
+    Attributes:
+        symbol: The component error, across the axis for a sag.
+    """
+
+    @property
     def title(self) -> Title:
         """In the words of those who run machines."""
         return Title(f"sag of {self.symbol.link} {self.symbol.motion}", self.symbol.link)
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Sag at full overhang."""
-        sd = 100 * URAD if self.symbol.is_angular else 20 * UM
-        return (Parameter("amplitude", self.symbol.unit, sd),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
@@ -61,7 +66,7 @@ class RamSag:
 
 
 @dataclass(frozen=True)
-class TiltSag:
+class TiltSag(_Sag):
     """Sag of a head or cradle that tilts its own weight.
 
     ``E = a sin 2q``. The weight pulls with m g sin q across and m g cos q along the tilted body;
@@ -69,25 +74,10 @@ class TiltSag:
     weight does in the first harmonic cannot be told from `geometric(EBB,1)` and belongs there.
     """
 
-    symbol: Symbol
-
-    kind = "gravity"
-
-    @property
-    def name(self) -> str:
-        """`gravity(EBB)`."""
-        return f"gravity({self.symbol.name})"
-
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
         return Title(f"sag of {self.symbol.link} under its own weight", self.symbol.link)
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Peak of the second harmonic."""
-        sd = 100 * URAD if self.symbol.is_angular else 20 * UM
-        return (Parameter("amplitude", self.symbol.unit, sd),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A twist of the axis."""
@@ -96,7 +86,7 @@ class TiltSag:
 
 
 @dataclass(frozen=True)
-class OffCentreLoad:
+class OffCentreLoad(_Sag):
     """Tilt of a cradle under a load that lies off the centre of the table it carries.
 
     ``E = sin(q_tilt) (a cos(q_table) + b sin(q_table))``: the moment ``m g r sin B cos(C - phi)``.
@@ -106,10 +96,7 @@ class OffCentreLoad:
         table: Name of the axis that turns the load.
     """
 
-    symbol: Symbol
     table: str
-
-    kind = "gravity"
 
     @property
     def name(self) -> str:

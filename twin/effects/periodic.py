@@ -33,17 +33,10 @@ HIGHEST_HARMONIC = 12
 
 
 @dataclass(frozen=True)
-class Periodic:
-    """A sine of free phase and unknown period p over a linear axis.
-
-    Screw and nut, or scale and head, repeat every pitch.
-
-    Attributes:
-        period: p, mm.
-    """
+class _Repeating:
+    """A component error that is a sine of free phase over the reading of its axis."""
 
     symbol: Symbol
-    period: float = 10.0
 
     kind = "periodic"
 
@@ -60,11 +53,31 @@ class Periodic:
     @property
     def parameters(self) -> Sequence[Parameter]:
         """Sine and cosine."""
-        return _sine_and_cosine(self.symbol)
+        sd = 20 * URAD if self.symbol.is_angular else 3 * UM
+        return tuple(Parameter(word, self.symbol.unit, sd) for word in ("sin", "cos"))
+
+    def _wave(self, touches: Touches, factor: float) -> Sequence[Term]:
+        """Sine and cosine of factor times the reading, as a twist of the axis."""
+        where = touches.chain.twist_of(self.symbol)
+        argument = factor * touches.reading(self.symbol.link)
+        return (Term(0, where, np.sin(argument)), Term(1, where, np.cos(argument)))
+
+
+@dataclass(frozen=True)
+class Periodic(_Repeating):
+    """A sine of free phase and unknown period p over a linear axis.
+
+    Screw and nut, or scale and head, repeat every pitch.
+
+    Attributes:
+        period: p, mm.
+    """
+
+    period: float = 10.0
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis."""
-        return _wave(touches, self.symbol, 2.0 * np.pi / self.period)
+        return self._wave(touches, 2.0 * np.pi / self.period)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The period, evenly spaced in frequency, fine enough for the travel that was covered."""
@@ -83,7 +96,7 @@ class Periodic:
 
 
 @dataclass(frozen=True)
-class Harmonic:
+class Harmonic(_Repeating):
     """One harmonic, the second or a higher one, of a component error of a rotary axis.
 
     ``E = s sin(k q) + c cos(k q)``, k = 2, 3 ...; k = 1 is eccentricity and tilt, part of every
@@ -94,29 +107,11 @@ class Harmonic:
         harmonic: k.
     """
 
-    symbol: Symbol
     harmonic: float = 2.0
-
-    kind = "periodic"
-
-    @property
-    def name(self) -> str:
-        """`periodic(EXC)`."""
-        return f"periodic({self.symbol.name})"
-
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"{self.symbol.title}, which repeats", self.symbol.link)
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Sine and cosine."""
-        return _sine_and_cosine(self.symbol)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis."""
-        return _wave(touches, self.symbol, self.harmonic)
+        return self._wave(touches, self.harmonic)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The harmonic, as far as the distinct readings of the axis can tell one from another."""
@@ -172,18 +167,6 @@ def usual_distance(q: Array) -> float:
     gaps = np.sort(np.diff(np.unique(q)))
     covered = np.cumsum(gaps)
     return float(round(gaps[np.searchsorted(covered, 0.5 * covered[-1])], 9))
-
-
-def _sine_and_cosine(symbol: Symbol) -> Sequence[Parameter]:
-    sd = 20 * URAD if symbol.is_angular else 3 * UM
-    return tuple(Parameter(word, symbol.unit, sd) for word in ("sin", "cos"))
-
-
-def _wave(touches: Touches, symbol: Symbol, factor: float) -> Sequence[Term]:
-    """Sine and cosine of factor times the reading, as a twist of the axis."""
-    where = touches.chain.twist_of(symbol)
-    argument = factor * touches.reading(symbol.link)
-    return (Term(0, where, np.sin(argument)), Term(1, where, np.cos(argument)))
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Periodic | Harmonic:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.errors import BadFile
 from twin.files.pose_file import beyond_travel
@@ -10,6 +11,8 @@ from twin.files.table import CsvTable
 from twin.frames import Array
 from twin.record import IntArray, Run, computed_deviation, without_copies
 from twin.units import UM
+
+Mask = NDArray[np.bool_]
 
 ABSURD = 10.0
 """Deviations beyond this (mm) are no measurement: units mixed up, or a wrong set-up or probe."""
@@ -41,6 +44,13 @@ GAP = 1.0
 """A stated deviation this far (mm) from that of the readings is of another touch: set-ups are moved
 to where their touches are from 0.3 mm and 1 mrad on, so that at most half of it is left."""
 
+ODD = 20.0
+"""Of the usual gap between stated deviations and those of the readings: what a slip is beyond."""
+
+BESIDE = 5.0
+"""Distance (mm) of points from the tool, across the direction that was measured, from which it is
+told: 50 µrad on that arm are 0.25 µm."""
+
 JUMP = 86400.0
 """A pause (s) shorter than a day is a night's rest and needs no word."""
 
@@ -69,6 +79,7 @@ def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     _check_units(run, table)
     _check_offset(run, table)
     _compare_with_readings(run, table, remarks)
+    _compare_places(run, remarks)
     if not run.deviation.any():
         remarks.append("every deviation is zero: nothing was measured")
     return run
@@ -102,11 +113,26 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
             wanted = "dev_um, readings, point, set-up and probe of one touch, or nominal readings"
             _tell_slip(run, table, apart, "column dev_um", found, wanted, remarks)
             astray[apart] = True
+        astray |= _odd_ones(run, table, astray, computed, remarks)
     run = run[~astray] if astray.any() else run
     for rows, column, found, wanted in beyond_travel(run.touches.chain, run.touches.q, AT_LIMIT):
         where = f"line {run.line[rows[0]]}, column {column}"
         remarks.append(f"{where}: found {found}, expected {wanted}; it is used so")
     return run
+
+
+def _odd_ones(run: Run, table: CsvTable, astray: Mask, computed: Array, remarks: list[str]) -> Mask:
+    """Single rows whose stated deviation is not that of their readings, where all others' are."""
+    gap = _gap(run, computed)
+    limit = np.maximum(NOISY * run.u + UM, ODD * float(np.median(gap)))
+    odd: Mask = (gap > limit) & ~astray
+    rows = np.flatnonzero(odd)
+    if not 0 < len(rows) <= FEW * len(run):
+        return np.zeros(len(run), dtype=bool)
+    stated, said = run.deviation[rows[0]] / UM, computed[rows[0]] / UM
+    found = f"{stated:.4g} µm where the readings say {said:.4g} µm"
+    _tell_slip(run, table, rows, "column dev_um", found, "both alike as in other rows", remarks)
+    return odd
 
 
 def states_readings(run: Run) -> bool:
@@ -135,6 +161,22 @@ def _compare_with_readings(run: Run, table: CsvTable, remarks: list[str]) -> Non
         remarks.append(
             f"dev_um and the deviations that follow from the readings differ by {gap / UM:.3g} µm "
             "in half of the rows: dev_um is used"
+        )
+
+
+def _compare_places(run: Run, remarks: list[str]) -> None:
+    """Say that an instrument's points are beside where the readings put the tool."""
+    t = run.touches
+    if t.instrument.is_ball_on_standard:  # whose deviations would tell
+        return
+    apart = t.ball_artefact - t.point
+    beside = apart - np.einsum("ni,ni->n", apart, t.normal)[:, None] * t.normal
+    far = float(np.median(np.linalg.norm(beside, axis=1)))
+    if far > BESIDE:
+        remarks.append(
+            f"p stands {far:.3g} mm beside the place of the tool that the readings tell (median): "
+            "lever arms of the machine are those of the tool; length_mm and offset_mm of probe, or "
+            "tx_mm ty_mm tz_mm of each row, say where on the tool was measured"
         )
 
 

@@ -12,7 +12,7 @@ from twin.files.pose_file import FARTHEST
 from twin.files.table import CsvTable
 from twin.frames import Array
 from twin.machine import Chain
-from twin.record import IntArray, Labels, Moved, linear_approach
+from twin.record import IntArray, Labels, Moved, Touches, implied_approach
 from twin.units import DEG, UM
 
 BoolArray = NDArray[np.bool_]
@@ -39,6 +39,10 @@ RESTARTS = 3
 
 LATEST = 1e11
 """Times (s) beyond this, three thousand years, are in another unit."""
+
+MOMENTS = 0.05
+"""Share of rows with a direction 0 up to which an axis stood for a moment: a quadrant of a circle;
+with more the file does not know."""
 
 FINEST, COARSEST = 1e-6, 1e4
 """Standard uncertainties of a touch (µm) lie between: a picometre, and the largest deviation that
@@ -239,10 +243,10 @@ def poses(table: CsvTable, chain: Chain, q: Array, setup: IntArray) -> IntArray:
     return np.unique(key, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
-def approach(table: CsvTable, chain: Chain, q: Array, normal_table: Array) -> Array:
-    """Signs of the last motion of every axis, (N, A)."""
-    out = linear_approach(chain, q, normal_table)
-    for i, axis in enumerate(chain.axes):
+def approach(table: CsvTable, touches: Touches) -> Array:
+    """Signs of the last motion of every axis, (N, A): as stated, else as implied."""
+    out = implied_approach(touches)
+    for i, axis in enumerate(touches.chain.axes):
         column = f"dir{axis}"
         if column in table:
             out[:, i] = signs = table.numbers(column)
@@ -251,6 +255,36 @@ def approach(table: CsvTable, chain: Chain, q: Array, normal_table: Array) -> Ar
                 row = int(wrong[0])
                 expected = "the sign of the last move: 1, -1, or 0 if unknown"
                 raise table.bad(row, column, f"{signs[row]:g}", expected)
+    return out
+
+
+def standing(table: CsvTable, approach: Array, touches: Touches, remarks: list[str]) -> Array:
+    """Signs of the last motion where an axis stands for a moment amid known ones, (N, A).
+
+    A logger that writes the sign of the speed writes 0 where an axis turns round; the motion before
+    is still its last one. Rows stand in the order of time within a feature.
+
+    Args:
+        table: Of the file; what it does not state stays.
+        approach: As the file has it, (N, A).
+        touches: The rows.
+        remarks: What was noticed; more is added.
+    """
+    out = approach.copy()
+    stroke = np.unique(touches.feature, return_inverse=True)[1].reshape(-1)
+    for i, axis in enumerate(touches.chain.axes):
+        still = (out[:, i] == 0.0) & (f"dir{axis}" in table)
+        if not still.any() or still.mean() > MOMENTS or np.ptp(touches.q[:, i]) == 0.0:
+            continue
+        for k in range(stroke.max() + 1):
+            rows = np.flatnonzero(stroke == k)
+            known = np.flatnonzero(~still[rows])
+            if len(known):
+                place = np.searchsorted(known, np.arange(len(rows)), "right") - 1
+                out[rows, i] = out[rows[known[np.maximum(place, 0)]], i]
+        remarks.append(
+            f"dir{axis} is 0 in {int(still.sum())} rows amid a motion: the sign before is taken"
+        )
     return out
 
 

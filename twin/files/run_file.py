@@ -56,11 +56,12 @@ class SetupTable(Table):
 
     origin_mm: Vector = (0.0, 0.0, 0.0)
     rotation_deg: Vector = (0.0, 0.0, 0.0)
+    run: str = ""
 
     def setup(self, name: str) -> Setup:
         """The set-up in base units."""
         rotation = fixed_xyz(np.array(self.rotation_deg) * DEG)
-        return Setup(name, pose(rotation, np.array(self.origin_mm)))
+        return Setup(name, pose(rotation, np.array(self.origin_mm)), self.run)
 
 
 class HeadTable(Table):
@@ -183,7 +184,9 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         pose=columns.poses(table, chain, q, setup),
         value=columns.own_columns(table, time, remarks),
     )
-    signs = columns.approach(table, chain, q, touches.normal_table)
+    signs = columns.approach(table, touches)
+    if not head.instrument.is_ball_on_standard:
+        signs = columns.standing(table, signs, touches, remarks)
     touches = replace(touches, approach=signs)
     return Run(
         touches=touches,

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from twin.files.pose_file import reading_columns
 from twin.files.run_columns import FORCE, NORMAL, POINT, TARGET
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
-from twin.record import Instrument, Run, linear_approach
+from twin.record import Instrument, Run, implied_approach
 from twin.units import DEG, UM
 
 
@@ -31,7 +32,9 @@ def run_text(run: Run, machine: str) -> str:
     out = io.StringIO()
     out.write('# format = "run/1"\n')
     out.write(f'# machine = "{machine}"\n')
-    probe = f"radius_mm = {float(t.radius[0])!r}, length_mm = {float(t.length[0]) + 0.0!r}"
+    probe = (
+        f"radius_mm = {float(t.radius[0])!r}, length_mm = {max(float(t.length[0]), 0.0) + 0.0!r}"
+    )
     if t.offset[0].any() and not _has_targets(run):
         probe += f", offset_mm = [{', '.join(repr(float(v)) for v in t.offset[0])}]"
     out.write(f"# probe = {{ {probe} }}\n")
@@ -45,6 +48,8 @@ def run_text(run: Run, machine: str) -> str:
         out.write(f"# [setup.{setup.name}]\n")
         out.write(f"# origin_mm = [{', '.join(f'{v:.9f}' for v in T[:3, 3])}]\n")
         out.write(f"# rotation_deg = [{', '.join(f'{v:.10f}' for v in angles)}]\n")
+        if setup.run:
+            out.write(f"# run = {json.dumps(setup.run, ensure_ascii=False)}\n")
     columns = _columns_out(run, common_u)
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(columns)
@@ -53,8 +58,12 @@ def run_text(run: Run, machine: str) -> str:
 
 
 def _has_targets(run: Run) -> bool:
-    """Whether targets are several, so that every row states its own."""
-    return bool(np.any(run.touches.target != run.touches.target[0]))
+    """Whether every row states its target: there are several, or it stands behind the gauge point.
+
+    No probe has a negative length, but the reflector of an arm may stand on either side.
+    """
+    t = run.touches
+    return bool(np.any(t.target != t.target[0]) or np.any(t.length < 0.0))
 
 
 def _cells(values: Array, digits: int) -> list[str]:
@@ -88,7 +97,7 @@ def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
 def _stated_directions(run: Run) -> list[str]:
     """Axes whose last motion the reader would not know: rotary ones, and of instruments others."""
     t = run.touches
-    implied = linear_approach(t.chain, t.q, t.normal_table)
+    implied = implied_approach(t)
     differs = np.any(implied != t.approach, axis=0)
     return [a for i, a in enumerate(t.chain.axes) if a in t.chain.rotary_axes or differs[i]]
 

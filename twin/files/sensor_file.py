@@ -111,6 +111,12 @@ def read_sensors(path: str | Path) -> SensorRecord:
             raise table.bad(i, "clock", cell, "a later reading in every row")
     remarks: list[str] = []
     found = temperatures(table, clock, remarks)
+    others = [c for c in table.columns if c not in ("clock", "spindle_rpm") and not _is_sensor(c)]
+    if others:
+        remarks.append(
+            f"column {', '.join(map(repr, others))} is not used: no T_<sensor>_degC and no "
+            "spindle_rpm"
+        )
     speed = table.numbers("spindle_rpm") if "spindle_rpm" in table else None
     if not found and speed is None:
         found_words = "; ".join(remarks) or f"columns {', '.join(table.columns)}"
@@ -122,6 +128,10 @@ def read_sensors(path: str | Path) -> SensorRecord:
         spindle_rpm=speed,
         remarks=tuple(f"{path}: {r}" for r in remarks),
     )
+
+
+def _is_sensor(column: str) -> bool:
+    return column.startswith("T_") and column.endswith("_degC")
 
 
 def _seconds(moment: datetime) -> float:

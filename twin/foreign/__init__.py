@@ -1,4 +1,4 @@
-"""Tables of others made run files: positioning, points, arms under a tracker, any by a mapping.
+"""Tables of others made runs: positioning, circles, points, arms, any other by a mapping.
 
 In go workbooks and text as instruments and CMMs write them, with the words of their headers, their
 units, separators and decimal marks; out come a `Run` (or its text) and, where no machine file is
@@ -7,6 +7,7 @@ and said to the user: what a machine did wrong is the negative of what its contr
 """
 
 from twin.foreign.acceptance import positioning_figures
+from twin.foreign.circle import circle_machine, circle_run, read_circle
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
 from twin.foreign.points import joined_points, linear_machine, points_run, read_points
@@ -25,6 +26,8 @@ __all__ = [
     "PositioningTest",
     "Sheet",
     "arm_from_dh",
+    "circle_machine",
+    "circle_run",
     "joined_points",
     "joint_readings",
     "linear_machine",
@@ -34,6 +37,7 @@ __all__ = [
     "points_run",
     "positioning_figures",
     "positioning_run",
+    "read_circle",
     "read_points",
     "read_positioning",
     "read_sheet",

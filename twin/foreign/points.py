@@ -11,13 +11,14 @@ Both compare where a point is with where it should be, and mean opposite things:
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
 from twin.errors import BadFile
+from twin.foreign.directions import signs
 from twin.foreign.sheet import MM, Sheet, bare, unit_of_column
 from twin.frames import Array
 from twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
@@ -29,8 +30,10 @@ Meaning = Literal["part", "standard"]
 _NOMINAL = re.compile(r"nom|soll|target|calib|ref|theor|cad", re.IGNORECASE)
 _MEASURED = re.compile(r"meas|act|ist\b|gemessen|cmm|found", re.IGNORECASE)
 _DEVIATION = re.compile(r"dev|error|abweich|fehler|\bd[xyz]\b|delta", re.IGNORECASE)
+_AFTER_DIR = re.compile(r"\b(dir)(?=[xyz]\b)", re.IGNORECASE)
 _LETTER = re.compile(r"(?<![a-z])d?([xyz])(?![a-z])", re.IGNORECASE)
 _NAME = re.compile(r"name|label|feature|hole|point|element|bohrung|merkmal|\bid\b", re.IGNORECASE)
+_APPROACH = re.compile(r"dir|richtung|approach|anfahr|revers|umkehr", re.IGNORECASE)
 _SETUP = re.compile(r"set-?up|part|session|date|day|aufspannung|werkst", re.IGNORECASE)
 
 
@@ -43,6 +46,8 @@ class PointList:
         deviation: Measured minus nominal, (N, 3), mm; not a number where it was not measured.
         feature: Names of the points, (N,).
         setup: Which part or set-up a point belongs to, (N,).
+        approach: Sign of the last motion of X, Y and Z towards the point, (N, 3); 0 unknown.
+        run: Which list it stands in where there are several, (N,); "" of one.
         line: Line of the file, (N,).
     """
 
@@ -51,6 +56,8 @@ class PointList:
     feature: Labels
     setup: Labels
     line: IntArray
+    approach: IntArray
+    run: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
 
 
 def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
@@ -71,8 +78,11 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
         return _by_coordinate(sheet, letters, unit)
     nominal = np.zeros((len(sheet), 3))
     deviation = np.full((len(sheet), 3), np.nan)
+    approach = np.zeros((len(sheet), 3), dtype=np.int64)
     found = _roles(sheet)
     for i, letter in enumerate("xyz"):
+        if ("approach", letter) in found:
+            approach[:, i] = signs(sheet, found["approach", letter])
         if ("nominal", letter) in found:
             nominal[:, i] = _coordinate(sheet, found["nominal", letter], unit or "mm")
         if ("measured", letter) in found:
@@ -94,6 +104,7 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
         feature=np.array(_texts(sheet, names, _NAME, "")),
         setup=np.array(_texts(sheet, names, _SETUP, "a")),
         line=np.array(sheet.lines),
+        approach=approach,
     )
 
 
@@ -103,8 +114,9 @@ def _letters(sheet: Sheet) -> list[str] | None:
     Most rows have one; of a report with diameters at least a third.
     """
     for i in range(len(sheet.columns)):
-        named = [c.upper() if c.upper() in ("X", "Y", "Z") else "" for c in sheet.text(i)]
+        named = [c.upper() if c.upper() in ("X", "Y", "Z") else "" for c in sheet.looked_at(i)]
         if 3 * sum(map(bool, named)) > len(named):
+            sheet.used.add(i)
             return named
     return None
 
@@ -122,12 +134,8 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
         raise BadFile(sheet.path, "header", found, "columns such as 'nominal' and 'measured'")
     nominal, measured = (_coordinate(sheet, c, unit or "mm") for c in columns if c is not None)
     label, setup = _texts(sheet, names, _NAME, ""), _texts(sheet, names, _SETUP, "a")
-    rows = [k for k, letter in enumerate(letters) if letter]
-    points: list[dict[str, int]] = []
-    for before, k in pairwise([-1, *rows]):
-        if before < 0 or label[k] != label[before] or letters[k] in points[-1]:
-            points.append({})
-        points[-1][letters[k]] = k
+    label = [_without_letter(n, c) for n, c in zip(label, letters, strict=True)]
+    points = _gathered([k for k, letter in enumerate(letters) if letter], label, setup, letters)
     at, off = np.zeros((len(points), 3)), np.full((len(points), 3), np.nan)
     for p, point in enumerate(points):
         for letter, k in point.items():
@@ -140,19 +148,55 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
         feature=np.array([label[k] for k in first]),
         setup=np.array([setup[k] for k in first]),
         line=np.array([sheet.lines[k] for k in first]),
+        approach=np.zeros((len(points), 3), dtype=np.int64),
     )
 
 
-def joined_points(lists: Sequence[PointList]) -> PointList:
-    """Several lists as one; each is a set-up of its own, named by its place in the order."""
+def _without_letter(name: str, letter: str) -> str:
+    """Name of a point from that of one of its coordinates: `X-Wert_Bohrung_01` is `Bohrung_01`."""
+    if not letter:
+        return name
+    own = rf"(?<![a-z]){letter}(?:[-_ ]?(?:wert|value|val|coord\w*|koord\w*))?(?![a-z0-9])"
+    return re.sub(own, "", name, flags=re.IGNORECASE).strip(" _.:-") or name
+
+
+def _gathered(
+    rows: Sequence[int], label: Sequence[str], setup: Sequence[str], letters: Sequence[str]
+) -> list[dict[str, int]]:
+    """Row of every coordinate of each point.
+
+    Points of a name of their own are found wherever their rows stand; without, a point ends where
+    its name changes or a letter comes again.
+    """
+    keys = [(setup[k], label[k], letters[k]) for k in rows]
+    points: dict[object, dict[str, int]] = {}
+    if all(label[k] for k in rows) and len(set(keys)) == len(keys):
+        for k in rows:
+            points.setdefault((setup[k], label[k]), {})[letters[k]] = k
+        return list(points.values())
+    last: dict[str, int] = {}
+    for before, k in pairwise([-1, *rows]):
+        if before < 0 or label[k] != label[before] or letters[k] in last:
+            last = points.setdefault(k, {})
+        last[letters[k]] = k
+    return list(points.values())
+
+
+def joined_points(lists: Sequence[PointList], names: Sequence[str] = ()) -> PointList:
+    """Several lists as one; each is a run of its own, with set-ups that bear its name."""
     if len(lists) == 1:
         return lists[0]
+    if len(set(names)) < len(names):
+        names = [f"{name}-{i + 1}" for i, name in enumerate(names)]
+    of = list(zip(lists, names, strict=True))
     return PointList(
         nominal=np.concatenate([p.nominal for p in lists]),
         deviation=np.concatenate([p.deviation for p in lists]),
         feature=np.concatenate([p.feature for p in lists]),
-        setup=np.concatenate([[f"list{i + 1}_{s}" for s in p.setup] for i, p in enumerate(lists)]),
+        setup=np.concatenate([[f"{name}_{s}" for s in p.setup] for p, name in of]),
         line=np.concatenate([p.line for p in lists]),
+        approach=np.concatenate([p.approach for p in lists]),
+        run=np.concatenate([np.full(len(p.line), name) for p, name in of]),
     )
 
 
@@ -161,11 +205,13 @@ def _roles(sheet: Sheet) -> dict[tuple[str, str], int]:
     found: dict[tuple[str, str], int] = {}
     for i, column in enumerate(sheet.columns):
         name = bare(column)
-        letter = _LETTER.search(name.replace("_", " "))
+        letter = _LETTER.search(_AFTER_DIR.sub(r"\1 ", name.replace("_", " ")))
         if letter is None:
             continue
         role = (
-            "measured"
+            "approach"
+            if _APPROACH.search(name)
+            else "measured"
             if _MEASURED.search(name)
             else "deviation"
             if _DEVIATION.search(name.replace("_", " "))
@@ -236,7 +282,13 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
     length = np.zeros(len(rows))
     q = _readings(chain, place, length)
     normal = np.eye(3)[axis]
-    names, setup = np.unique(points.setup, return_inverse=True)
+    labels = list(dict.fromkeys(points.setup.tolist()))  # in the order of the lists
+    setup = np.array([labels.index(label) for label in points.setup], dtype=np.int64)
+    of = (
+        dict(zip(points.setup.tolist(), points.run.tolist(), strict=True))
+        if len(points.run)
+        else {}
+    )
     sign = -1.0 if meaning == "part" else 1.0
     touches = Touches(
         chain=chain,
@@ -245,10 +297,10 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
         radius=np.zeros(len(rows)),
         point=place,
         normal=normal,
-        setups=tuple(Setup(_key(str(name))) for name in names),
-        setup=setup.reshape(-1)[rows].astype(np.int64),
+        setups=tuple(Setup(_key(label), run=of.get(label, "")) for label in labels),
+        setup=setup[rows],
         time=np.zeros(len(rows)),
-        approach=np.zeros(q.shape),
+        approach=_approach(points, chain)[rows],
         feature=points.feature[rows],
         pose=rows.astype(np.int64),
         instrument=Instrument.CMM if meaning == "part" else Instrument.TOUCH_PROBE,
@@ -268,6 +320,15 @@ def _readings(chain: Chain, place: Array, length: Array) -> Array:
     offset = place - tip(chain, zero, length)
     zero[:, columns] = np.einsum("nmi,ni->nm", np.linalg.pinv(D), offset)
     return zero
+
+
+def _approach(points: PointList, chain: Chain) -> Array:
+    """Signs of the last motion of every axis, (N, A)."""
+    out = np.zeros((len(points.line), len(chain.axes)))
+    for i, letter in enumerate("XYZ"):
+        if letter in chain.axes:
+            out[:, chain.axis_index(letter)] = points.approach[:, i]
+    return out
 
 
 def _key(name: str) -> str:

@@ -17,7 +17,9 @@ import numpy as np
 
 from twin.errors import BadFile
 from twin.foreign.axis_log import approaches, strokes, temperatures
-from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column, unit_of_time
+from twin.foreign.clock import seconds
+from twin.foreign.directions import DOWN, UP, signs
+from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
 from twin.frames import Array, pose
 from twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
 from twin.record import Instrument, IntArray, Run, Setup, Touches
@@ -40,10 +42,6 @@ _REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)
 _DEVIATION = re.compile(r"dev|error|abweich|fehler|\bx_?ij\b", re.IGNORECASE)
 _CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
 _DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
-_DOWN = re.compile(
-    r"down|\bdn\b|dwn|↓|-|−|\bneg|\brev|\bb(ack|wd|kw)|rück|ruck|zur|\bret", re.IGNORECASE
-)
-_UP = re.compile(r"\bup|↑|\+|\bpos(itive?)?\b|\bf(wd|or)|\bvor|\bhin\b|\baller", re.IGNORECASE)
 _WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
 _WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
@@ -124,24 +122,25 @@ def read_positioning(
     n = len(sheet)
     time = np.zeros(n)
     if clock is not None:
-        time = sheet.numbers(clock) * unit_of_time(sheet.columns[clock])
+        time = seconds(sheet, clock)
         sign, stroke = strokes(_held(at))
     else:
         sign, stroke = approaches(_held(at))
         parted = _ways_of_parts(sheet)
         sign = parted if np.any(parted) else sign
     return _present(
+        sheet,
         PositioningTest(
             axis=axis,
             target=at,
             deviation=deviation,
             cycle=_whole(sheet, cycle) if cycle is not None else stroke,
-            direction=_signs(sheet, direction) if direction is not None else sign,
+            direction=signs(sheet, direction) if direction is not None else sign,
             line=np.array(sheet.lines),
             time=time,
             temperature=temperatures(sheet) if clock is not None else {},
             is_by_order=direction is None and bool(np.any(sign < 0)),
-        )
+        ),
     )
 
 
@@ -166,7 +165,7 @@ def _wide(
         if len(number.group(0)) > _LONGEST:
             raise BadFile(sheet.path, "header", f"column {name[:40]!r}", "the number of a cycle")
         rest = bare(name).replace(number.group(0), "", 1)
-        sign = 1 if _UP.search(rest) else -1 if _DOWN.search(rest) else 0
+        sign = 1 if UP.search(rest) else -1 if DOWN.search(rest) else 0
         values = _deviations(sheet, i, target, at, unit, base)
         whole = np.ones(len(sheet), dtype=np.int64)
         ways = sign * whole if sign else parted
@@ -181,6 +180,7 @@ def _wide(
         raise BadFile(sheet.path, "header", f"column {unsaid!r}", expected)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     return _present(
+        sheet,
         PositioningTest(
             axis=axis,
             target=columns[0],
@@ -188,7 +188,7 @@ def _wide(
             cycle=columns[2],
             direction=columns[3],
             line=columns[4],
-        )
+        ),
     )
 
 
@@ -221,9 +221,11 @@ def _is_position(values: Array, at: Array) -> bool:
     return abs(float(slope) - 1.0) < ALL_BUT
 
 
-def _present(test: PositioningTest) -> PositioningTest:
+def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
     """Without readings that are not there."""
     rows = np.isfinite(test.target) & np.isfinite(test.deviation)
+    if not rows.any():
+        raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
     return PositioningTest(
         axis=test.axis,
         target=test.target[rows],
@@ -266,19 +268,6 @@ def _whole(sheet: Sheet, column: int) -> IntArray:
     if len(odd):
         raise sheet.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", "the number of a cycle")
     return numbers.astype(np.int64)
-
-
-def _signs(sheet: Sheet, column: int) -> IntArray:
-    """Signs of directions of approach."""
-    out = np.zeros(len(sheet), dtype=np.int64)
-    for i, word in enumerate(sheet.text(column)):
-        if word in ("1", "-1", "0"):
-            out[i] = int(word)
-        elif _UP.search(word) or _DOWN.search(word):
-            out[i] = 1 if _UP.search(word) else -1
-        elif word:
-            raise sheet.bad(i, column, repr(word), "up or down (+ or -, 1 or -1)")
-    return out
 
 
 def one_axis_machine(axis: str, target: Array) -> Chain:

@@ -13,7 +13,8 @@ import numpy as np
 
 from twin.errors import BadFile, DesignError
 from twin.foreign.axis_log import temperatures
-from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column, unit_of_time
+from twin.foreign.clock import seconds
+from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
 from twin.frames import Array, apply, inverse, pose, rotation
 from twin.machine import Axis, Chain, make_chain, table_to_tool
 from twin.record import (
@@ -218,7 +219,7 @@ def tracker_run(
     clock = next((i for i, c in enumerate(sheet.columns) if _TIME.search(c)), None)
     time = np.zeros(len(q))
     if clock is not None:
-        time = sheet.numbers(clock) * unit_of_time(sheet.columns[clock])
+        time = seconds(sheet, clock)
     there = np.isfinite(place).all(axis=1) & np.isfinite(q).all(axis=1)
     if there.sum() < FEWEST:
         raise DesignError(f"{sheet.path}: {int(there.sum())} poses, expected {FEWEST} at least")

@@ -9,13 +9,14 @@ import io
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from twin.errors import BadFile
 from twin.files import read_any_text
+from twin.foreign.blanks import by_blanks
 from twin.frames import Array
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
@@ -66,6 +67,7 @@ class Sheet:
     title: tuple[str, ...]
     left_out: tuple[int, ...]
     above: tuple[str, ...] = ()
+    used: set[int] = field(default_factory=set, compare=False, repr=False)
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -76,6 +78,7 @@ class Sheet:
         Raises:
             BadFile: A cell that is no number; its line and what stood there.
         """
+        self.used.add(column)
         out = np.full(len(self), np.nan)
         for i, row in enumerate(self.cells):
             cell = row[column]
@@ -90,6 +93,17 @@ class Sheet:
 
     def text(self, column: int) -> list[str]:
         """Cells of a column as text; whole numbers without a decimal mark."""
+        self.used.add(column)
+        return self.looked_at(column)
+
+    @property
+    def unused(self) -> tuple[str, ...]:
+        """Columns with a name and cells in them of which nothing was taken."""
+        rest = [i for i, name in enumerate(self.columns) if name and i not in self.used]
+        return tuple(self.columns[i] for i in rest if any(self.looked_at(i)))
+
+    def looked_at(self, column: int) -> list[str]:
+        """The same, to see what a column holds; it does not count as used."""
         cells = [row[column] for row in self.cells]
         return [f"{c:g}" if isinstance(c, float) else c for c in cells]
 
@@ -151,28 +165,29 @@ def unit_of_time(column: str) -> float:
     return SECONDS.get((match.group(1) or match.group(2) or "") if match else "", 1.0)
 
 
-def read_sheet(path: str | Path, name: str | None = None) -> Sheet:
+def read_sheet(path: str | Path, name: str | None = None, names: Sequence[str] = ()) -> Sheet:
     """The table of a foreign file.
 
     Args:
-        path: A workbook (xlsx, xls, ods ...) or text with commas, semicolons or tabs; decimal
-            commas are read where every number of the file has them.
+        path: A workbook (xlsx, xls, ods ...) or text with commas, semicolons, tabs or blanks;
+            decimal commas are read where every number of the file has them.
         name: Sheet of a workbook; None takes the first that has a table.
+        names: Of the columns, of a table without a header.
 
     Raises:
         BadFile: No table of numbers, a sheet that is not there, or mixed decimal marks.
     """
     path = Path(path)
     if path.suffix.lower() in WORKBOOKS:
-        return _workbook(path, name)
+        return _workbook(path, name, names)
     rows = _text_rows(path)
-    sheet = _table(path, rows)
+    sheet = _table(path, rows, names)
     if sheet is None:
         raise BadFile(path, "file", "no table of numbers", "a header and rows of numbers below it")
     return sheet
 
 
-def _workbook(path: Path, name: str | None) -> Sheet:
+def _workbook(path: Path, name: str | None, names: Sequence[str]) -> Sheet:
     """The table of one sheet of a workbook."""
     from python_calamine import CalamineError, CalamineWorkbook
 
@@ -180,16 +195,16 @@ def _workbook(path: Path, name: str | None) -> Sheet:
         book = CalamineWorkbook.from_path(path)
     except (OSError, CalamineError) as error:
         raise BadFile(path, "file", str(error), "a workbook that can be read") from error
-    names = book.sheet_names
-    if name is not None and name not in names:
-        raise BadFile(path, "sheet", repr(name), f"one of {', '.join(names)}")
-    for one in [name] if name else names:
+    sheets = book.sheet_names
+    if name is not None and name not in sheets:
+        raise BadFile(path, "sheet", repr(name), f"one of {', '.join(sheets)}")
+    for one in [name] if name else sheets:
         found = book.get_sheet_by_name(one).to_python(skip_empty_area=False)
         rows = [(i + 1, [_cell(c) for c in row]) for i, row in enumerate(found)]
-        sheet = _table(path, rows)
+        sheet = _table(path, rows, names)
         if sheet is not None:
             return sheet
-    raise BadFile(path, f"sheet {name or ', '.join(names)}", "no table of numbers", "a table")
+    raise BadFile(path, f"sheet {name or ', '.join(sheets)}", "no table of numbers", "a table")
 
 
 def _cell(value: object) -> str | float:
@@ -203,9 +218,12 @@ def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
     """Rows of a text file, its numbers read."""
     text = read_any_text(path)
     counts = {s: _typical(text, s) for s in _SEPARATORS}
-    separator = next((s for s in _SEPARATORS if counts[s] >= 1), ",")
-    reader = csv.reader(io.StringIO(text), delimiter=separator)
-    rows = [(reader.line_num, [c.strip() for c in row]) for row in reader]
+    separator = next((s for s in _SEPARATORS if counts[s] >= 1), "")
+    rows = by_blanks(text) if separator in ("", ",") else []
+    if not rows:
+        reader = csv.reader(io.StringIO(text), delimiter=separator or ",")
+        rows = [(reader.line_num, [c.strip() for c in row]) for row in reader]
+    rows = [(line, [row[0].lstrip("# "), *row[1:]] if row else row) for line, row in rows]
     rows = [(line, row) for line, row in rows if not all(_RULE.match(c) for c in row)]
     mark = _decimal_mark(path, rows)
     return [(line, [_number(c, mark) for c in row]) for line, row in rows]
@@ -237,19 +255,25 @@ def _number(cell: str, mark: str) -> str | float:
         return cell
 
 
-def _table(path: Path, rows: Sequence[tuple[int, Sequence[str | float]]]) -> Sheet | None:
+def _table(
+    path: Path, rows: Sequence[tuple[int, Sequence[str | float]]], names: Sequence[str]
+) -> Sheet | None:
     """Header and rows of numbers, None where there are none."""
     rows = [(line, row) for line, row in rows if any(c != "" for c in row)]
     first = next((i for i in range(len(rows)) if _begins_table(rows, i)), None)
     if first is None:
         return None
     above = [i for i in range(first) if sum(c != "" for c in rows[i][1]) >= 2]
-    if not above:
-        raise BadFile(path, f"line {rows[first][0]}", "numbers", "a line of column names above")
+    if not above and not names:
+        expected = "a line of column names above, or --columns"
+        raise BadFile(path, f"line {rows[first][0]}", "numbers", expected)
     width = max(len(row) for _, row in rows[first:])
-    header = _header([list(rows[i][1]) for i in above[-3:]], width)
-    data, others = _data_rows(rows[above[-1] + 1 :])
-    title = [" ".join(str(c) for c in row if c != "") for _, row in rows[: above[-1]]]
+    if names and len(names) != width:
+        raise BadFile(path, "table", f"{width} columns", f"{len(names)}, as --columns names them")
+    header = tuple(names) or _header([list(rows[i][1]) for i in above[-3:]], width)
+    begin = first if names else above[-1] + 1
+    data, others = _data_rows(rows[begin:])
+    title = [" ".join(str(c) for c in row if c != "") for _, row in rows[: max(begin - 1, 0)]]
     blocks = _blocks(rows, {line for line, _ in data})
     return Sheet(
         path=path,

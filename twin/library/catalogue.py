@@ -28,6 +28,7 @@ from twin.effects import (
     periodic,
     position_table,
     probe,
+    servo_lag,
     stiffness,
 )
 from twin.errors import BadFile, DesignError, UnknownEffect
@@ -313,6 +314,7 @@ for _kind in (
     column_bending.KIND,
     gravity.KIND,
     joint_sag.KIND,
+    servo_lag.KIND,
     stiffness.KIND,
     probe.LOBING,
     probe.RADIUS,

@@ -13,6 +13,7 @@ from twin.errors import NotReachable, ShapeMismatch
 from twin.frames import Array, apply, inverse, pose, rotation, turned_about
 from twin.machine.chain import Chain, Link
 from twin.machine.contribution import Contribution, Where
+from twin.machine.moved_point import moved_tip, tip_in_tool
 
 
 class Reach(NamedTuple):
@@ -119,22 +120,6 @@ def table_to_tool(chain: Chain, q: Array) -> Array:
     return inverse(T_machine_table) @ T_machine_tool
 
 
-def tip_in_tool(length: Array | float, n: int) -> Array:
-    """Tool point, or ball centre of a probe, in the tool frame, shape (N, 3), mm.
-
-    Args:
-        length: L of a point on the tool axis at (0, 0, -L), scalar or (N,); or the point itself,
-            (N, 3), for a target beside the axis.
-        n: Number of poses.
-    """
-    length = np.asarray(length, dtype=float)
-    if length.ndim == 2:
-        return length
-    tip = np.zeros((n, 3))
-    tip[:, 2] = -length
-    return tip
-
-
 def tip(chain: Chain, q: Array, length: Array | float) -> Array:
     """Nominal tool point (ball centre of a probe) in the table frame.
 
@@ -145,8 +130,7 @@ def tip(chain: Chain, q: Array, length: Array | float) -> Array:
     Returns:
         Shape (N, 3), mm.
     """
-    T_table_tool = table_to_tool(chain, q)
-    return apply(T_table_tool, tip_in_tool(length, len(T_table_tool)))
+    return moved_tip(chain, checked_readings(chain, q), length, None)
 
 
 def place_as_twist(chain: Chain, q: Array) -> Array:
@@ -220,52 +204,11 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
     return Reach(twist, place_as_twist(chain, q) @ twist)
 
 
-def _exact_motion(link: Link, reading: Array, place: Array) -> Array:
-    """Pose (N, 4, 4) of a link's motion with its line displaced by `place` (N, 6), exactly."""
-    e, r = place[:, :3], place[:, 3:]
-    d, s = link.direction, _sign(link)
-    if link.kind == "linear":
-        travel = s * (reading + e[:, link.own])
-        return pose(t=travel[:, None] * np.einsum("nij,j->ni", rotation(r), d))
-    zero = r[:, link.own]
-    tilt = np.where(np.arange(3) == link.own, 0.0, r)
-    D = turned_about(link.point, rotation(tilt), e)
-    M = turned_about(link.point, rotation((s * (reading + zero))[:, None] * d))
-    return D @ M @ inverse(D)
-
-
-def exact_table_to_tool(chain: Chain, q: Array, contribution: Contribution) -> Array:
-    """Actual pose T_table_tool (N, 4, 4) with every error in it: products of 4x4 matrices.
-
-    Each link multiplies ``G M`` onto its carrier: G the component error, a rotation by the vector
-    r about the lever point followed by the shift e (its inverse on the workpiece side), and M the
-    motion about the displaced line. No angle is taken for small.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        contribution: What all effects add at these readings; its twist and place are used.
-    """
-    q = checked_readings(chain, q)
-    ends = []
-    for side in _sides(chain):
-        T = np.broadcast_to(np.eye(4), (len(q), 4, 4))
-        for i in side:
-            link = chain.links[i]
-            reading = _readings_of(chain, link, q)
-            e, r = contribution.twist[:, i, :3], contribution.twist[:, i, 3:]
-            G = turned_about(_lever_point(link, reading), rotation(r), e)
-            T = T @ (inverse(G) if link.carries_workpiece else G)
-            place = contribution.place[:, i]
-            if link.kind == "fixed":
-                T = T @ turned_about(link.point, rotation(place[:, 3:]), place[:, :3])
-            else:
-                T = T @ _exact_motion(link, reading, place)
-        ends.append(T)
-    return inverse(ends[0] @ pose(t=chain.table_origin)) @ ends[1]
-
-
 def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contribution) -> Array:
-    """Actual tool point in the table frame with every error in it.
+    """Actual tool point in the table frame with every error in it; no angle is taken for small.
+
+    Each link moves the point by its component error, a rotation by the vector r about the lever
+    point followed by the shift e, and by its motion about, or along, its displaced line.
 
     Args:
         q: Readings, shape (N, A), mm and rad.
@@ -275,8 +218,7 @@ def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contr
     Returns:
         Shape (N, 3), mm; minus `tip` it is the volumetric deviation.
     """
-    T_table_tool = exact_table_to_tool(chain, q, contribution)
-    return apply(T_table_tool, tip_in_tool(length, len(T_table_tool)))
+    return moved_tip(chain, checked_readings(chain, q), length, contribution)
 
 
 def linear_directions(chain: Chain, q: Array) -> Array:

@@ -16,6 +16,7 @@ from twin.record.touches import (
     Touches,
     at_poses,
     computed_deviation,
+    implied_approach,
     linear_approach,
 )
 
@@ -30,6 +31,7 @@ __all__ = [
     "aligned",
     "at_poses",
     "computed_deviation",
+    "implied_approach",
     "joined",
     "linear_approach",
     "rigid_motion",

@@ -12,6 +12,7 @@ class Instrument(Enum):
     DIAL_GAUGE = "dial-gauge"
     ENCODER = "encoder"
     CMM = "cmm"
+    BALL_BAR = "ball-bar"
     AUTOCOLLIMATOR = "autocollimator"
 
     @property

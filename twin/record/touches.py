@@ -261,6 +261,41 @@ def linear_approach(chain: Chain, q: Array, normal_table: Array) -> Array:
     return out
 
 
+def implied_approach(touches: Touches) -> Array:
+    """Signs of the last motions where a run does not state them, (N, A).
+
+    Those of touches follow from their normals; an encoder is read while the axes move.
+    """
+    if touches.instrument is Instrument.ENCODER:
+        return motion(touches.q, touches.time)
+    return linear_approach(touches.chain, touches.q, touches.normal_table)
+
+
+def motion(q: Array, time: Array) -> Array:
+    """Signs of the last motion of every axis in a log that was read on the way, (N, A).
+
+    An axis that stands keeps its sign. Of the last row before an axis is seen to come back nobody
+    knows whether it had turned already: the sign is 0.
+
+    Args:
+        q: Readings, (N, A).
+        time: Of every row, (N,), s; rows of one time are in order.
+
+    Example:
+        >>> motion(np.array([0.0, 1.0, 2.0, 2.0, 1.5])[:, None], np.arange(5.0))[:, 0]
+        array([ 1.,  1.,  1.,  0., -1.])
+    """
+    order = np.argsort(time, kind="stable")
+    step = np.sign(np.diff(q[order], axis=0, prepend=q[order][:1]))
+    moved = np.maximum.accumulate(np.where(step != 0.0, np.arange(len(q))[:, None], 0), axis=0)
+    signs = np.take_along_axis(step, moved, axis=0)
+    signs[0] = signs[min(1, len(q) - 1)]
+    signs[:-1][signs[:-1] * signs[1:] < 0.0] = 0.0
+    out = np.empty_like(signs)
+    out[order] = signs
+    return out
+
+
 def computed_deviation(touches: Touches) -> Array:
     """Measured deviation of every touch from its readings, (N,), mm.
 

@@ -1,4 +1,4 @@
-"""An effect a second time: two time constants after one sensor, two periods of one screw."""
+"""An effect once more: a second time beside itself, or changed from some run on."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -65,3 +65,44 @@ class Again:
 def again(effect: Effect, number: int = 2) -> Again | None:
     """An effect another time, or None where it has no inner parameters to differ in."""
     return Again(effect, number) if isinstance(effect, Tunable) and effect.tuning else None
+
+
+@dataclass(frozen=True)
+class Change:
+    """By how much the parameters of an effect differ from some run on.
+
+    The effect itself stands in the model beside it and is that of the runs before; what happened
+    between two runs stays until the next change.
+
+    Attributes:
+        effect: What changed.
+        index: Number of the first run that shows it, as in `Touches.run`.
+        since: Name of that run.
+    """
+
+    effect: Effect
+    index: int
+    since: str
+
+    kind = "change"
+
+    @property
+    def name(self) -> str:
+        """`change(location(EC0Y),autumn)`."""
+        return f"change({self.effect.name},{self.since})"
+
+    @property
+    def title(self) -> Title:
+        """That of the effect."""
+        own = self.effect.title if isinstance(self.effect, Titled) else Title(self.effect.name)
+        return Title(f"change of {own.text}", own.carrier)
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Those of the effect: what may be anything may also become anything."""
+        return self.effect.parameters
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Those of the effect, at the touches of this run and of later ones."""
+        here = touches.run >= self.index
+        return tuple(t._replace(amount=t.amount * here) for t in self.effect.terms(touches))

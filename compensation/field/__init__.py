@@ -1,0 +1,48 @@
+"""The error field of a machine, its exact inverse, and what a compensation leaves of it.
+
+In: a `SavedModel` and the `State` in which the machine works. Out: `MachineErrors`, the readings
+that correct them (`correction`), and the `Result` of any compensation over a workspace. Whatever
+corrects, a program, a table, a service, ends in one thing: readings that are added (`Corrects`).
+"""
+
+from compensation.field.inverse import Datum, correction, datum_of, played, shifted
+from compensation.field.machine_errors import (
+    Corrects,
+    Disturbance,
+    MachineErrors,
+    actual_tip,
+    deviation,
+    group_of,
+)
+from compensation.field.over_workspace import (
+    Left,
+    Result,
+    aligned,
+    relative_columns,
+    result_of,
+    rms,
+    workspace,
+)
+from compensation.field.state import State
+
+__all__ = [
+    "Corrects",
+    "Datum",
+    "Disturbance",
+    "Left",
+    "MachineErrors",
+    "Result",
+    "State",
+    "actual_tip",
+    "aligned",
+    "correction",
+    "datum_of",
+    "deviation",
+    "group_of",
+    "played",
+    "relative_columns",
+    "result_of",
+    "rms",
+    "shifted",
+    "workspace",
+]

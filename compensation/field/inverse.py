@@ -1,0 +1,100 @@
+"""Readings that bring the tool point where it should be, by the inverse of the exact twin."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from compensation.field.machine_errors import Disturbance, MachineErrors, actual_tip, deviation
+from twin.errors import NotReachable
+from twin.frames import Array
+from twin.machine import Chain, linear_directions, tip
+from twin.record import Touches
+from twin.units import NM
+
+MOST = 6
+"""Steps of the inverse: each leaves some 1e-4 of what was there, so two or three do."""
+
+CLOSE = 2.0 * NM
+"""Of a step, mm: the next one would be some thousandth of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Datum:
+    """The pose to which all figures refer: a preset taken there stays what it was.
+
+    Attributes:
+        q: Readings, (A,).
+        length: Of the tool, mm.
+    """
+
+    q: Array
+    length: float
+
+    def deviation(self, errors: MachineErrors) -> Array:
+        """Deviation of the tool point there, (3,), mm: the preset has taken it up."""
+        return deviation(errors, errors.touches(self.q[None, :], self.length))[0]
+
+
+def correction(
+    disturbance: Disturbance,
+    touches: Touches,
+    aim: Array | None = None,
+    start: Array | None = None,
+) -> Array:
+    """What is added to the readings of the linear axes so that the tool point is right.
+
+    Solves ``tip_actual(q + correction) = tip_nominal(q) + aim`` by steps with the directions of the
+    linear axes. Rotary readings are kept, so an angle of the tool stays as wrong as it is. With
+    fewer than three linear axes only what they can move is corrected.
+
+    Args:
+        disturbance: The errors, or tables of them.
+        touches: Poses as they are commanded.
+        aim: Deviation that is wanted, (3,) or (N, 3), mm: that of the datum.
+
+        start: What is added already, (N, A), such as corrections of rotary axes.
+
+    Returns:
+        Shape (N, A), mm and rad; `start` in the columns of rotary axes.
+
+    Raises:
+        NotReachable: The steps do not close: the errors are too large for a machine.
+    """
+    chain, length = disturbance.chain, touches.target
+    columns = np.array([chain.axis_index(name) for name in chain.linear_axes], dtype=np.int64)
+    wanted = tip(chain, touches.q, length) + (0.0 if aim is None else aim)
+    across = np.linalg.pinv(linear_directions(chain, touches.q))  # (N, M, 3)
+    out = np.zeros_like(touches.q) if start is None else start.copy()
+    rows = np.arange(len(out))
+    for _ in range(MOST):
+        left = actual_tip(disturbance, shifted(touches[rows], out[rows])) - wanted[rows]
+        step = np.einsum("nmi,ni->nm", across[rows], left)
+        out[np.ix_(rows, columns)] -= step
+        rows = rows[np.abs(step).max(axis=1, initial=0.0) > CLOSE]
+        if not len(rows):
+            return out
+    raise NotReachable(f"the correction does not close on machine {chain.name}: errors too large")
+
+
+def shifted(touches: Touches, added: Array) -> Touches:
+    """The same poses with something added to their readings, (N, A)."""
+    return replace(touches, q=touches.q + added)
+
+
+def played(errors: Disturbance, touches: Touches, added: Array) -> Array:
+    """Where the tool point really is, less where the commanded readings put it, (N, 3), mm.
+
+    Args:
+        errors: The true errors.
+        touches: Poses as they are commanded.
+        added: Readings that the compensation adds, (N, A).
+    """
+    chain = errors.chain
+    actual = actual_tip(errors, shifted(touches, added))
+    return actual - tip(chain, touches.q, touches.target)
+
+
+def datum_of(chain: Chain, stated: dict[str, float], length: float) -> Datum:
+    """Datum at stated readings; an axis of which nothing is said stands at zero, or next to it."""
+    q = [stated.get(a, float(np.clip(0.0, *chain.link(a).range))) for a in chain.axes]
+    return Datum(np.array(q), length)

@@ -1,0 +1,251 @@
+"""The errors of a machine as a model knows them, without what only the measurement had."""
+
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal, Protocol
+
+import numpy as np
+
+from compensation.field.state import SWITCHED_ON, State
+from diagnosis.files import SavedModel
+from twin.errors import BadValue
+from twin.frames import Array
+from twin.machine import Chain, Contribution, Where, error_class, exact_tip, parse_symbol, tip
+from twin.model import Effect, contribution
+from twin.record import Touches
+from twin.words import did_you_mean
+
+
+class Disturbance(Protocol):
+    """Whatever disturbs the axes of a machine: a model of its errors, or tables of them."""
+
+    @property
+    def chain(self) -> Chain: ...  # noqa: D102
+
+    def contribution(self, touches: Touches) -> Contribution:
+        """What it adds at every touch."""
+        ...
+
+
+def actual_tip(disturbance: Disturbance, touches: Touches) -> Array:
+    """Where the tool point really is in the table frame, (N, 3), mm."""
+    added = disturbance.contribution(touches)
+    return exact_tip(disturbance.chain, touches.q, touches.target, added)
+
+
+def deviation(disturbance: Disturbance, touches: Touches) -> Array:
+    """Exact deviation of the tool point in the table frame, actual minus nominal, (N, 3), mm."""
+    return actual_tip(disturbance, touches) - tip(disturbance.chain, touches.q, touches.target)
+
+
+@dataclass(frozen=True, eq=False)
+class MachineErrors:
+    """What a model says of a machine's axes, and how well it knows it.
+
+    Set-ups, probe and standard, and the constants of workpiece and tool (`EX0w`, `EX0t` ...) belong
+    to the measurement: they are not in it.
+
+    Attributes:
+        effects: The physics that moves the tool point through an axis.
+        theta: Parameters of each effect, base units.
+        root: Of the covariance of all parameters, effect after effect, (P, K), of a machine whose
+            tools are set against the probe that measured it.
+        tool_root: What the covariance has beside that, (P, T), where nobody knows how a tool stands
+            in the spindle against that probe: from it a run cannot tell the lines of rotary axes.
+        state: In which the machine is compensated.
+        left_out: Names of effects of the model that are not the machine's.
+    """
+
+    chain: Chain
+    effects: tuple[Effect, ...]
+    theta: tuple[Array, ...]
+    root: Array
+    tool_root: Array
+    state: State = SWITCHED_ON
+    left_out: tuple[str, ...] = ()
+
+    @classmethod
+    def of_model(cls, saved: SavedModel, state: State = SWITCHED_ON) -> "MachineErrors":
+        """The errors of the machine that a model was learnt of."""
+        effects, mean = saved.model.effects, saved.estimates.mean
+        theta = np.split(mean, np.cumsum([len(e.parameters) for e in effects])[:-1])
+        known = list(zip(effects, theta, strict=True))
+        return cls._of_machine(saved.model.chain, known, saved.estimates.root, state)
+
+    @classmethod
+    def of_errors(
+        cls, chain: Chain, errors: Sequence[tuple[Effect, Array]], state: State = SWITCHED_ON
+    ) -> "MachineErrors":
+        """Errors that are known without uncertainty, as an error file states them."""
+        count = sum(len(e.parameters) for e, _ in errors)
+        return cls._of_machine(chain, errors, np.zeros((count, 0)), state)
+
+    @classmethod
+    def _of_machine(
+        cls, chain: Chain, known: Sequence[tuple[Effect, Array]], root: Array, state: State
+    ) -> "MachineErrors":
+        middle = np.array([[float(np.mean(chain.link(a).range)) for a in chain.axes]])
+        at = state.touches(chain, middle, 0.0)
+        counts = [len(theta) for _, theta in known]
+        is_kept = [_is_of_machine(effect, at) for effect, _ in known]
+        is_tool = [not k and _moves_tip(e, at) for (e, _), k in zip(known, is_kept, strict=True)]
+        own, tool = (root[np.repeat(rows, counts).astype(bool)] for rows in (is_kept, is_tool))
+        shared = _row_space(tool)
+        return cls(
+            chain=chain,
+            effects=tuple(e for (e, _), kept in zip(known, is_kept, strict=True) if kept),
+            theta=tuple(t for (_, t), kept in zip(known, is_kept, strict=True) if kept),
+            root=own - own @ shared @ shared.T,
+            tool_root=own @ shared,
+            state=state,
+            left_out=tuple(e.name for (e, _), kept in zip(known, is_kept, strict=True) if not kept),
+        )
+
+    def touches(
+        self,
+        q: Array,
+        length: Array | float,
+        approach: Array | None = None,
+        elapsed: Array | None = None,
+    ) -> Touches:
+        """Poses in the state of these errors; arguments as of `State.touches`."""
+        return self.state.touches(self.chain, q, length, approach, elapsed)
+
+    def contribution(self, touches: Touches) -> Contribution:
+        """What the errors add at every touch; nothing of set-up, standard and probe."""
+        pairs = [(e, t) for e, t in zip(self.effects, self.theta, strict=True) if t.any()]
+        total = contribution(pairs, touches)
+        for i, link in enumerate(self.chain.links):
+            if link.kind == "fixed":
+                total.twist[:, i], total.place[:, i] = 0.0, 0.0
+        total.shift[:], total.bias[:] = 0.0, 0.0
+        return total
+
+    def columns(self, touches: Touches) -> Array:
+        """Deviation of the tool point per unit of every parameter, first order, (N, 3, P)."""
+        out = np.zeros((len(touches), 3, len(self.root)))
+        for row, where, amount in self._entries(touches):
+            out[:, :, row] += amount[:, None] * touches.reach.of(where)
+        return out
+
+    def amounts(
+        self, touches: Touches, part: Literal["twist", "place"], links: Collection[int]
+    ) -> Array:
+        """What every parameter adds to one part of a contribution per unit, (N, L, 6, P).
+
+        Args:
+            part: Twist or place.
+            links: Those that count; nothing of the others is in it.
+        """
+        out = np.zeros((len(touches), len(self.chain.links), 6, len(self.root)))
+        for row, where, amount in self._entries(touches):
+            if where.part == part and where.link in links:
+                out[:, where.link, where.component, row] += amount
+        return out
+
+    def _entries(self, touches: Touches) -> Iterator[tuple[int, Where, Array]]:
+        """Every parameter's places in the chain with its amount there, (N,)."""
+        start = 0
+        for effect, theta in zip(self.effects, self.theta, strict=True):
+            for term in effect.terms(touches):
+                if _moves_axis(self.chain, term.where):
+                    yield start + term.parameter, term.where, term.amount
+            start += len(theta)
+
+    @cached_property
+    def groups(self) -> dict[str, tuple[int, ...]]:
+        """Numbers of effects by what they are told as: the symbol of ISO 230-1, or the effect."""
+        out: dict[str, tuple[int, ...]] = {}
+        for i, effect in enumerate(self.effects):
+            out[group_of(effect)] = (*out.get(group_of(effect), ()), i)
+        return out
+
+    def parameter_rows(self, group: str) -> Array:
+        """Places of the parameters of a group in the vector of all, (p,)."""
+        counts = [len(t) for t in self.theta]
+        starts = np.concatenate([[0], np.cumsum(counts)]).astype(int)
+        return np.concatenate([np.arange(starts[i], starts[i + 1]) for i in self.groups[group]])
+
+    def switched(self, factors: Mapping[str, float]) -> "MachineErrors":
+        """The errors scaled: 0 switches off, 1 leaves, 2 doubles; later words go before earlier.
+
+        Args:
+            factors: By symbol (`EXX`), effect (`backlash(X)`), kind (`backlash`), class
+                (`squareness`, `linear_rotation` ...), axis (`X`) or `all`.
+
+        Raises:
+            BadValue: A word that is none of these here, with those that are.
+        """
+        known = {word for effect in self.effects for word in words_of(self.chain, effect)}
+        for word in factors:
+            if word not in known:
+                listed = ", ".join(sorted(known, key=len)[:24])
+                raise BadValue("switch", f"'{word}'{did_you_mean(word, known)}", f"one of {listed}")
+        theta = []
+        scale = np.ones(len(self.root))
+        start = 0
+        for effect, own in zip(self.effects, self.theta, strict=True):
+            words = words_of(self.chain, effect)
+            factor = next((f for w, f in reversed(list(factors.items())) if w in words), 1.0)
+            theta.append(factor * own)
+            scale[start : start + len(own)] = factor
+            start += len(own)
+        scale = scale[:, None]
+        return replace(
+            self,
+            theta=tuple(theta),
+            root=scale * self.root,
+            tool_root=scale * self.tool_root,
+        )
+
+
+def group_of(effect: Effect) -> str:
+    """What an effect is told as: its symbol where it is a plain error of ISO 230-1."""
+    symbol = getattr(effect, "symbol", None)
+    return symbol.name if symbol is not None and effect.kind in _PLAIN else effect.name
+
+
+_PLAIN = ("geometric", "location")
+"""Kinds of effects that are the errors of ISO 230-1 themselves."""
+
+
+def words_of(chain: Chain, effect: Effect) -> set[str]:
+    """Every word under which an effect is switched."""
+    words = {"all", effect.kind, effect.name, group_of(effect)}
+    symbol = getattr(effect, "symbol", None) or parse_symbol(group_of(effect))
+    if symbol is not None:
+        words |= {symbol.link, symbol.name}
+        if effect.kind in _PLAIN:
+            words.add(error_class(chain, symbol))
+    axis = getattr(effect, "axis", None)
+    return words | ({axis} if isinstance(axis, str) else set())
+
+
+def _row_space(rows: Array) -> Array:
+    """Orthonormal basis of what some rows (t, K) span, (K, r)."""
+    if not rows.size:
+        return np.zeros((rows.shape[1], 0))
+    _, strength, basis = np.linalg.svd(rows, full_matrices=False)
+    return basis[strength > 1e-12 * strength[0]].T
+
+
+def _moves_tip(effect: Effect, at: Touches) -> bool:
+    return any(term.where.moves_tip for term in effect.terms(at))
+
+
+def _moves_axis(chain: Chain, where: Where) -> bool:
+    """Whether an entry is of an axis, not of workpiece, tool, standard or probe."""
+    return where.moves_tip and chain.links[where.link].kind != "fixed"
+
+
+def _is_of_machine(effect: Effect, at: Touches) -> bool:
+    """Whether an effect moves an axis; the errors of a spindle that turns are of no pose."""
+    symbol = getattr(effect, "symbol", None)
+    if symbol is not None and effect.kind in _PLAIN and not at.chain.link(symbol.link).programmed:
+        return False
+    return any(_moves_axis(at.chain, term.where) for term in effect.terms(at))
+
+
+Corrects = Callable[[Touches], Array]
+"""Readings that are added to the commanded ones, (N, A): what every compensation ends in."""

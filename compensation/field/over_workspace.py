@@ -1,0 +1,179 @@
+"""Poses all over the travels, and what a compensation leaves there, with its uncertainty."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensation.field.inverse import Datum, played
+from compensation.field.machine_errors import Corrects, MachineErrors, deviation
+from twin.frames import Array, skew
+from twin.machine import Chain
+from twin.record import Touches
+
+POSES = 256
+"""Over which figures are taken: their rms is then known to some 4 %."""
+
+
+def workspace(chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = POSES) -> Array:
+    """Readings evenly spread over the travels, without chance: a sequence of low discrepancy.
+
+    Point i is the fractional part of ``i alpha``, with alpha the powers of the inverse of the root
+    of ``x^(d+1) = x + 1`` in d dimensions.
+
+    Args:
+        chain: The machine.
+        limits: Ranges that are narrower than the travels, by axis; a rotary axis that turns more
+            than once is taken for one turn.
+        n: How many.
+
+    Returns:
+        Shape (n, A); spindles that no program turns stand at zero.
+
+    Reference:
+        M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
+    """
+    d = len(chain.programmed_axes)
+    root = 2.0
+    for _ in range(40):
+        root = (1.0 + root) ** (1.0 / (d + 1))
+    alpha = root ** -np.arange(1.0, d + 1.0)
+    unit = np.mod(0.5 + np.arange(1, n + 1)[:, None] * alpha, 1.0)
+    q = np.zeros((n, len(chain.axes)))
+    for k, name in enumerate(chain.programmed_axes):
+        low, high = limits.get(name, chain.link(name).range)
+        if chain.link(name).kind == "rotary" and high - low > 2.0 * np.pi:
+            low, high = max(low, -np.pi), min(high, np.pi)
+        q[:, chain.axis_index(name)] = low + unit[:, k] * (high - low)
+    return q
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """One thing that a compensation does not hold.
+
+    Attributes:
+        name: Symbol of ISO 230-1, or effect.
+        before: Of the tool point by this error alone, rms over the workspace, mm.
+        rms: What is left of it, mm.
+        u: Standard uncertainty of that, mm.
+    """
+
+    name: str
+    before: float
+    rms: float
+    u: float
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What a compensation does over a workspace, the workpiece being aligned (`aligned`), mm.
+
+    Attributes:
+        q: Poses, (N, A).
+        before: Deviation of the tool point without it, (N, 3).
+        after: The same with it, by the exact twin with the estimates as the truth, (N, 3).
+        u: Standard uncertainty of both from that of the model, (N,), of the length of the error
+            vector's three components together.
+        u_tool: What comes to the rms where tools are not set against the probe that measured.
+        left: What it does not hold, the largest first.
+    """
+
+    q: Array
+    before: Array
+    after: Array
+    u: Array
+    u_tool: float
+    left: tuple[Left, ...]
+
+    @property
+    def u_rms(self) -> float:
+        """What the uncertainty of the model adds to the rms, mm."""
+        return float(np.sqrt(np.mean(self.u**2)))
+
+    @property
+    def expected_before(self) -> float:
+        """Rms to expect without it: of the model and what it does not know, mm."""
+        return float(np.hypot(rms(self.before), self.u_rms))
+
+    @property
+    def expected(self) -> float:
+        """Rms to expect with it: what is left and what the model does not know, mm."""
+        return float(np.hypot(rms(self.after), self.u_rms))
+
+
+def rms(vectors: Array) -> float:
+    """Root mean square length of vectors (N, 3)."""
+    return float(np.sqrt(np.mean(np.einsum("ni,ni->n", vectors, vectors))))
+
+
+def relative_columns(errors: MachineErrors, touches: Touches, datum: Datum) -> Array:
+    """Deviation of the tool point less that at the datum per unit of every parameter, (N, 3, P)."""
+    there = errors.touches(datum.q[None, :], datum.length)
+    return errors.columns(touches) - errors.columns(there)
+
+
+def aligned(points: Array, field: Array) -> Array:
+    """What of a field no clamping takes up: less the rigid motion that fits it best.
+
+    Where a workpiece stands, and how it is turned, is found on the machine itself, so a model
+    cannot know it and a part does not feel it.
+
+    Args:
+        points: Nominal tool points, table frame, (N, 3), mm.
+        field: Deviations there, (N, 3) or (N, 3, K), mm.
+    """
+    arm = points - points.mean(axis=0)
+    modes = np.concatenate([np.tile(np.eye(3), (len(points), 1, 1)), -skew(arm)], axis=2)
+    flat = field.reshape(3 * len(points), -1)
+    basis, strength, _ = np.linalg.svd(modes.reshape(3 * len(points), 6), full_matrices=False)
+    basis = basis[:, strength > 1e-9 * strength[0]]  # points on a line turn about it in vain
+    return (flat - basis @ (basis.T @ flat)).reshape(field.shape)
+
+
+def result_of(
+    errors: MachineErrors,
+    corrects: Corrects,
+    q: Array,
+    datum: Datum,
+    unheld: Array | None = None,
+) -> Result:
+    """Before and after over some poses, and what is left of every error.
+
+    Args:
+        errors: Of the machine; they are the truth.
+        corrects: The compensation, as it was read back.
+        q: Poses, (N, A).
+        datum: With the tool that is meant.
+        unheld: What the compensation leaves per unit of every parameter, first order, (N, 3, P);
+            None where nothing is broken down.
+    """
+    touches = errors.touches(q, datum.length)
+    points = touches.point
+    columns = aligned(points, errors.columns(touches))
+    spread, tool = columns @ errors.root, columns @ errors.tool_root
+    return Result(
+        q=q,
+        before=aligned(points, deviation(errors, touches)),
+        after=aligned(points, played(errors, touches, corrects(touches))),
+        u=np.sqrt(np.einsum("nik,nik->n", spread, spread)),
+        u_tool=float(np.sqrt(np.einsum("nik,nik->", tool, tool) / len(q))),
+        left=() if unheld is None else _left(errors, columns, aligned(points, unheld)),
+    )
+
+
+def _left(errors: MachineErrors, columns: Array, unheld: Array) -> tuple[Left, ...]:
+    """What is left of every group of errors, the largest first."""
+    theta = np.concatenate(errors.theta)
+    out = []
+    for name in errors.groups:
+        rows = errors.parameter_rows(name)
+        field, spread = unheld[:, :, rows] @ theta[rows], unheld[:, :, rows] @ errors.root[rows]
+        size = rms(field)
+        u = float(np.sqrt(np.mean(np.einsum("nik,nik->n", spread, spread))))
+        if size > u:  # along the field where there is one, over all of it where there is none
+            slope = np.einsum("ni,nik->k", field, spread) / (size * len(field))
+            u = float(np.linalg.norm(slope))
+        before = rms(columns[:, :, rows] @ theta[rows])
+        out.append(Left(name=name, before=before, rms=size, u=u))
+    return tuple(sorted(out, key=lambda item: -item.rms))

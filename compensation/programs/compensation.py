@@ -1,0 +1,316 @@
+"""A part program compensated by the inverse of the exact twin, and what that does on the twin."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from compensation.field import MachineErrors, actual_tip, aligned, correction, shifted
+from compensation.programs.motion import Keep, Motion, places
+from compensation.programs.program import Program
+from compensation.tables import Header, point_spacing
+from twin.errors import OutsideTravel
+from twin.frames import Array
+from twin.machine import tip
+from twin.record import IntArray, Touches
+from twin.units import DEG, MINUTE, UM
+
+TOLERANCE = 1.0 * UM
+"""Distance between the wanted path and a straight line, mm: what good machines repeat."""
+
+COARSEST = 20.0
+"""Longest line of a motion that is looked at as one, mm: an error repeats in less on no guide."""
+
+SHORTEST = 0.01
+"""A line that is shorter is not divided, mm: controls round there."""
+
+RAPID = 10_000.0
+"""Speed of rapid motions where a time is needed, mm/min: drift does not feel the difference."""
+
+
+@dataclass(frozen=True, eq=False)
+class Compensated:
+    """A program and its compensation, point by point in the order of the motion.
+
+    Attributes:
+        program: As it was read.
+        text: The compensated program.
+        motion: Index of the motion that every point belongs to, (N,).
+        elapsed: Time at every point since the program began, (N,), s.
+        q: Readings as they were commanded, (N, A).
+        added: What the compensation adds to them, as written, (N, A).
+        nominal: Tool point in the table frame as it should be, (N, 3), mm.
+        before: Deviation of the tool point from there without compensation, (N, 3), mm.
+        after: The same with it, rounded as it was written.
+        u: Standard uncertainty of both from that of the model at some points, (M,), mm.
+        u_at: Those points, (M,).
+        unmoved: Lines of motions that stay as they are, since no place is known there.
+    """
+
+    program: Program
+    text: str
+    motion: IntArray
+    elapsed: Array
+    q: Array
+    added: Array
+    nominal: Array
+    before: Array
+    after: Array
+    u: Array
+    u_at: IntArray
+    unmoved: tuple[int, ...]
+
+
+class _Path:
+    """Every motion of a program on the machine that runs it."""
+
+    def __init__(self, program: Program, errors: MachineErrors) -> None:
+        self.program, self.errors = program, errors
+        self.motions, self.frame = program.motions, program.frame
+        speed = np.array([RAPID if m.is_rapid else m.feed for m in self.motions])
+        self.travel = np.array([m.travel for m in self.motions])
+        self.seconds = self.travel / speed * MINUTE
+        self.begins = np.cumsum(self.seconds) - self.seconds
+        kinds = [(m.tcpm, m.length) for m in self.motions]
+        self.kinds = sorted(set(kinds))
+        self.kind = np.array([self.kinds.index(kind) for kind in kinds])
+        self.aim = self.frame.datum.deviation(errors)
+        self.last = self._last_moves() if _feels_approach(errors) else None
+
+    def readings(self, which: IntArray, at: Array) -> Array:
+        """Readings of program coordinates on some motions, (N, A)."""
+        return self._each(which, at, self.frame.readings)
+
+    def coordinates(self, which: IntArray, q: Array) -> Array:
+        """Program coordinates of readings on some motions, (N, A)."""
+        return self._each(which, q, self.frame.coordinates)
+
+    def _each(
+        self, which: IntArray, values: Array, convert: Callable[[Array, bool, float], Array]
+    ) -> Array:
+        out = np.empty_like(values)
+        for k, (tcpm, length) in enumerate(self.kinds):
+            rows = self.kind[which] == k
+            if rows.any():
+                out[rows] = convert(values[rows], tcpm, length)
+        return out
+
+    def touches(self, which: IntArray, share: Array) -> Touches:
+        """Poses on some motions, with their time and the side that each axis comes from."""
+        q = self.readings(which, places(self.motions, which, share))
+        length = np.array([length for _, length in self.kinds])[self.kind[which]]
+        approach = None if self.last is None else self._approach(which, share)
+        elapsed = self.begins[which] + share * self.seconds[which]
+        return self.errors.touches(q, length, approach, elapsed)
+
+    def needed(self, which: IntArray, share: Array) -> Array:
+        """Program coordinates that bring the tool point where it should be, (N, A)."""
+        touches = self.touches(which, share)
+        added = correction(self.errors, touches, self.aim)
+        return self.coordinates(which, touches.q + added)
+
+    def _moving(self, which: IntArray, share: Array) -> Array:
+        """Sign of every axis's motion, (N, A); 0 where it stands."""
+        ends = [np.clip(share + step, 0.0, 1.0) for step in (-_STEP, _STEP)]
+        before, after = (self.readings(which, places(self.motions, which, s)) for s in ends)
+        return np.where(np.abs(after - before) > 1e-9, np.sign(after - before), 0.0)
+
+    def _last_moves(self) -> Array:
+        """Sign of the last motion of every axis before each motion begins, (M, A)."""
+        at_end = self._moving(np.arange(len(self.motions)), np.ones(len(self.motions)))
+        out = np.zeros_like(at_end)
+        for k in range(1, len(out)):
+            out[k] = np.where(at_end[k - 1] != 0.0, at_end[k - 1], out[k - 1])
+        return out
+
+    def _approach(self, which: IntArray, share: Array) -> Array:
+        moving = self._moving(which, share)
+        assert self.last is not None
+        return np.where(moving != 0.0, moving, self.last[which])
+
+
+_STEP = 1e-4
+"""Of a motion, over which its direction is taken."""
+
+
+def _feels_approach(errors: MachineErrors) -> bool:
+    """Whether anything depends on the side that an axis comes from."""
+    q = np.zeros((1, len(errors.chain.axes)))
+    sides = [errors.contribution(errors.touches(q, 0.0, np.full_like(q, s))) for s in (1.0, -1.0)]
+    return not np.array_equal(sides[0].twist, sides[1].twist)
+
+
+def compensated(
+    program: Program, errors: MachineErrors, head: Header, tolerance: float = TOLERANCE
+) -> Compensated:
+    """Compensate a program.
+
+    Every motion is divided until a straight line between two compensated points leaves less than
+    the tolerance of what its middle would need: chords of arcs and of the error field alike.
+
+    Args:
+        program: As it was read.
+        errors: Of the machine, in their state when the program begins.
+        head: For the comments at its beginning.
+        tolerance: mm.
+
+    Raises:
+        OutsideTravel: A compensated point beyond the travel of an axis.
+    """
+    path = _Path(program, errors)
+    which, share, at = _divided(path, _begun(path, tolerance), tolerance)
+    written = _rounded(path, which, at)
+    touches = path.touches(which, share)
+    q = path.readings(which, written)
+    _check_travel(path, which, q)
+    nominal = tip(errors.chain, touches.q, touches.target)
+    aim = nominal + path.aim
+    some = np.unique(np.linspace(0, len(which) - 1, min(len(which), MOST_U)).astype(int))
+    spread = aligned(nominal[some], errors.columns(touches[some])) @ errors.root
+    return Compensated(
+        program=program,
+        text=_text(path, head, which, written),
+        motion=which,
+        elapsed=touches.time - errors.state.time,
+        q=touches.q,
+        added=q - touches.q,
+        nominal=nominal,
+        before=actual_tip(errors, touches) - aim,
+        after=actual_tip(errors, shifted(touches, q - touches.q)) - aim,
+        u=np.sqrt(np.einsum("nik,nik->n", spread, spread)),
+        u_at=some,
+        unmoved=tuple(k.line for k in program.items if isinstance(k, Keep) and k.moves),
+    )
+
+
+MOST_U = 200
+"""Points at which the uncertainty is taken: it varies slowly along a program."""
+
+
+def _begun(path: _Path, tolerance: float) -> IntArray:
+    """Lines that every motion is divided into at first, (M,)."""
+    spacing = point_spacing(path.errors, path.frame.datum)
+    far = np.array([np.abs(m.end - m.start) for m in path.motions])
+    pieces = np.ones(len(path.motions))
+    for axis, step in spacing.items():
+        k = path.errors.chain.axis_index(axis)
+        if path.errors.chain.link(axis).kind == "linear":
+            step = min(step, COARSEST)
+        pieces = np.maximum(pieces, np.ceil(far[:, k] / step - 1e-9))
+    straight = min(spacing[a] for a in path.errors.chain.linear_axes)
+    for k, motion in enumerate(path.motions):
+        if motion.is_rapid:
+            pieces[k] = 1
+        elif motion.arc is not None:
+            i, j = motion.arc.plane
+            radius = np.hypot(*(motion.start[[i, j]] - motion.arc.centre))
+            # the height of a chord of angle a above its arc is r (1 - cos(a/2))
+            step = 2.0 * np.arccos(1.0 - min(0.8 * tolerance / max(radius, tolerance), 1.0))
+            step = min(step, min(straight, COARSEST) / max(radius, 1e-9))
+            pieces[k] = max(pieces[k], np.ceil(abs(motion.arc.angle) / step))
+    return pieces.astype(np.int64)
+
+
+def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray, Array, Array]:
+    """Motions, shares and compensated coordinates of the ends of all lines, in order."""
+    which = np.repeat(np.arange(len(pieces)), pieces)
+    number = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    share = (number + 1.0) / pieces[which]
+    at = path.needed(which, share)
+    # a short line of its own is within the spacing over which the field is straight
+    is_checked = np.array(
+        [p > 1 or m.arc is not None for p, m in zip(pieces, path.motions, strict=True)]
+    )
+    todo = np.flatnonzero(is_checked[which] & ~np.isin(which, _rapids(path)))
+    low, low_at = (number / pieces[which])[todo], np.empty((len(todo), at.shape[1]))
+    is_first = number[todo] == 0
+    low_at[~is_first] = at[todo[~is_first] - 1]
+    low_at[is_first] = path.needed(which[todo[is_first]], np.zeros(int(is_first.sum())))
+    ends = [(which, share, at)]
+    lines = (which[todo], low, low_at, share[todo], at[todo])
+    linear = path.frame.linear
+    while len(lines[0]):
+        motion, a, at_a, b, at_b = lines
+        middle = 0.5 * (a + b)
+        at_m = path.needed(motion, middle)
+        off = np.linalg.norm((at_m - 0.5 * (at_a + at_b))[:, linear], axis=1)
+        rows = (off > tolerance) & ((b - a) * path.travel[motion] > SHORTEST)
+        motion, a, at_a, b, at_b, middle, at_m = (
+            v[rows] for v in (motion, a, at_a, b, at_b, middle, at_m)
+        )
+        ends.append((motion, middle, at_m))
+        lines = tuple(  # type: ignore[assignment]
+            np.concatenate(pair)
+            for pair in ((motion, motion), (a, middle), (at_a, at_m), (middle, b), (at_m, at_b))
+        )
+    which, share, at = (np.concatenate(parts) for parts in zip(*ends, strict=True))
+    order = np.lexsort((share, which))
+    return which[order], share[order], at[order]
+
+
+def _rapids(path: _Path) -> IntArray:
+    return np.array([k for k, m in enumerate(path.motions) if m.is_rapid], dtype=np.int64)
+
+
+def _rounded(path: _Path, which: IntArray, at: Array) -> Array:
+    """Coordinates as they are written; axes that a motion does not turn stay as they were."""
+    chain = path.errors.chain
+    out = at.copy()
+    offset = np.array([m.offset for m in path.motions])[which]
+    unit = np.array([m.unit for m in path.motions])[which]
+    for axis in chain.programmed_axes:
+        k = chain.axis_index(axis)
+        is_length = chain.link(axis).kind == "linear"
+        one = unit if is_length else DEG
+        places = path.program.language.decimals(is_length, unit)
+        step = one * 10.0**-places
+        out[:, k] = np.round((at[:, k] - offset[:, k]) / step) * step + offset[:, k]
+    return out
+
+
+def _check_travel(path: _Path, which: IntArray, q: Array) -> None:
+    chain = path.errors.chain
+    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    beyond = (q < low - UM) | (q > high + UM)
+    if beyond.any():
+        row, k = (int(v) for v in np.argwhere(beyond)[0])
+        line = path.motions[which[row]].line
+        name = path.program.path
+        message = f"{name}: line {line}: compensated, {chain.axes[k]} leaves its travel"
+        raise OutsideTravel(f"{message}; move the datum")
+
+
+def _axes(motion: Motion, rotary: list[str]) -> tuple[str, ...]:
+    """Axes that the lines of a motion name."""
+    return ("X", "Y", "Z", *(a for a in rotary if a in motion.turned))
+
+
+def _named(path: _Path, rotary: list[str]) -> set[tuple[str, ...]]:
+    return {_axes(motion, rotary) for motion in path.motions}
+
+
+def _text(path: _Path, head: Header, which: IntArray, written: Array) -> str:
+    """The compensated program: its blocks in their order, every motion as its lines."""
+    chain, language = path.errors.chain, path.program.language
+    begins = np.searchsorted(which, np.arange(len(path.motions) + 1)).tolist()
+    offset = np.array([m.offset for m in path.motions])[which]
+    shown = dict(zip(chain.axes, (written - offset).T, strict=True))
+    rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]
+    shown |= {a: shown[a] / DEG for a in rotary}
+    whole = {
+        axes: np.column_stack([shown[a] for a in axes]).tolist() for axes in _named(path, rotary)
+    }
+    blocks: list[str] = []
+    number = 0
+    for item in path.program.items:
+        if isinstance(item, Keep):
+            blocks.append(item.text)
+        else:
+            axes = _axes(item, rotary)
+            rows = whole[axes][begins[number] : begins[number + 1]]
+            blocks += language.lines(item, axes, rows)
+            number += 1
+    told = [language.COMMENT.format(text) for text in head.lines()]
+    start = 1 if blocks and blocks[0].upper().startswith(("BEGIN", "%")) else 0
+    blocks[start:start] = [*told, *language.begin()]
+    return str(language.listed(blocks, path.program.path))

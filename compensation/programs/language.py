@@ -1,0 +1,169 @@
+"""What languages of part programs share: words of a block, the state that they change."""
+
+import math
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from compensation.programs.frame import Frame
+from compensation.programs.motion import Arc, Item, Keep, Motion, angle_between, centre_of
+from twin.errors import BadFile
+from twin.frames import Array
+from twin.machine import Chain
+from twin.units import DEG
+
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
+
+
+@dataclass
+class Reading:
+    """A program while it is read: where its axes stand, what is in force.
+
+    Attributes:
+        path: Of the program, for messages.
+        frame: Where the program's zero stands on the machine.
+        lengths: Of tools by number, mm; of the others that of the datum.
+        at: Program coordinates with the shift, (A,), mm and rad; nan where unknown.
+        offset: Shift of the program's zero, (A,), mm.
+    """
+
+    path: Path
+    frame: Frame
+    lengths: dict[int, float]
+    at: Array = field(init=False)
+    offset: Array = field(init=False)
+    items: list[Item] = field(default_factory=list)
+    length: float = field(init=False)
+    feed: float = 0.0
+    tcpm: bool = False
+    unit: float = 1.0
+
+    def __post_init__(self) -> None:
+        self.at = self.frame.datum.q.copy()
+        self.at[self.linear] = np.nan
+        self.offset = np.zeros(len(self.at))
+        self.length = self.frame.datum.length
+
+    @property
+    def chain(self) -> Chain:
+        """The machine."""
+        return self.frame.chain
+
+    def switch(self, tcpm: bool, length: float) -> None:
+        """Another way to count coordinates, or another tool: the axes stand still."""
+        if not np.isnan(self.at).any():
+            q = self.frame.readings(self.at[None], self.tcpm, self.length)
+            self.at = self.frame.coordinates(q, tcpm, length)[0]
+        self.tcpm, self.length = tcpm, length
+
+    def refusal(self, line: int, found: str, expected: str) -> BadFile:
+        """What is not understood, with its line."""
+        return BadFile(self.path, f"line {line}", found, expected)
+
+    def column(self, line: int, letter: str) -> int:
+        """Column of an axis of the program; raises BadFile."""
+        if letter not in self.chain.programmed_axes:
+            available = ", ".join(self.chain.programmed_axes)
+            raise self.refusal(line, f"axis {letter}", f"an axis of the machine: {available}")
+        return self.chain.axis_index(letter)
+
+    def is_linear(self, letter: str) -> bool:
+        """Whether a word is a length."""
+        return letter in "XYZUVW"
+
+    def scale(self, letter: str) -> float:
+        """One unit of an axis's word in base units."""
+        return self.unit if self.is_linear(letter) else DEG
+
+    def keep(self, line: int, text: str, moves: bool = False) -> None:
+        """A block that stays."""
+        self.items.append(Keep(line, text, moves))
+
+    @property
+    def linear(self) -> list[int]:
+        """Columns of the linear axes."""
+        return self.frame.linear
+
+    def is_known(self, end: Array, is_arc: bool) -> bool:
+        """Whether all linear axes have a place after a motion, and an arc's before it."""
+        ends = (end, self.at) if is_arc else (end,)
+        return all(math.isfinite(e[k]) for e in ends for k in self.linear)
+
+    def needed_feed(self, line: int, is_rapid: bool) -> float:
+        """Feed of a motion; raises BadFile where none is in force."""
+        if is_rapid:
+            return 0.0
+        if self.feed <= 0.0:
+            raise self.refusal(line, "a motion without feed", "F above zero in it or before it")
+        return self.feed
+
+    def move(self, motion: Motion) -> None:
+        """A motion, after which the axes stand at its end."""
+        self.items.append(motion)
+        self.at = motion.end
+
+
+ROUND = 0.02
+"""An arc's end may lie off its circle by so much, mm: coordinates are rounded to micrometres,
+inches to ten of them."""
+
+
+def centre_by_radius(
+    reading: Reading, line: int, plane: list[int], end: Array, radius: float, positive: bool
+) -> Array:
+    """Centre of an arc that is given by its radius, (2,), mm.
+
+    Raises:
+        BadFile: Ends that no such circle joins.
+    """
+    start, stop = reading.at[plane], end[plane]
+    centre = centre_of(start, stop, radius, positive)
+    if centre is None:
+        apart = float(np.hypot(*(stop - start)))
+        raise reading.refusal(
+            line,
+            f"R{radius:g} for ends {apart:.4f} mm apart",
+            "half of that at least, and two ends",
+        )
+    return centre
+
+
+def checked_arc(
+    reading: Reading,
+    line: int,
+    plane: list[int],
+    end: Array,
+    centre: Array,
+    positive: bool,
+    turns: int = 1,
+) -> Arc:
+    """Arc from where the axes stand about a centre.
+
+    Raises:
+        BadFile: An end that lies off the circle.
+    """
+    start, stop = reading.at[plane], end[plane]
+    off = float(abs(np.hypot(*(stop - centre)) - np.hypot(*(start - centre))))
+    if off > ROUND:
+        raise reading.refusal(line, f"an end {off:.4f} mm off the circle", f"{ROUND} mm at most")
+    angle = angle_between(start, stop, centre, positive, turns)
+    return Arc((plane[0], plane[1]), centre, angle)
+
+
+_WORD = re.compile(rf"([A-Z])({NUMBER})")
+
+
+def numbers(text: str) -> list[tuple[str, str]]:
+    """Words of a block: letters with their numbers.
+
+    Raises:
+        ValueError: Something that is no word, which is the message.
+    """
+    bare = text.replace(" ", "")
+    found = _WORD.findall(bare)
+    left = _WORD.sub("", bare)
+    if left:
+        raise ValueError(left)
+    return found

@@ -1,0 +1,89 @@
+"""A part program as a file: its language by its ending, its blocks and motions."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from compensation.programs import gcode, klartext
+from compensation.programs.frame import Frame
+from compensation.programs.language import Reading
+from compensation.programs.motion import Item, Motion
+from twin.errors import BadFile
+from twin.files import read_any_text
+from twin.units import DEG
+
+_ENDINGS = {".h": klartext, ".ngc": gcode, ".nc": gcode, ".tap": gcode}
+MARK = "matstd model:"
+"""Stands in the head of every compensated program."""
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """A program that was read.
+
+    Attributes:
+        path: Its file.
+        frame: Where its zero stands.
+        items: Blocks and motions in their order.
+        language: Module that writes its blocks.
+    """
+
+    path: Path
+    frame: Frame
+    items: tuple[Item, ...]
+    language: ModuleType
+
+    @property
+    def motions(self) -> list[Motion]:
+        """What can be compensated."""
+        return [item for item in self.items if isinstance(item, Motion)]
+
+
+def read_part_program(
+    path: str | Path, frame: Frame, lengths: dict[int, float] | None = None
+) -> Program:
+    """Read a Klartext (`.H`) or G-code (`.ngc`, `.nc`) program.
+
+    Args:
+        frame: Where its zero stands; the datum's tool is that of tools without a length.
+        lengths: Of tools by number, mm.
+
+    Raises:
+        BadFile: Another ending, a block that is not understood, a program that was compensated.
+        NotReachable: The machine has not X, Y and Z.
+    """
+    path = Path(path)
+    language = _ENDINGS.get(path.suffix.lower())
+    if language is None:
+        raise BadFile(path, "name", path.suffix or "no ending", f"one of {', '.join(_ENDINGS)}")
+    text = read_any_text(path)
+    if MARK in text:
+        line = text[: text.index(MARK)].count("\n") + 1
+        raise BadFile(path, f"line {line}", MARK, "a program that was not compensated before")
+    frame.linear  # noqa: B018  (a machine without them is refused before anything is read)
+    reading = Reading(path, frame, lengths or {})
+    language.read(text, reading)
+    program = Program(path, frame, tuple(reading.items), language)
+    if not program.motions:
+        raise BadFile(path, "file", "no motion from a known place", "one at least")
+    _check_travel(program)
+    return program
+
+
+def _check_travel(program: Program) -> None:
+    """Refuse a program that ends a motion outside the machine; raises BadFile."""
+    chain = program.frame.chain
+    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    motions = program.motions
+    for kind in {(m.tcpm, m.length) for m in motions}:
+        own = [m for m in motions if (m.tcpm, m.length) == kind]
+        q = program.frame.readings(np.array([m.end for m in own]), *kind)
+        beyond = np.argwhere((q < low - 1e-9) | (q > high + 1e-9))
+        if len(beyond):
+            row, k = (int(v) for v in beyond[0])
+            unit = 1.0 if chain.link(chain.axes[k]).kind == "linear" else DEG
+            found = f"{chain.axes[k]} at a reading of {q[row, k] / unit:.3f}"
+            expected = f"{low[k] / unit:g} to {high[k] / unit:g}; is --datum right?"
+            raise BadFile(program.path, f"line {own[row].line}", found, expected)

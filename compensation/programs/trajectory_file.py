@@ -1,0 +1,40 @@
+"""Every point of a compensated program as CSV: where it should be, where it is without and with."""
+
+from pathlib import Path
+
+import numpy as np
+
+from compensation.programs.compensation import Compensated
+from twin.files import write_whole
+from twin.units import DEG, UM
+
+
+def write_trajectory(path: str | Path, done: Compensated) -> None:
+    """Write the table: lines, times, readings, what is added to them, nominal points, deviations.
+
+    Lengths in mm, angles in degrees, additions and deviations in µm (µm of linear axes).
+    """
+    frame = done.program.frame
+    chain = frame.chain
+    axes = list(chain.programmed_axes)
+    columns = [chain.axis_index(a) for a in axes]
+    units = np.array([DEG if chain.link(a).kind == "rotary" else 1.0 for a in axes])
+    names = ["line", "time_s"]
+    names += [f"{a}_{'deg' if chain.link(a).kind == 'rotary' else 'mm'}" for a in axes]
+    names += [f"added_{a}_um" for a in "XYZ"] + [f"{c}_mm" for c in "xyz"]
+    names += [f"{when}_d{c}_um" for when in ("before", "after") for c in "xyz"]
+    lines = np.array([m.line for m in done.program.motions])[done.motion]
+    table = np.column_stack(
+        [
+            lines,
+            done.elapsed,
+            done.q[:, columns] / units,
+            done.added[:, frame.linear] / UM,
+            done.nominal,
+            done.before / UM,
+            done.after / UM,
+        ]
+    )
+    form = "%d,%.3f," + ",".join(["%.5f"] * len(axes)) + ",%.3f" * 3 + ",%.5f" * 3 + ",%.3f" * 6
+    rows = (form % tuple(row) for row in table.tolist())
+    write_whole(path, "\n".join([",".join(names), *rows]) + "\n")

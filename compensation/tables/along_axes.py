@@ -1,0 +1,312 @@
+"""Tables of corrections over single axes, as controls without a volumetric model hold them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from compensation.field import (
+    Datum,
+    MachineErrors,
+    aligned,
+    correction,
+    deviation,
+    played,
+    rms,
+)
+from compensation.tables.by_name import BETWEEN, FEWEST, FINE, interpolated, line, on_table, span
+from twin.frames import Array
+from twin.machine import Chain, Contribution, linear_directions
+from twin.record import Touches
+from twin.units import NM
+
+WORTH = 50.0 * NM
+"""A table that lowers the rms error by less is not written, mm."""
+
+
+@dataclass(frozen=True, eq=False)
+class AxisTable:
+    """A correction of one axis over the reading of one, the same or another.
+
+    Attributes:
+        over: Axis whose reading counts.
+        moves: Axis that is corrected.
+        nodes: Readings, ascending, (n,), mm or rad.
+        forward: Correction after a positive motion of `over`, (n,), mm or rad.
+        reverse: The same after a negative motion.
+    """
+
+    over: str
+    moves: str
+    nodes: Array
+    forward: Array
+    reverse: Array
+
+
+@dataclass(frozen=True, eq=False)
+class AxisTables:
+    """Corrections that add up; exact on the lines through the datum, where they were made."""
+
+    chain: Chain
+    tables: tuple[AxisTable, ...]
+
+    def correction(self, touches: Touches) -> Array:
+        """Readings that the control adds, (N, A); between both directions where none is known."""
+        out = np.zeros_like(touches.q)
+        for table in self.tables:
+            at = on_table(touches.reading(table.over), table.nodes, self.chain.link(table.over))
+            ways = [np.interp(at, table.nodes, v) for v in (table.forward, table.reverse)]
+            share = 0.5 * (1.0 + touches.last_move(table.over))
+            out[:, self.chain.axis_index(table.moves)] += share * ways[0] + (1.0 - share) * ways[1]
+        return out
+
+
+def along_axes(
+    errors: MachineErrors,
+    datum: Datum,
+    most: int,
+    crosswise: bool,
+    points: Mapping[str, int] | None = None,
+) -> AxisTables:
+    """Corrections along the lines through the datum.
+
+    Args:
+        errors: Of the machine.
+        datum: Through which the lines go, with the tool that is in the spindle there.
+        most: Points of an axis that the format holds.
+        crosswise: Whether an axis may correct others, in both directions alike; else every axis
+            corrects itself, each direction by itself.
+        points: By axis, where they are given.
+    """
+    chain = errors.chain
+    needed = _Needed(errors, datum)
+    counts = points or {a: _points(needed, a, most) for a in chain.programmed_axes}
+    out = []
+    for axis, count in counts.items():
+        nodes = np.linspace(*span(chain.link(axis)), count)
+        ways = [needed.along(axis, nodes, move) for move in _moves(errors, axis, crosswise)]
+        names = [*chain.linear_axes, axis] if crosswise else [axis]
+        for name in dict.fromkeys(names):
+            k = chain.axis_index(name)
+            own = needed.zero[k] if name == axis else 0.0
+            forward, reverse = ways[0][:, k] + own, ways[-1][:, k] + own
+            out.append(AxisTable(axis, name, nodes, forward=forward, reverse=reverse))
+    return AxisTables(chain, tuple(out))
+
+
+@dataclass(frozen=True, eq=False)
+class _Needed:
+    """What has to be added along the lines through a datum, beside the zeros of the axes."""
+
+    errors: MachineErrors
+    datum: Datum
+
+    @cached_property
+    def there(self) -> Touches:
+        return self.errors.touches(self.datum.q[None, :], self.datum.length)
+
+    @cached_property
+    def zero(self) -> Array:
+        """Correction of the zeros of the linear axes, (A,), mm.
+
+        What the linear axes do wrong at the datum displaces them against the lines of the rotary
+        axes: a preset takes it up at one angle of the table and doubles it at the opposite one.
+        """
+        return correction(_OfLinearAxes(self.errors), self.there)[0]
+
+    @cached_property
+    def aim(self) -> Array:
+        return played(self.errors, self.there, self.zero[None, :])[0]
+
+    def along(self, axis: str, readings: Array, move: int) -> Array:
+        """Correction of every axis along one line, (n, A)."""
+        touches = line(self.errors, self.datum, axis, readings, move)
+        begun = self.zero + _rotary(self.errors, touches) - _rotary(self.errors, self.there)
+        return correction(self.errors, touches, self.aim, begun) - self.zero
+
+
+def _moves(errors: MachineErrors, axis: str, crosswise: bool) -> tuple[int, ...]:
+    """Directions of motion of an axis that need tables of their own; 0 is between both."""
+    middle = np.array([float(np.mean(errors.chain.link(axis).range))])
+    there = Datum(np.zeros(len(errors.chain.axes)), 0.0)
+    ways = [errors.contribution(line(errors, there, axis, middle, m)).twist for m in (1, -1)]
+    return (0,) if crosswise or np.array_equal(ways[0], ways[1]) else (1, -1)
+
+
+@dataclass(frozen=True, eq=False)
+class _OfLinearAxes:
+    """The errors of the linear axes alone."""
+
+    errors: MachineErrors
+
+    @property
+    def chain(self) -> Chain:
+        return self.errors.chain
+
+    def contribution(self, touches: Touches) -> Contribution:
+        total = self.errors.contribution(touches)
+        for i, link in enumerate(self.chain.links):
+            if link.kind != "linear":
+                total.twist[:, i], total.place[:, i] = 0.0, 0.0
+        return total
+
+
+def _rotary(errors: MachineErrors, touches: Touches) -> Array:
+    """Correction of the rotary axes' own positions, (N, A), rad."""
+    added = errors.contribution(touches)
+    out = np.zeros_like(touches.q)
+    for axis in errors.chain.rotary_axes:
+        i = errors.chain.link_index(axis)
+        own = errors.chain.link(axis).own_component
+        out[:, errors.chain.axis_index(axis)] = -(added.twist[:, i, own] + added.place[:, i, own])
+    return out
+
+
+def _points(needed: _Needed, axis: str, most: int) -> int:
+    """Points of an axis, doubled until linear interpolation is good enough or the table full."""
+    low, high = span(needed.errors.chain.link(axis))
+    count = FEWEST
+    while True:
+        between = np.linspace(low, high, BETWEEN * (count - 1) + 1)
+        values = needed.along(axis, between, 1)
+        if _missed(between, values, BETWEEN) < FINE or 2 * count - 1 > most:
+            return count
+        count = 2 * count - 1
+
+
+def _missed(between: Array, values: Array, step: int) -> float:
+    """Largest difference between every `step`-th value and the line through them, mm."""
+    read = [np.interp(between, between[::step], v[::step]) for v in values.T]
+    return float(np.abs(values - np.column_stack(read)).max())
+
+
+def most_useful(
+    tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array, most: int
+) -> AxisTables:
+    """Tables that lower the error over some poses, one after the other, the most useful first.
+
+    A table that is right on its line through the datum may be wrong beside it, so each has to show
+    that it helps.
+
+    Args:
+        q: Poses, (N, A).
+        most: Tables that a control holds.
+    """
+    touches = errors.touches(q, datum.length)
+    moves = _motion(errors, touches)
+    left = aligned(touches.point, deviation(errors, touches))
+    effects = []
+    for table in tables.tables:
+        added = AxisTables(tables.chain, (table,)).correction(touches)
+        effects.append(aligned(touches.point, np.einsum("nxa,na->nx", moves, added)))
+    chosen: list[int] = []
+    while len(chosen) < most:
+        trials = {k: rms(left + e) for k, e in enumerate(effects) if k not in chosen}
+        best = min(trials, key=lambda k: trials[k], default=None)
+        if best is None or trials[best] > rms(left) - WORTH:
+            break
+        chosen.append(best)
+        left = left + effects[best]
+    return AxisTables(tables.chain, tuple(tables.tables[k] for k in chosen))
+
+
+def line_bound(tables: AxisTables, errors: MachineErrors, datum: Datum) -> float:
+    """What interpolation and rounding leave on the lines through the datum at most, mm.
+
+    Args:
+        tables: As they were read back from their file.
+    """
+    worst: dict[str, float] = {}
+    needed = _Needed(errors, datum)
+    lever = np.linalg.norm(errors.touches(datum.q[None, :], datum.length).reach.twist[0], axis=-1)
+    for table in tables.tables:
+        link = errors.chain.link(table.moves)
+        unit = lever[errors.chain.link_index(table.moves), link.own_component]
+        worst[table.over] = worst.get(table.over, 0.0) + unit * _missed_by(table, needed)
+    return max(worst.values(), default=0.0)
+
+
+def _missed_by(table: AxisTable, needed: _Needed) -> float:
+    """Largest difference of a table from what is needed between its points, mm or rad."""
+    count = 2 * BETWEEN * (len(table.nodes) - 1) + 1
+    between = np.linspace(table.nodes[0], table.nodes[-1], count)
+    k = needed.errors.chain.axis_index(table.moves)
+    moves = (0, 0) if np.array_equal(table.forward, table.reverse) else (1, -1)
+    own = needed.zero[k] if table.moves == table.over else 0.0
+    ways = [needed.along(table.over, between, move)[:, k] + own for move in moves]
+    held = [np.interp(between, table.nodes, v) for v in (table.forward, table.reverse)]
+    return float(max(np.abs(w - h).max() for w, h in zip(ways, held, strict=True)))
+
+
+def unheld_along(
+    tables: AxisTables, errors: MachineErrors, datum: Datum, touches: Touches
+) -> Array:
+    """What tables of corrections leave per unit of every parameter, (N, 3, P), to first order."""
+    chain = errors.chain
+    zero = _unit_zero(errors, datum)  # (A, P)
+    needed = {over: _unit_needed(errors, datum, over, tables) for over in _overs(tables)}
+    out = errors.columns(touches)
+    moves = _motion(errors, touches)  # (N, 3, A)
+    for table in tables.tables:
+        k = chain.axis_index(table.moves)
+        at = on_table(touches.reading(table.over), table.nodes, chain.link(table.over))
+        added = interpolated(at, table.nodes, needed[table.over][:, k])
+        if table.over == table.moves:
+            added = added + zero[k]
+        out += moves[:, :, k, None] * added[:, None, :]
+    return out
+
+
+def _overs(tables: AxisTables) -> dict[str, Array]:
+    """Axes whose readings count, with their points."""
+    return {table.over: table.nodes for table in tables.tables}
+
+
+def _motion(errors: MachineErrors, touches: Touches) -> Array:
+    """Motion of the tool point per unit of every axis's reading, (N, 3, A)."""
+    chain = errors.chain
+    out = np.zeros((len(touches), 3, len(chain.axes)))
+    linear = [chain.axis_index(a) for a in chain.linear_axes]
+    out[:, :, linear] = linear_directions(chain, touches.q)
+    for axis in chain.rotary_axes:
+        i, own = chain.link_index(axis), chain.link(axis).own_component
+        out[:, :, chain.axis_index(axis)] = touches.reach.twist[:, i, own]
+    return out
+
+
+def _unit_zero(errors: MachineErrors, datum: Datum) -> Array:
+    """Zeros of the linear axes per unit of every parameter, (A, P)."""
+    chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
+    links = [i for i, link in enumerate(chain.links) if link.kind == "linear"]
+    twist, place = (errors.amounts(there, part, links)[0] for part in ("twist", "place"))
+    moved = np.einsum("lcx,lcp->xp", there.reach.twist[0], twist)
+    moved += np.einsum("lcx,lcp->xp", there.reach.place[0], place)
+    out = np.zeros((len(chain.axes), moved.shape[1]))
+    linear = [chain.axis_index(a) for a in chain.linear_axes]
+    out[linear] = -np.linalg.pinv(linear_directions(chain, there.q)[0]) @ moved
+    return out
+
+
+def _unit_needed(errors: MachineErrors, datum: Datum, over: str, tables: AxisTables) -> Array:
+    """`_Needed.along` between both directions per unit of every parameter, (n, A, P)."""
+    chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
+    touches = line(errors, datum, over, _overs(tables)[over])
+    out = _unit_rotary(errors, touches) - _unit_rotary(errors, there)
+    zero, linear = _unit_zero(errors, datum), [chain.axis_index(a) for a in chain.linear_axes]
+    moves, at_datum = _motion(errors, touches), _motion(errors, there)
+    left = errors.columns(touches) + moves @ (zero + out)
+    left = left - (errors.columns(there) + at_datum @ zero)
+    out[:, linear] = -np.linalg.pinv(moves[:, :, linear]) @ left
+    return out
+
+
+def _unit_rotary(errors: MachineErrors, touches: Touches) -> Array:
+    """`_rotary` per unit of every parameter, (N, A, P)."""
+    chain = errors.chain
+    out = np.zeros((len(touches), len(chain.axes), len(errors.root)))
+    for axis in chain.rotary_axes:
+        i, own = chain.link_index(axis), chain.link(axis).own_component
+        for part in ("twist", "place"):
+            out[:, chain.axis_index(axis)] -= errors.amounts(touches, part, (i,))[:, i, own]
+    return out

@@ -1,0 +1,147 @@
+"""Every format of tables as one thing: made, written, read back, played."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from compensation.field import Datum, MachineErrors, Result, result_of
+from compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
+from compensation.tables.acceptance import Acceptance, acceptance
+from compensation.tables.along_axes import (
+    AxisTables,
+    along_axes,
+    line_bound,
+    most_useful,
+    unheld_along,
+)
+from compensation.tables.by_name import NamedTables, interpolation_bound, sampled, unheld_by_name
+from compensation.tables.header import Header
+from twin.files import write_whole
+from twin.frames import Array
+from twin.machine import Chain
+
+Tables = NamedTables | AxisTables
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A control's tables.
+
+    Attributes:
+        name: Word of the command line, and folder.
+        make: Tables of some errors, for some poses.
+        write: Texts by file name.
+        read: Tables and head from a folder.
+    """
+
+    name: str
+    make: Callable[[MachineErrors, Datum, Array], Tables]
+    write: Callable[[Tables, Header, MachineErrors, Datum], dict[str, str]]
+    read: Callable[[Path, Chain], tuple[Tables, Header]]
+
+
+@dataclass(frozen=True, eq=False)
+class Played:
+    """Tables that were written, read back and played on the exact twin.
+
+    Attributes:
+        format: Word of the format.
+        files: Names of its files.
+        result: Before and after over the workspace, and what the format cannot hold.
+        interpolation: What interpolation and rounding leave at most, mm: over the workspace where
+            tables hold errors by name, on the lines through the datum where they hold axes.
+        by_name: Whether tables hold errors by name.
+        acceptance: The one-point test.
+    """
+
+    format: str
+    files: tuple[str, ...]
+    result: Result
+    interpolation: float
+    by_name: bool
+    acceptance: Acceptance
+
+
+def _named(most: int) -> Callable[[MachineErrors, Datum, Array], Tables]:
+    return lambda errors, datum, _: sampled(errors, datum, most)
+
+
+def _cec(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
+    made = along_axes(errors, datum, sinumerik_cec.MOST_POINTS, True)
+    most = sinumerik_cec.PER_AXIS * len(errors.chain.programmed_axes)
+    return most_useful(made, errors, datum, q, most)
+
+
+def _comp(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
+    return along_axes(errors, datum, linuxcnc_comp.MOST_POINTS, False)
+
+
+def _write_comp(
+    tables: Tables, head: Header, errors: MachineErrors, datum: Datum
+) -> dict[str, str]:
+    there = errors.contribution(errors.touches(datum.q[None, :], datum.length))
+    assert isinstance(tables, AxisTables)
+    return linuxcnc_comp.write(tables, head, there.place[0])
+
+
+FORMATS: Mapping[str, Format] = {
+    f.name: f
+    for f in (
+        Format(
+            "iso230",
+            _named(iso_csv.MOST_POINTS),
+            lambda t, h, *_: iso_csv.write(t, h),
+            iso_csv.read,
+        ),
+        Format(
+            "heidenhain",
+            _named(heidenhain_com.MOST_POINTS),
+            lambda t, h, *_: heidenhain_com.write(t, h),
+            heidenhain_com.read,
+        ),
+        Format("sinumerik", _cec, lambda t, h, *_: sinumerik_cec.write(t, h), sinumerik_cec.read),
+        Format("linuxcnc", _comp, _write_comp, linuxcnc_comp.read),
+    )
+}
+"""By the word of the command line, that which holds most first."""
+
+
+def write_tables(
+    form: Format, folder: Path, errors: MachineErrors, datum: Datum, head: Header, q: Array
+) -> None:
+    """Write the tables of a format into a folder of their own; arguments as of `play_tables`."""
+    for name, text in form.write(form.make(errors, datum, q), head, errors, datum).items():
+        write_whole(folder / name, text)
+
+
+def play_tables(
+    form: Format, folder: Path, errors: MachineErrors, datum: Datum, head: Header, q: Array
+) -> Played:
+    """Read tables back and play them on the exact twin.
+
+    Args:
+        folder: With the files of this format.
+        errors: Of the machine; they are the truth.
+        head: What the tables must say of themselves.
+        q: Poses over which they are judged, (N, A).
+
+    Raises:
+        BadFile: Files that cannot be read, or are of another machine or datum.
+    """
+    tables, found = form.read(folder, errors.chain)
+    found.check(head, folder)
+    touches = errors.touches(q, datum.length)
+    if isinstance(tables, NamedTables):
+        unheld = unheld_by_name(tables, errors, datum, touches)
+        bound = interpolation_bound(tables, errors, datum, q)
+    else:
+        unheld = unheld_along(tables, errors, datum, touches)
+        bound = line_bound(tables, errors, datum)
+    return Played(
+        format=form.name,
+        files=tuple(sorted(p.name for p in folder.iterdir())),
+        result=result_of(errors, tables.correction, q, datum, unheld),
+        interpolation=bound,
+        by_name=isinstance(tables, NamedTables),
+        acceptance=acceptance(errors, tables.correction, datum, q),
+    )

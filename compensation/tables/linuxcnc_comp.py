@@ -1,0 +1,91 @@
+"""LinuxCNC: a `COMP_FILE` of type 1 a joint, and the offsets of rotary axes for HAL.
+
+A line has a nominal position and what is added to it after a positive and after a negative motion
+(type 1, mm or degrees). It replaces `BACKLASH`. A joint corrects itself alone.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from compensation.tables.along_axes import AxisTable, AxisTables
+from compensation.tables.header import Header
+from twin.errors import BadFile
+from twin.frames import Array
+from twin.machine import Chain
+from twin.units import DEG
+
+MOST_POINTS = 256
+OFFSETS = "rotary_offsets.hal"
+
+
+def write(tables: AxisTables, head: Header, place: Array) -> dict[str, str]:
+    """Texts by file name.
+
+    Args:
+        tables: Of every axis for itself.
+        place: Location errors of every link, (L, 6), mm and rad.
+    """
+    top = [f"# {line}" for line in head.lines()]
+    texts = {}
+    for table in tables.tables:
+        unit = DEG if table.over[0] in "ABC" else 1.0
+        columns = [table.nodes, head.sign * table.forward, head.sign * table.reverse]
+        rows = np.column_stack(columns) / unit
+        texts[f"{table.over}.comp"] = _text(
+            [*top, *(" ".join(f"{v:.7f}" for v in r) for r in rows)]
+        )
+    return texts | {OFFSETS: _text([*top, *_offsets(tables.chain, place)])}
+
+
+def _text(lines: list[str]) -> str:
+    return "\n".join(lines) + "\n"
+
+
+def _offsets(chain: Chain, place: Array) -> list[str]:
+    """Points of rotary axes with their displacements, machine frame, for a kinematics component."""
+    lines = []
+    for axis in chain.rotary_axes:
+        i = chain.link_index(axis)
+        at = chain.links[i].point + place[i, :3]
+        lines += [
+            f"setp rotary.{axis.lower()}.{c}-rot-point {v:.5f}"
+            for c, v in zip("xyz", at, strict=True)
+        ]
+    return lines
+
+
+def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:
+    """The tables and their head, as LinuxCNC would take them.
+
+    Raises:
+        BadFile: File, line, what stood there, what was expected.
+    """
+    made, head = [], None
+    for axis in chain.programmed_axes:
+        path = folder / f"{axis}.comp"
+        if not path.exists():
+            continue
+        text = path.read_text(encoding="utf-8")
+        own = Header.of(text, path)
+        if head is not None and own != head:
+            raise BadFile(path, "head", own.model, f"{head.model}, as of the other axes")
+        head = own
+        made.append(_table(path, text, axis, own.sign))
+    if head is None:
+        raise BadFile(folder, "files", "none", "a .comp file of an axis")
+    return AxisTables(chain, tuple(made)), head
+
+
+def _table(path: Path, text: str, axis: str, sign: int) -> AxisTable:
+    rows = []
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.startswith("#"):
+            continue
+        try:
+            nominal, forward, reverse = (float(word) for word in line.split())
+        except ValueError:
+            raise BadFile(path, f"line {number}", repr(line), "three numbers") from None
+        rows.append((nominal, sign * forward, sign * reverse))
+    nodes, forward_all, reverse_all = np.array(rows).T * (DEG if axis[0] in "ABC" else 1.0)
+    return AxisTable(axis, axis, nodes, forward=forward_all, reverse=reverse_all)

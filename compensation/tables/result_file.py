@@ -1,0 +1,84 @@
+"""What tables correct and leave, as `compensation.json` ("compensation/1")."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from compensation.field import MachineErrors, Result, rms
+from compensation.tables.formats import Played
+from compensation.tables.header import Header
+from twin.files import write_whole
+from twin.frames import Array
+from twin.machine import Chain
+from twin.units import DEG, UM
+
+FORMAT = "compensation/1"
+
+
+def write_table_results(
+    path: str | Path, errors: MachineErrors, head: Header, played: Sequence[Played]
+) -> None:
+    """Write the figures of every format, µm over the workspace, relative to the datum."""
+    data = {
+        "format": FORMAT,
+        "model": head.model,
+        "machine": head.machine,
+        "datum": head.datum,
+        "state": head.state,
+        "not_of_the_machine": list(errors.left_out),
+        "tables": [_table(p, errors.chain) for p in played],
+    }
+    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+
+
+def _table(played: Played, chain: Chain) -> dict[str, Any]:
+    result = played.result
+    return {
+        "control": played.format,
+        "files": list(played.files),
+        **figures(result),
+        "interpolation_um": _um(played.interpolation),
+        "interpolation_holds": "over the workspace" if played.by_name else "along the axes",
+        "not_held": [
+            {"error": x.name, "before_um": _um(x.before), "rms_um": _um(x.rms), "u_um": _um(x.u)}
+            for x in result.left
+        ],
+        "acceptance": {
+            "readings": _readings(chain, played.acceptance.q),
+            "without_um": [_um(v) for v in played.acceptance.without],
+            "with_um": [_um(v) for v in played.acceptance.with_table],
+            "wrong_sign_um": [_um(v) for v in played.acceptance.wrong_sign],
+            "u_um": [_um(v) for v in played.acceptance.u],
+        },
+    }
+
+
+def figures(result: Result) -> dict[str, Any]:
+    """Before and after, with what the uncertainty of the model adds."""
+    return {
+        "poses": len(result.q),
+        "before_rms_um": _um(rms(result.before)),
+        "before_worst_um": _um(np.linalg.norm(result.before, axis=1).max()),
+        "after_rms_um": _um(rms(result.after)),
+        "after_worst_um": _um(np.linalg.norm(result.after, axis=1).max()),
+        "model_u_um": _um(result.u_rms),
+        "tool_u_um": _um(result.u_tool),
+        "expected_rms_um": _um(result.expected),
+    }
+
+
+def _readings(chain: Chain, q: Array) -> dict[str, float]:
+    out = {}
+    for name in chain.programmed_axes:
+        is_rotary = chain.link(name).kind == "rotary"
+        value = float(q[chain.axis_index(name)]) / (DEG if is_rotary else 1.0)
+        out[f"{name}_{'deg' if is_rotary else 'mm'}"] = round(value, 4) + 0.0
+    return out
+
+
+def _um(value: float) -> float:
+    """In µm to a nanometre."""
+    return round(float(value) / UM, 3) + 0.0

@@ -1,0 +1,142 @@
+"""`matstd compensate`: the identified model goes back to the control."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from matstd.compensation.options import add_state
+from twin.errors import DesignError
+
+if TYPE_CHECKING:
+    from compensation.tables import Played
+    from matstd.compensation.job import Job
+
+OURS = ("*/*", "report.html", "tables.xlsx", "tables/*.csv", "pictures/*.png", "compensation.json")
+"""Results that not every compensation leaves."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
+    parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
+    parser.add_argument("--tables", metavar="DIR", help="write tables of controls into it")
+    parser.add_argument("--program", metavar="IN", help="compensate a part program (.H, .ngc)")
+    parser.add_argument("-o", "--output", metavar="OUT", help="the compensated program")
+    parser.add_argument(
+        "--tolerance",
+        metavar="UM",
+        type=float,
+        help="between a path and the lines it becomes, µm (1)",
+    )
+    parser.add_argument(
+        "--tool",
+        metavar="NUMBER=MM",
+        nargs="+",
+        default=[],
+        help="lengths of tools of the program; others have that of the datum",
+    )
+    parser.add_argument(
+        "--control",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="only tables of this control: iso230, heidenhain, sinumerik, linuxcnc",
+    )
+    parser.add_argument(
+        "--opposite",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="turn the sign of the values in the tables of this control",
+    )
+    add_state(parser)
+    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write what is asked for; a folder appears whole or not at all."""
+    from matstd.compensation.job import read_job
+
+    if (args.tables is None) == (args.program is None):
+        raise DesignError("expected one of --tables DIR and --program FILE -o OUT")
+    if (args.program is None) != (args.output is None):
+        raise DesignError("expected -o OUT with --program, and only there")
+    job = read_job(args)
+    return _tables(args, job) if args.program is None else _program(args, job)
+
+
+def _program(args: argparse.Namespace, job: Job) -> int:
+    """A compensated program, its points as a table, its picture."""
+    from compensation.programs import (
+        TOLERANCE,
+        Frame,
+        compensated,
+        read_part_program,
+        write_trajectory,
+    )
+    from matstd.compensation.job import tool_lengths
+    from matstd.console import say
+    from report.compensation import draw_program, program_lines
+    from twin.files import refuse_to_overwrite, write_whole
+    from twin.units import UM
+
+    output = Path(args.output)
+    beside = [output.with_suffix(ending) for ending in (".csv", ".png")]
+    for path in (output, *beside):
+        refuse_to_overwrite(path, args.force)
+    frame = Frame(job.errors.chain, job.datum)
+    program = read_part_program(args.program, frame, tool_lengths(args.tool))
+    tolerance = TOLERANCE if args.tolerance is None else args.tolerance * UM
+    done = compensated(program, job.errors, job.header(1), tolerance)
+    write_trajectory(beside[0], done)
+    draw_program(beside[1], done)
+    write_whole(output, done.text)
+    for line, is_first in program_lines(output.name, done):
+        say(line, style="bold" if is_first else None)
+    say(f"{output}: look at {beside[0].name}, {beside[1].name} beside it")
+    return 0
+
+
+def _tables(args: argparse.Namespace, job: Job) -> int:
+    """Tables of every control, read back and played."""
+    from compensation.tables import FORMATS, play_tables, write_table_results, write_tables
+    from matstd.folder import results_folder
+    from matstd.progress import stages
+    from report.compensation import write_compensation_page
+
+    names = _controls(args.control) or list(FORMATS)
+    opposite = _controls(args.opposite)
+    done = []
+    with results_folder(args.tables, args.force, OURS) as folder, stages() as show:
+        for k, name in enumerate(names):
+            show("tables", k, len(names))
+            place, head = folder / name, job.header(-1 if name in opposite else 1)
+            write_tables(FORMATS[name], place, job.errors, job.datum, head, job.poses)
+            done.append(play_tables(FORMATS[name], place, job.errors, job.datum, head, job.poses))
+        head = job.header(1)
+        write_table_results(folder / "compensation.json", job.errors, head, done)
+        write_compensation_page(folder, job.errors, head, done, Path(args.model).name)
+    _tell(args, done)
+    return 0
+
+
+def _controls(names: list[str]) -> list[str]:
+    from compensation.tables import FORMATS
+
+    for name in names:
+        if name not in FORMATS:
+            raise DesignError(f"control {name}: expected one of {', '.join(FORMATS)}")
+    return list(dict.fromkeys(names))
+
+
+def _tell(args: argparse.Namespace, done: list[Played]) -> None:
+    """Every control in a line, and what it cannot hold in another."""
+    from matstd.console import say
+    from report.compensation import table_lines
+
+    for played in done:
+        for line, is_first in table_lines(played):
+            say(line, style="bold" if is_first else None)
+    say(f"{args.tables}: look at report.html, compensation.json")

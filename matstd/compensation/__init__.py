@@ -1,0 +1,1 @@
+"""What `matstd compensate` and its kin read from the command line, and do."""

@@ -1,0 +1,132 @@
+"""What `matstd compensate` begins with: errors of a machine, their state, a datum, a workspace."""
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from compensation.field import Datum, MachineErrors, State, datum_of, workspace
+from compensation.tables import Header, hashed, header_of
+from diagnosis.files import read_model
+from twin.errors import DesignError
+from twin.files import parse_toml, read_errors, read_machine, read_text
+from twin.frames import Array
+from twin.library import load_installed_effects, load_user_effects
+from twin.machine import Chain
+from twin.units import DEG, MINUTE
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """A machine to be compensated.
+
+    Attributes:
+        errors: As they are known, in their state.
+        datum: To which everything refers.
+        poses: Over which a compensation is judged, (N, A).
+        model: Hash of the file, or of the two files, that they were read from.
+    """
+
+    errors: MachineErrors
+    datum: Datum
+    poses: Array
+    model: str
+
+    def header(self, sign: int) -> Header:
+        """Head of a table."""
+        return header_of(self.errors.chain, self.model, self.datum, self.errors.state, sign)
+
+
+def read_job(args: argparse.Namespace) -> Job:
+    """Everything that the command line says of machine, state and datum.
+
+    Raises:
+        DesignError: A file or an option that cannot be read, or an active table.
+    """
+    load_installed_effects()
+    for path in args.effects:
+        load_user_effects(Path(path))
+    state = State(
+        time=args.after * MINUTE,
+        temperature=dict(_numbers("--temperature", args.temperature)),
+        spindle_rpm=args.rpm,
+    )
+    errors = _errors(args, state).switched(dict(_numbers("--switch", args.switch)))
+    chain = errors.chain
+    files = [args.model] if args.errors is None else [args.model, args.errors]
+    job = Job(
+        errors=errors,
+        datum=datum_of(chain, _readings(chain, "--datum", args.datum), args.tool_length),
+        poses=workspace(chain, _limits(chain, args.within)),
+        model=hashed(b"".join(Path(f).read_bytes() for f in files)),
+    )
+    for path in args.active:
+        Header.of(read_text(path), path).refuse_active(job.header(1), path)
+    return job
+
+
+def tool_lengths(words: Sequence[str]) -> dict[int, float]:
+    """Lengths of tools by number, mm; raises DesignError."""
+    out = {}
+    for number, length in _numbers("--tool", words):
+        if not number.isdigit():
+            raise DesignError(f"--tool {number}={length:g}: expected a number, such as 3=120")
+        out[int(number)] = length
+    return out
+
+
+def _errors(args: argparse.Namespace, state: State) -> MachineErrors:
+    """Of a model, or of a machine file with an error file."""
+    if parse_toml(read_text(args.model), args.model).get("format") != "machine/1":
+        if args.errors is not None:
+            raise DesignError(f"--errors {args.errors}: {args.model} has errors of its own")
+        return MachineErrors.of_model(read_model(args.model), state)
+    if args.errors is None:
+        raise DesignError(f"{args.model}: a machine without errors; expected --errors ERRORS.toml")
+    chain = read_machine(args.model)
+    return MachineErrors.of_errors(chain, read_errors(args.errors, chain), state)
+
+
+def _numbers(option: str, words: Sequence[str]) -> list[tuple[str, float]]:
+    """`NAME=NUMBER` words."""
+    out = []
+    for word in words:
+        name, _, number = word.rpartition("=")
+        try:
+            out.append((name, float(number)))
+        except ValueError:
+            name = ""
+        if not name or not np.isfinite(out[-1][1]):
+            raise DesignError(f"{option} {word}: expected a name and a number, such as X=100")
+    return out
+
+
+def _readings(chain: Chain, option: str, words: Sequence[str]) -> dict[str, float]:
+    """Readings by axis, mm and rad, within the travels."""
+    out = {}
+    for name, value in _numbers(option, words):
+        link = chain.links[chain.link_index(chain.axes[chain.axis_index(name)])]
+        unit = DEG if link.kind == "rotary" else 1.0
+        low, high = link.range
+        if not low <= value * unit <= high:
+            expected = f"{low / unit:g} to {high / unit:g}, the travel of {name}"
+            raise DesignError(f"{option} {name}={value:g}: expected {expected}")
+        out[name] = value * unit
+    return out
+
+
+def _limits(chain: Chain, words: Sequence[str]) -> dict[str, tuple[float, float]]:
+    """Ranges by axis, mm and rad."""
+    out = {}
+    for word in words:
+        name, _, ends = word.partition("=")
+        low, colon, high = ends.partition(":")
+        if not colon:
+            raise DesignError(f"--within {word}: expected an axis and its ends, such as X=-100:100")
+        both = [_readings(chain, "--within", [f"{name}={end}"])[name] for end in (low, high)]
+        if not both[0] <= both[1]:
+            raise DesignError(f"--within {word}: expected the smaller end first")
+        out[name] = (both[0], both[1])
+    return out

@@ -1,0 +1,100 @@
+"""Other ways to a touch: along a line that leans from the surface's normal.
+
+Where the ball ends is the same, and so is what is measured: a deviation is one along the normal
+whatever way the ball came. What changes is where the touch starts and where the ball goes on if it
+meets nothing.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.body import Meeting, Standard, contact
+from artefact.reach import Mask
+from twin.frames import Array, apply, inverse, turn
+from twin.machine import Chain, linear_directions, table_to_tool, tip
+from twin.record import Labels, Setup
+from twin.units import DEG
+
+_LEANS = (15.0 * DEG, 30.0 * DEG)
+"""From the normal, rad; beyond 30 degrees the ball slides where it should trigger."""
+
+_SIDES = (0.0, 90.0 * DEG, -90.0 * DEG, 180.0 * DEG)
+"""That are leant to, from that of the spindle, rad."""
+
+_ROUNDING = 9  # decimals: a motion that is nothing but the rounding of one has no sign
+
+
+@dataclass(frozen=True, eq=False)
+class Approaches:
+    """Ways to N touches of one table pose each.
+
+    Attributes:
+        setup: Where the standard stands.
+        length: Gauge point to ball centre, mm.
+        radius: Of the ball, mm.
+        contact: Readings at the expected contact, (N, A).
+        normal: Outward unit normals, artefact frame, (N, 3).
+        feature: Names, (N,).
+        back: From the contact to the start, mm.
+        beyond: From the contact to where the probe gives up, mm.
+    """
+
+    chain: Chain
+    standard: Standard
+    setup: Setup
+    length: float
+    radius: float
+    contact: Array
+    normal: Array
+    feature: Labels
+    back: float
+    beyond: float
+
+    def others(self) -> Iterator[tuple[Array, Array, Mask]]:
+        """Starts (N, A), motions of X Y Z (N, A) and which are possible, the least leaning first.
+
+        Possible is what stays within travel, meets its feature first, and moves X, Y and Z in the
+        senses that the normal has: whoever evaluates a log knows the normal alone and takes the
+        sides of all reversals from it.
+        """
+        place = self.setup.T_table_artefact
+        normal = turn(place, self.normal)
+        tool = table_to_tool(self.chain, self.contact)[:, :3, 2]
+        towards = tool - np.einsum("ni,ni->n", tool, normal)[:, None] * normal
+        size = np.linalg.norm(towards, axis=1, keepdims=True)
+        any_side = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)])
+        towards = np.where(size > 1e-6, towards, any_side)
+        towards /= np.linalg.norm(towards, axis=1, keepdims=True)
+        across = np.cross(normal, towards)
+        for lean in _LEANS:
+            for side in _SIDES:
+                beside = np.cos(side) * towards + np.sin(side) * across
+                yield self._along(np.cos(lean) * normal + np.sin(lean) * beside, normal)
+
+    def _along(self, away: Array, normal: Array) -> tuple[Array, Array, Mask]:
+        """One way each, along directions in the table frame."""
+        chain = self.chain
+        columns = [chain.axis_index(a) for a in chain.linear_axes]
+        per_axis = np.linalg.inv(linear_directions(chain, self.contact))
+        motion = np.zeros(self.contact.shape)
+        motion[:, columns] = -np.einsum("nij,nj->ni", per_axis, away)
+        usual = -np.einsum("nij,nj->ni", per_axis, normal)
+        start = self.contact - self.back * motion
+        ends = np.stack([start, self.contact + self.beyond * motion])[..., columns]
+        low, high = np.array([chain.link(a).range for a in chain.linear_axes]).T
+        same = np.sign(np.round(motion[:, columns], _ROUNDING)) == np.sign(
+            np.round(usual, _ROUNDING)
+        )
+        T_artefact_table = inverse(self.setup.T_table_artefact)
+        met = contact(
+            self.standard,
+            apply(T_artefact_table, tip(chain, start, self.length)),
+            turn(T_artefact_table, -away),
+            self.radius,
+            np.full(len(start), self.back + self.beyond),
+        )
+        is_met = (met.meeting == Meeting.SURFACE) & (met.feature == self.feature)
+        good: Mask = is_met & same.all(axis=1) & ((ends >= low) & (ends <= high)).all(axis=(0, 2))
+        return start, motion, good

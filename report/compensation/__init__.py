@@ -1,0 +1,24 @@
+"""Compensation in words and pictures: what is corrected, what is left, before and after."""
+
+from report.compensation.program_picture import draw_program
+from report.compensation.program_words import program_lines
+from report.compensation.table_page import write_compensation_page
+from report.compensation.table_pictures import draw_errors_left, draw_shares
+from report.compensation.table_words import (
+    control_title,
+    held_words,
+    result_sentence,
+    table_lines,
+)
+
+__all__ = [
+    "control_title",
+    "draw_errors_left",
+    "draw_program",
+    "draw_shares",
+    "held_words",
+    "program_lines",
+    "result_sentence",
+    "table_lines",
+    "write_compensation_page",
+]

@@ -1,0 +1,32 @@
+"""What a compensated program leaves, in sentences."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from compensation.field import rms
+from compensation.programs import Compensated
+from report.numbers import digits
+from twin.units import MINUTE, NM, UM
+
+
+def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
+    """Lines on the console, and whether each is the first.
+
+    Args:
+        name: Of the file that was written.
+    """
+    motions, points = len(done.program.motions), len(done.q)
+    yield f"{name}: {motions} motions as {points} lines", True
+    before, after = rms(done.before) / UM, rms(done.after) / UM
+    worst = np.linalg.norm(done.after, axis=1).max() / UM
+    words = f"tool point {digits(before)} -> {digits(after)} µm rms (worst {digits(worst)} µm)"
+    if done.u.any() and rms(done.u[:, None]) > NM:
+        words += f"; the model is known to {digits(rms(done.u[:, None]) / UM, 2)} µm there"
+    yield f"- {words}", False
+    added = np.abs(done.added[:, done.program.frame.linear]).max() / UM
+    minutes = digits(done.elapsed[-1] / MINUTE)
+    yield f"- largest correction {digits(added)} µm; {minutes} min of motion", False
+    if done.unmoved:
+        lines = ", ".join(str(line) for line in done.unmoved)
+        yield f"- left as they are, in coordinates of the machine or before a place: {lines}", False

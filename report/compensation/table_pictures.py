@@ -1,0 +1,75 @@
+"""Pictures of what compensation leaves: over the workspace, and error by error."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from compensation.field import Left, Result
+from report.style import INK, NEUTRAL, SOFT, figure, nothing, plain, save, series
+from twin.units import UM
+
+BARS = 16
+"""Errors that are drawn at most."""
+
+LEAST = 1e-3
+"""µm: a logarithmic scale begins there, at a nanometre."""
+
+
+def draw_errors_left(path: str | Path, results: Mapping[str, Result]) -> None:
+    """Share of the workspace whose error is smaller: before, and after every compensation.
+
+    Args:
+        path: PNG.
+        results: By title; all of the same machine and datum.
+    """
+    drawn = figure(3.6)
+    ax = drawn.subplots()
+    first = next(iter(results.values()))
+    _curve(ax, np.linalg.norm(first.before, axis=1), "before", INK, "-")
+    for k, (title, result) in enumerate(results.items()):
+        after = np.linalg.norm(result.after, axis=1)
+        _curve(ax, after, title, series(k), "-")
+        if result.u_rms > 0.0:
+            _curve(ax, np.hypot(after, result.u), None, series(k), ":")
+    ax.set_xscale("log")
+    ax.set_ylim(0.0, 1.0)
+    ax.set_xlabel("error of the tool point, µm (dotted: with what the model does not know)")
+    ax.set_ylabel("share of poses below")
+    ax.legend(fontsize=8, frameon=False, loc="upper left")
+    plain(ax)
+    save(drawn, path)
+
+
+def _curve(ax: object, size: np.ndarray, label: str | None, colour: str, style: str) -> None:
+    x = np.maximum(np.sort(size) / UM, LEAST)
+    y = (np.arange(len(x)) + 1.0) / len(x)
+    ax.plot(x, y, style, color=colour, lw=1.4, label=label)  # type: ignore[attr-defined]
+
+
+def draw_shares(path: str | Path, left: Sequence[Left]) -> None:
+    """What one compensation leaves of every error, beside what it was.
+
+    Args:
+        path: PNG.
+        left: Of one compensation, the largest first.
+    """
+    shown = [item for item in left[:BARS] if item.before > 0.0]
+    if not shown:
+        save(nothing("nothing is left"), path)
+        return
+    drawn = figure(0.9 + 0.24 * len(shown))
+    ax = drawn.subplots()
+    y = np.arange(len(shown))[::-1]
+    ax.barh(y, [item.before / UM for item in shown], color=NEUTRAL, height=0.7, label="before")
+    ax.barh(y, [item.rms / UM for item in shown], color=series(0), height=0.4, label="left")
+    errors = [item.u / UM for item in shown]
+    ax.errorbar(
+        [item.rms / UM for item in shown], y, xerr=errors, fmt="none", ecolor=SOFT, capsize=2
+    )
+    ax.set_yticks(y, [item.name for item in shown])
+    ax.set_xlim(0.0, None)
+    ax.set_xlabel("µm, rms over the workspace")
+    ax.legend(fontsize=8, frameon=False)
+    plain(ax, "x")
+    save(drawn, path)

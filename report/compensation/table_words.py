@@ -1,0 +1,59 @@
+"""What tables of controls correct and leave, in sentences."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from compensation.field import Left, Result, rms
+from compensation.tables import Played
+from report.numbers import digits, with_uncertainty
+from twin.units import NM, UM
+
+_TITLES = {
+    "iso230": "ISO 230 names (ISG kernel, TwinCAT CNC)",
+    "heidenhain": "iTNC 530 KinematicsComp",
+    "sinumerik": "Sinumerik CEC",
+    "linuxcnc": "LinuxCNC COMP_FILE",
+}
+
+TOLD = 5
+"""Errors that a control cannot hold, named on the console."""
+
+
+def control_title(name: str) -> str:
+    """A control's tables in words."""
+    return _TITLES.get(name, name)
+
+
+def result_sentence(result: Result) -> str:
+    """Before, after, and what to expect with a model that is not the truth, rms."""
+    before, after = rms(result.before) / UM, rms(result.after) / UM
+    words = f"{digits(before)} -> {digits(after)} µm rms over the workspace"
+    worst = np.linalg.norm(result.after, axis=1).max() / UM
+    words += f" (worst of {len(result.q)} poses {digits(worst)} µm)"
+    if result.u_rms > NM:
+        numbers = (result.u_rms, result.expected_before, result.expected)
+        u, was, will = (digits(v / UM, 2) for v in numbers)
+        words += f"; the model is known to {u} µm there, so expect {was} -> {will} µm"
+    return words
+
+
+def held_words(left: Left) -> str:
+    """What is left of one error."""
+    u = left.u / UM if left.u > 0.0 else None
+    return f"{left.name} {with_uncertainty(left.rms / UM, u)} of {digits(left.before / UM)} µm"
+
+
+def table_lines(played: Played) -> Iterator[tuple[str, bool]]:
+    """Lines on the console, and whether each is the first of its control."""
+    yield f"{control_title(played.format)}: {result_sentence(played.result)}", True
+    where = "over the workspace" if played.by_name else "along the axes through the datum"
+    bound = digits(played.interpolation / UM, 2)
+    yield f"- interpolation and rounding leave at most {bound} µm {where}", False
+    held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
+    if held:
+        words = ", ".join(held_words(left) for left in held[:TOLD])
+        more = f" and {len(held) - TOLD} more" if len(held) > TOLD else ""
+        yield f"- cannot hold: {words}{more}", False
+    else:
+        yield "- holds every error of the model", False

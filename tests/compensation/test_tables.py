@@ -1,0 +1,284 @@
+"""Tables of controls: hand-worked values, what is left, refusals, the test of the sign."""
+
+import numpy as np
+import pytest
+from bench import LENGTH
+
+from compensation.field.inverse import datum_of, played
+from compensation.field.machine_errors import MachineErrors
+from compensation.field.over_workspace import rms
+from compensation.field.state import State
+from compensation.tables.by_name import line
+from compensation.tables.formats import FORMATS, play_tables, write_tables
+from compensation.tables.header import Header, header_of
+from matstd.cli import main
+from twin.errors import BadFile
+from twin.library.catalogue import parse_effect
+from twin.machine.chain import Axis, make_chain
+from twin.units import DEG, NM, UM, URAD
+
+
+@pytest.fixture(scope="module")
+def head(bench_chain, datum):
+    return header_of(bench_chain, "0123456789ab", datum, State())
+
+
+@pytest.fixture(scope="module")
+def written(known, datum, head, poses, tmp_path_factory):
+    """Folders of all formats."""
+    folder = tmp_path_factory.mktemp("tables")
+    for name, form in FORMATS.items():
+        write_tables(form, folder / name, known, datum, head, poses)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def results(known, datum, head, written, poses):
+    return {
+        name: play_tables(form, written / name, known, datum, head, poses)
+        for name, form in FORMATS.items()
+    }
+
+
+def only(chain, name, amplitude):
+    return MachineErrors.of_errors(chain, [(parse_effect(name, chain), np.array([amplitude]))])
+
+
+def columns(path, first):
+    """Rows of numbers of a file below the line that begins with some word."""
+    lines = path.read_text().splitlines()
+    start = next(i for i, text in enumerate(lines) if text.startswith(first)) + 1
+    rows = []
+    for text in lines[start:]:
+        try:
+            rows.append([float(word) for word in text.split()])
+        except ValueError:
+            break
+    return np.array(rows)
+
+
+# --- hand-worked values ---------------------------------------------------------------------
+
+
+def test_iso_names_and_units(written):
+    x = columns(written / "iso230" / "iso230.csv", "X EXX EYX EZX EAX EBX ECX")
+    assert x[0, 0] == -400.0
+    np.testing.assert_allclose(x[-1], [400, 0, 0, 0.020, 0, 60e-6, 0], atol=1e-9)
+    at = np.flatnonzero(x[:, 0] == -300.0)[0]  # an eighth of the way: sin(2 pi 2/8) = 1
+    np.testing.assert_allclose(x[at, 1], 0.030, atol=1e-7)
+    text = (written / "iso230" / "iso230.csv").read_text().splitlines()
+    place = dict(zip(text[-2].split(), map(float, text[-1].split()), strict=True))
+    assert place["C0Y"] == 45e-6
+    assert (place["X0C"], place["Z0B"], place["X0X"], place["A0C"]) == (0.025, 0.030, 0.015, 35e-6)
+    c = columns(written / "iso230" / "iso230.csv", "C EXC")
+    assert (c[0, 0], c[-1, 0]) == (0.0, 360.0)
+    np.testing.assert_allclose(c[len(c) // 4, [1, 6]], [0.008, 30e-6], atol=1e-9)
+
+
+def test_com_tables_and_kinematics(written):
+    x = columns(written / "heidenhain" / "X.COM", "NR AXISPOS X C1 C2 C3 C4 C5 C6")
+    np.testing.assert_allclose(x[-1, 1:], [400, 0, 0, 0, 0.020, 0, 60e-6 / DEG, 0], atol=6e-7)
+    at = np.flatnonzero(x[:, 1] == -300.0)[0]
+    assert x[at, 2] == 0.030
+    rows = [
+        r.split()[1:] for r in (written / "heidenhain" / "KINEMATICS.TXT").read_text().splitlines()
+    ]
+    assert ["EBX", "Trans", "B", "-", "X..C5"] in rows
+    assert ["X_AXIS", "MachAxis", "X", "-", "-"] in rows
+    assert ["C_POINT", "Trans", "X", "+0.0250", "-"] in rows
+    assert ["B_POINT", "Trans", "Z", "-419.9700", "-"] in rows
+
+
+def test_comp_file_adds_what_the_axis_lacks_in_each_direction(
+    bench_chain, datum, head, poses, tmp_path
+):
+    effects = [("geometric(EXX,linear)", 12 * UM), ("backlash(X)", 8 * UM)]
+    pairs = [(parse_effect(name, bench_chain), np.array([a])) for name, a in effects]
+    errors = MachineErrors.of_errors(bench_chain, pairs)
+    write_tables(FORMATS["linuxcnc"], tmp_path, errors, datum, head, poses)
+    x = columns(tmp_path / "X.comp", "# matstd sign")
+    # coming from below the tool stands 4 µm too far, from above 4 µm short
+    np.testing.assert_allclose(x[-1], [400, -0.012 - 0.004, -0.012 + 0.004], atol=1e-6)
+    np.testing.assert_allclose(x[0], [-400, 0.012 - 0.004, 0.012 + 0.004], atol=1e-6)
+    hal = (tmp_path / "rotary_offsets.hal").read_text()
+    assert "b.z-rot-point -420.00000" in hal
+
+
+def test_cec_corrects_across(bench_chain, datum, head, poses, tmp_path):
+    """EC0Y moves the tool by -EC0Y y in X, so X is to move by +EC0Y y."""
+    errors = only(bench_chain, "location(EC0Y)", 10 * URAD)
+    write_tables(FORMATS["sinumerik"], tmp_path, errors, datum, head, poses)
+    text = (tmp_path / "NC_CEC.INI").read_text()
+    assert "$AN_CEC_INPUT_AXIS[0]=(Y)\n$AN_CEC_OUTPUT_AXIS[0]=(X)" in text
+    tables, _ = FORMATS["sinumerik"].read(tmp_path, bench_chain)
+    (table,) = tables.tables
+    np.testing.assert_allclose(table.forward, 10e-6 * table.nodes, atol=1e-6)
+
+
+def test_cec_writes_as_many_tables_as_a_control_holds(written, bench_chain):
+    tables, _ = FORMATS["sinumerik"].read(written / "sinumerik", bench_chain)
+    assert 5 <= len(tables.tables) <= 10
+    text = (written / "sinumerik" / "NC_CEC.INI").read_text()
+    assert "$AN_CEC_IS_MODULO" in text
+
+
+# --- what is left ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["iso230", "heidenhain"])
+def test_tables_by_name_leave_their_interpolation(results, name):
+    found = results[name]
+    worst = np.linalg.norm(found.result.after, axis=1).max()
+    assert rms(found.result.before) > 30 * UM
+    assert 0.0 < worst <= found.interpolation < 2 * UM
+
+
+@pytest.mark.parametrize("name", ["iso230", "heidenhain"])
+def test_unaligned_too(known, written, bench_chain, poses, results, name):
+    """The rigid motion that alignment takes off hides nothing."""
+    tables, _ = FORMATS[name].read(written / name, bench_chain)
+    touches = known.touches(poses, LENGTH)
+    left = played(known, touches, tables.correction(touches))
+    assert np.linalg.norm(left, axis=1).max() <= results[name].interpolation
+
+
+def test_cec_is_exact_along_the_axes(known, datum, head, poses, bench_chain, tmp_path):
+    linear = known.switched({"B": 0.0, "C": 0.0})
+    write_tables(FORMATS["sinumerik"], tmp_path, linear, datum, head, poses)
+    found = play_tables(FORMATS["sinumerik"], tmp_path, linear, datum, head, poses)
+    tables, _ = FORMATS["sinumerik"].read(tmp_path, bench_chain)
+    there = linear.touches(datum.q[None], LENGTH)
+    for axis in ("X", "Y", "Z"):
+        at = np.linspace(*bench_chain.link(axis).range, 173)
+        touches = line(linear, datum, axis, at)
+        left = played(linear, touches, tables.correction(touches))
+        left -= played(linear, there, tables.correction(there))
+        # tables that help by less than 50 nm are not written
+        assert np.linalg.norm(left, axis=1).max() <= found.interpolation + 100 * NM
+
+
+def test_formats_hold_less_and_less(results):
+    left = [
+        rms(results[name].result.after)
+        for name in ("iso230", "heidenhain", "sinumerik", "linuxcnc")
+    ]
+    assert left == sorted(left)
+    assert left[2] < 0.5 * rms(results["sinumerik"].result.before)
+
+
+@pytest.mark.parametrize("name", list(FORMATS))
+@pytest.mark.parametrize(
+    ("effect", "size"),
+    [("coupling(EBX,Z)", 40 * URAD), ("location(EX0C)", 30 * UM), ("geometric(EZX,2)", 20 * UM)],
+)
+def test_what_is_left_of_one_error_is_what_is_played(
+    bench_chain, datum, head, poses, tmp_path, name, effect, size
+):
+    """First order, all parameters at once, against the exact twin with tables of that error."""
+    effect = parse_effect(effect, bench_chain)
+    theta = np.full(len(effect.parameters), size)
+    errors = MachineErrors.of_errors(bench_chain, [(effect, theta)])
+    write_tables(FORMATS[name], tmp_path, errors, datum, head, poses)
+    found = play_tables(FORMATS[name], tmp_path, errors, datum, head, poses)
+    (left,) = found.result.left
+    np.testing.assert_allclose(left.rms, rms(found.result.after), atol=0.15 * UM)
+    np.testing.assert_allclose(left.before, rms(found.result.before), rtol=1e-3)
+
+
+def test_a_coupling_is_left_but_for_its_share_at_the_datum(
+    bench_chain, datum, head, poses, tmp_path
+):
+    """EBX = a u_X u_Z: tables hold u_Z of the datum, so what is left grows with the distance."""
+    errors = only(bench_chain, "coupling(EBX,Z)", 40 * URAD)
+    write_tables(FORMATS["iso230"], tmp_path, errors, datum, head, poses)
+    x = columns(tmp_path / "iso230.csv", "X EXX")
+    u_datum = (-200.0 + 250.0) / 250.0
+    np.testing.assert_allclose(x[-1, 5], 40e-6 * u_datum, atol=1e-9)
+
+
+# --- signs, heads, refusals -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", list(FORMATS))
+def test_the_sign_switch_turns_every_value(
+    known, datum, bench_chain, written, poses, tmp_path, name
+):
+    head = header_of(bench_chain, "0123456789ab", datum, State(), sign=-1)
+    write_tables(FORMATS[name], tmp_path, known, datum, head, poses)
+    mine, _ = FORMATS[name].read(written / name, bench_chain)
+    theirs, found = FORMATS[name].read(tmp_path, bench_chain)
+    assert found == head
+    touches = known.touches(poses[:8], LENGTH)
+    np.testing.assert_allclose(theirs.correction(touches), mine.correction(touches), atol=1 * NM)
+    table = {"iso230": "iso230.csv", "heidenhain": "X.COM", "sinumerik": "NC_CEC.INI"}
+    file = table.get(name, "X.comp")
+    assert (tmp_path / file).read_text() != (written / name / file).read_text()
+
+
+@pytest.mark.parametrize("name", list(FORMATS))
+def test_the_one_point_test_tells_a_wrong_sign(results, name):
+    test = results[name].acceptance
+    change = test.with_table - test.without
+    np.testing.assert_allclose(test.wrong_sign - test.without, -change, atol=0.1 * UM)
+    assert np.abs(change).max() > 20 * UM
+    if name != "linuxcnc":
+        assert np.linalg.norm(test.with_table) < 0.2 * np.linalg.norm(test.without)
+
+
+def test_heads_are_read_back(written, head):
+    for path in sorted(p for p in written.rglob("*") if p.is_file()):
+        assert Header.of(path.read_text(), path) == head, path
+    with pytest.raises(BadFile, match="matstd model"):
+        Header.of("X EXX\n", "lost.csv")
+
+
+def test_a_table_of_another_machine_or_datum_is_refused(known, head, written, bench_chain, poses):
+    other_datum = datum_of(bench_chain, {"X": 9.0}, LENGTH)
+    other = header_of(bench_chain, head.model, other_datum, State())
+    with pytest.raises(BadFile, match=r"matstd datum: found C0 B0 X0 Y0 Z-200 L160.*X9"):
+        play_tables(FORMATS["iso230"], written / "iso230", known, other_datum, other, poses)
+    short = make_chain("bench", "[w f X t]", {"X": Axis(range=(0.0, 1.0))})
+    elsewhere = header_of(short, head.model, datum_of(short, {}, LENGTH), State())
+    with pytest.raises(BadFile, match="matstd machine: found bench, "):
+        head.check(elsewhere, "iso230.csv")
+
+
+def test_commands(bench, errors_file, tmp_path, capsys):
+    out = tmp_path / "out"
+    command = ["compensate", str(bench), "--errors", str(errors_file), "--tables", str(out)]
+    command += ["--tool-length", "160", "--control", "iso230"]
+    assert main(command) == 0
+    assert "holds every error" in capsys.readouterr().out
+    assert {p.name for p in out.iterdir()} >= {"iso230", "report.html", "compensation.json"}
+    assert main(command) == 2
+    assert "already exists" in capsys.readouterr().err
+    active = ["--force", "--active", str(out / "iso230" / "iso230.csv")]
+    assert main([*command, *active]) == 2
+    assert "would correct twice" in capsys.readouterr().err
+    assert main([*command, *active, "--switch", "EXX=0", "--datum", "X=5"]) == 2
+    assert "matstd datum" in capsys.readouterr().err
+    errors_file2 = tmp_path / "other.toml"
+    errors_file2.write_text('format = "errors/1"\nEXX = { shape = "linear", amplitude = 1.0 }\n')
+    other = [w if w != str(errors_file) else str(errors_file2) for w in command]
+    assert main([*other, *active]) == 2
+    assert "or a model learnt beside it" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--datum", "X=900"], "--datum X=900: expected -400 to 400, the travel of X"),
+        (["--datum", "Q=1"], "unknown axis 'Q'"),
+        (["--datum", "X"], "expected a name and a number"),
+        (["--within", "X=5"], "such as X=-100:100"),
+        (["--within", "X=9:3"], "the smaller end first"),
+        (["--control", "fanuc"], "control fanuc: expected one of iso230"),
+        (["--switch", "EQQ=0"], "expected one of"),
+        (["--temperature", "bed=warm"], "--temperature bed=warm"),
+    ],
+)
+def test_bad_words_are_refused(bench, errors_file, tmp_path, capsys, words, said):
+    command = ["compensate", str(bench), "--errors", str(errors_file), "--tables"]
+    assert main([*command, str(tmp_path / "no"), *words]) == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "no").exists()

@@ -1,0 +1,144 @@
+"""Servo lag of an axis on a path: while it moves it stands where it was told to be a little ago."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.frames import Array
+from twin.machine import Chain
+from twin.model import Kind, Parameter, Term, Title, Where, check_count, checked_axis, moving_axes
+from twin.record import IntArray, Labels, Touches
+
+STATED = "v{axis}_mm_s"
+"""Column of the user's own (`V_vX_mm_s`) that states the speed of an axis, mm/s."""
+
+SMOOTH = 0.02
+"""Step from row to row, as a share of the travel, below which readings were taken on the way: 120
+points a circle; targets of a positioning test stand ten times farther apart."""
+
+GAP = 3.0
+"""Steps of time, in usual ones, from which rows belong to two motions."""
+
+
+@dataclass(frozen=True)
+class ServoLag:
+    """An axis that follows its command with a delay: ``E = -T v``, v its speed.
+
+    On a circle at feed F, two axes that lag alike only fall behind along the path; a difference T
+    of their delays makes it an ellipse at 45 degrees, ``dr = -(F T / 2) sin 2 theta`` with the
+    other sign the other way round: the mismatch of a ball bar test.
+
+    Attributes:
+        axis: Name of a linear axis.
+        component: Index of the component along it.
+
+    Reference:
+        Kakino, Ihara and Shinohara, Accuracy Inspection of NC Machine Tools by Double Ball Bar
+        Method (1993); ISO 230-4 (circular tests).
+    """
+
+    axis: str
+    component: int
+
+    kind = "servo-lag"
+
+    @property
+    def name(self) -> str:
+        """`servo-lag(X)`."""
+        return f"servo-lag({self.axis})"
+
+    @property
+    def title(self) -> Title:
+        """In the words of those who run machines."""
+        return Title(f"servo lag of {self.axis} beside the other axes", self.axis)
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """The delay."""
+        return (Parameter("lag", "s", 3e-4),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """A twist of the axis."""
+        where = Where("twist", touches.chain.link_index(self.axis), self.component)
+        return (Term(0, where, -speed(touches, self.axis)),)
+
+
+def speed(touches: Touches, axis: str) -> Array:
+    """Speed of an axis at every row, (N,), mm/s: as a column states it, else by its readings.
+
+    Differences are taken over rows that follow one another in time on one feature; where a motion
+    has less than three rows, or all have one time, the speed is 0.
+    """
+    stated = touches.value.get(STATED.format(axis=axis))
+    if stated is not None:
+        return stated
+    q, out = touches.reading(axis), np.zeros(len(touches))
+    for rows in _motions(touches):
+        if len(rows) > 2:
+            out[rows] = np.gradient(q[rows], touches.time[rows])
+    return out
+
+
+def _motions(touches: Touches) -> list[IntArray]:
+    """Rows of every motion without a stop, in the order of time."""
+    groups = np.unique(np.column_stack([touches.setup, _numbers(touches.feature)]), axis=0)
+    out: list[IntArray] = []
+    for setup, feature in groups:
+        rows = np.flatnonzero((touches.setup == setup) & (_numbers(touches.feature) == feature))
+        rows = rows[np.argsort(touches.time[rows], kind="stable")]
+        step = np.diff(touches.time[rows])
+        usual = float(np.median(step)) if len(step) else 0.0
+        if usual > 0.0:
+            out += np.split(rows, np.flatnonzero((step > GAP * usual) | (step <= 0.0)) + 1)
+    return out
+
+
+def _numbers(feature: Labels) -> IntArray:
+    return np.unique(feature, return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> ServoLag:
+    """From the axis."""
+    check_count(KIND.usage, arguments, 1, 1)
+    axis = checked_axis(KIND.usage, arguments, arguments[0], chain)
+    return ServoLag(axis, chain.link(axis).own_component)
+
+
+def propose(touches: Touches) -> Iterable[ServoLag]:
+    """Linear axes that an instrument beside the machine saw moving together on a path.
+
+    A single axis that runs at one speed lags as it reverses: that is `backlash`.
+    """
+    if touches.instrument.is_ball_on_standard:
+        return
+    moving = [a for a in moving_axes(touches) if a in touches.chain.linear_axes]
+    on_path = [a for a in moving if _on_the_way(touches, a)]
+    if len(on_path) > 1:
+        for axis in on_path:
+            yield ServoLag(axis, touches.chain.link(axis).own_component)
+
+
+def _on_the_way(touches: Touches, axis: str) -> bool:
+    """Whether rows were taken while the axis moved."""
+    if STATED.format(axis=axis) in touches.value:
+        return True
+    q = touches.reading(axis)
+    steps = [np.abs(np.diff(q[rows])) for rows in _motions(touches) if len(rows) > 2]
+    return bool(steps) and float(np.median(np.concatenate(steps))) < SMOOTH * float(np.ptp(q))
+
+
+KIND = Kind(
+    word="servo-lag",
+    arguments="axis",
+    title="servo lag on a path",
+    synonyms="servo mismatch, following error, gain mismatch, Kv, velocity error, ball bar "
+    "ellipse, circularity at feed, contouring error",
+    formula="E = -T v, v the speed of the axis; on a circle dr = -(F (T_X - T_Y)/2) sin 2 theta",
+    units="T: ms",
+    typical="differences of 0.05 to 1 ms between axes",
+    source="Kakino et al. 1993; ISO 230-4 (circular tests, both directions)",
+    make=make,
+    propose=propose,
+    classes=(ServoLag,),
+)

@@ -1,0 +1,55 @@
+"""Text tables whose columns stand below one another, with nothing but blanks between them."""
+
+import re
+from collections import Counter
+
+_WIDE = re.compile(r"\s{2,}|\t")
+_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?\Z")
+
+ALIKE = 0.8
+"""Share of the rows of numbers with one count of columns from which a text is such a table."""
+
+
+def by_blanks(text: str) -> list[tuple[int, list[str]]]:
+    r"""Rows of a table with columns of blanks, each with its line; none where it is no such table.
+
+    Words of one cell stand a blank apart, columns two or more; where numbers stand closer every
+    blank parts them, and of a header with twice as many words two make a name (`Meas X Meas Y`).
+
+    Example:
+        >>> by_blanks("  Nom X    Meas X\n  10.0     10.1\n  20.0     20.2\n")
+        [(1, ['Nom X', 'Meas X']), (2, ['10.0', '10.1']), (3, ['20.0', '20.2'])]
+    """
+    lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
+    narrow = {i: line.split() for i, line in lines}
+    data = [i for i, _ in lines if len(narrow[i]) > 1 and _are_numbers(narrow[i])]
+    if len(data) < 2:
+        return []
+    wide = {i: _WIDE.split(line) for i, line in lines}
+    for cells in (wide, narrow):
+        width, count = Counter(len(cells[i]) for i in data).most_common(1)[0]
+        if width > 1 and count >= ALIKE * len(data) and _are_numbers_in(cells, data):
+            return [(i, _row(wide[i], narrow[i], cells[i], i in data, width)) for i, _ in lines]
+    return []
+
+
+def _row(
+    wide: list[str], narrow: list[str], own: list[str], is_data: bool, width: int
+) -> list[str]:
+    """Cells of one line: of a row of numbers as they are, of a header as many as it has columns."""
+    if is_data or len(wide) == width:
+        return own if is_data else wide
+    if len(narrow) == width:
+        return narrow
+    if len(narrow) == 2 * width:
+        return [f"{a} {b}" for a, b in zip(narrow[::2], narrow[1::2], strict=True)]
+    return wide
+
+
+def _are_numbers(cells: list[str]) -> bool:
+    """Whether more than half of the cells are numbers."""
+    return 2 * sum(bool(_NUMBER.match(c)) for c in cells) > len(cells)
+
+
+def _are_numbers_in(cells: dict[int, list[str]], data: list[int]) -> bool:
+    return sum(_are_numbers(cells[i]) for i in data) >= ALIKE * len(data)
