@@ -17,7 +17,7 @@ from artefact.compare.identifiability import (
     IdentifiabilityReport,
     identifiability_report,
 )
-from artefact.compare.proof_power import ERROR, RISK, WANTED, Power, proof_power
+from artefact.compare.power import ERROR, RISK, WANTED, Power, proof_power
 
 __all__ = [
     "ERROR",

@@ -86,8 +86,7 @@ class BodyChoice:
         limits, hides = self.blank.limits, self._hidden(touches)
         standing, holes = self._screwed(list(balls))
         fits = faces_fit(self.faces, holes, limits)
-        refused = f"between two of them cutter and probe need {least_gap(limits):g} mm"
-        binding: list[str] = []
+        refused, binding = "", list[str]()
         for _ in range(_REBUILDS):
             chosen, standing = self._between(
                 standing, hides, count, fits, proving // count, refused
@@ -97,12 +96,12 @@ class BodyChoice:
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
             if not broken:
                 return made
-            refused, binding = str(broken[0]), [c.name for c in broken]
+            refused, binding = f"; {broken[0]}", [c.name for c in broken]
             in_order = [int(face.name) for face in faces]
             for constraint in broken:
                 _blame(fits, constraint.features, [p.name for p in made.patches], in_order)
         raise NotBuildable(
-            f"no choice of {count} patches meets every limit; {refused}", binding=binding
+            f"no choice of {count} patches meets every limit{refused}", binding=binding
         )
 
     def _screwed(
@@ -136,7 +135,8 @@ class BodyChoice:
             if len(balls) <= FEWEST_BALLS:
                 raise NotBuildable(
                     f"only {len(chosen)} of {count} patches fit on the blank beside {len(balls)} "
-                    f"balls; {refused}",
+                    f"balls; between two of them cutter and probe need "
+                    f"{least_gap(self.blank.limits):g} mm{refused}",
                     fitting=len(chosen),
                 )
             balls = balls[:-1]  # the last one chosen tells least

@@ -34,6 +34,7 @@ from artefact.worth import (
     Criterion,
     CriterionOptions,
     TouchOptions,
+    Visibility,
     ball_places,
     chosen_poses,
     chosen_touches_on,
@@ -184,17 +185,13 @@ def design_standard(
     bases = _bases(criterion.plain, rivals, places, all_poses, options)
     found = _identifying(criterion, bodies, bases, options)
     standard, tried, chosen = found.standard, found.tried, found.chosen
-    requests, poses = tried[chosen], found.poses
+    requests = tried[chosen]
     here = criterion.on(replace(standard, patches=()))
-    whole = criterion.on(standard)
-    on_faces = touches_to_choose_from(reach, standard, standard.patches, poses, choice.proof)
-    proof = proving_touches(whole, on_faces, requests, choice.proof)
-    more = proving_touches(whole, tried[~chosen], requests, choice.proof)
+    proof, powers = _proving(criterion.on(standard), found, choice.proof, library, rng)
     standard = _with_shares(criterion, standard, proof)
     progress("placement", 5, 6)
     lots = random_lots(tried, len(requests), rng)
     own = evaluated(f"standard {options.name}", here, requests, lots, library, len(tried), standard)
-    powers = [proof_power(whole, requests, lot, library.effects, rng) for lot in (proof, more)]
     progress("placement", 6, 6)
     return Placement(
         standard=standard,
@@ -275,12 +272,36 @@ def _identifying(
             refused = error
             continue
         if best is None or nearness.value < best.nearness.value:
-            best = _Identifying(standard, poses, tried, chosen, nearness)
+            best = _Identifying(
+                standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
+            )
         if len(standard.spheres) == len(balls):
             break
     if best is None:
         raise refused
     return best
+
+
+def _proving(
+    criterion: Criterion,
+    found: _Identifying,
+    count: int,
+    library: Visibility,
+    rng: np.random.Generator,
+) -> tuple[Requests, tuple[Power, Power]]:
+    """Touches that prove, and their power beside that of as many further touches on the balls."""
+    standard, requests = found.standard, found.tried[found.chosen]
+    on_faces = touches_to_choose_from(
+        criterion.reach, standard, standard.patches, found.poses, count
+    )
+    proof = proving_touches(criterion, on_faces, requests, count)
+    others = found.tried[~found.chosen]
+    others = others if len(others) >= count else found.tried  # the same ones once more
+    more = proving_touches(criterion, others, requests, min(count, len(others)))
+    of_faces, of_balls = (
+        proof_power(criterion, requests, lot, library.effects, rng) for lot in (proof, more)
+    )
+    return proof, (of_faces, of_balls)
 
 
 def _check_blank(base: Base, reach: ProbeReach) -> None:

@@ -141,7 +141,9 @@ def _to_change(error: DesignError) -> str:
 
     fitting, binding = error.facts.get("fitting"), error.facts.get("binding")
     keys = []
-    if isinstance(fitting, int) and fitting >= FEWEST_PATCHES:
-        keys.append(f"standard.patches (to {fitting})")
+    if isinstance(fitting, int):
+        if fitting >= FEWEST_PATCHES:
+            keys.append(f"standard.patches (to {fitting})")
+        keys.append(_KEYS["room for the ball before"])
     keys += [_KEYS.get(name, _ALWAYS) for name in binding] if isinstance(binding, list) else []
     return " or ".join(dict.fromkeys([*keys, _ALWAYS]))

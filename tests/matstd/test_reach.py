@@ -163,7 +163,7 @@ def test_patches_that_do_not_fit_are_told_with_a_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("matstd.design.design_standard", None)  # not begun
-    wide = {r"\Z": "\n[limits]\ngap_mm = 60.0\n"}
+    wide = {r"\Z": "\n[limits]\ngap_mm = 120.0\n"}
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
     for _ in range(2):
         assert main(["design", str(path), "-o", str(out)]) == 2
@@ -190,7 +190,7 @@ def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
     ("facts", "change"),
     [
         ({"fitting": 9}, "standard.patches (to 9) or limits.gap_mm or probe.radius_mm (smaller)"),
-        ({"fitting": 5}, "limits.gap_mm or probe.radius_mm (smaller) or blank.base_mm and"),
+        ({"fitting": 2}, "limits.gap_mm or probe.radius_mm (smaller) or blank.base_mm and"),
         (
             {"binding": ["mass"]},
             "limits.max_mass_kg (larger) or blank.base_mm and blank.height_mm (larger)",
