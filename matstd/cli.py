@@ -18,6 +18,8 @@ COMMANDS = {
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
     "compensate": "the identified model goes back to the control: tables, or a part program",
+    "contributions": "what every error adds along a program or at poses",
+    "machines": "the machines that come with the tool, with the source of every figure",
     "new": "a commented minimal file to start from: machine, project, run or effect",
     "effects": "the effects that can be added, each with its formula and units",
 }

@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TextIO
@@ -34,6 +35,8 @@ class _State:
 
     def words(self, now: float) -> str:
         """The stage, how much of it is done, and how long the rest of it takes at that pace."""
+        if not self.total and self.done > 1:
+            return f"{self.stage}, turn {self.done}"
         if not 0 < self.done < self.total:
             return self.stage
         left = (now - self.since) * (self.total - self.done) / self.done
@@ -49,6 +52,23 @@ def clock(seconds: float) -> str:
     """
     whole = round(seconds)
     return f"{whole} s" if whole < 60 else f"{whole // 60}:{whole % 60:02d} min"
+
+
+def turns(show: Progress) -> Callable[[float, str], None]:
+    """Progress of work that goes in turns until nothing changes: what is done, and in which turn.
+
+    Nobody knows how many turns are to come, so neither a share nor a time is told.
+    """
+    begun: Counter[str] = Counter()
+    last = ""
+
+    def tell(_share: float, doing: str) -> None:
+        nonlocal last
+        begun[doing] += doing != last
+        last = doing
+        show(doing, begun[doing], 0)
+
+    return tell
 
 
 @contextmanager
@@ -96,7 +116,7 @@ def _bars(watched: Console) -> Iterator[Progress]:
 
         def finish(but: str | None = None) -> None:
             for name, task in known.items():
-                if name != but and not bars.tasks[task].finished:
+                if name != but:
                     bars.update(task, completed=bars.tasks[task].total)
 
         def show(stage: str, done: int, total: int) -> None:
@@ -104,7 +124,7 @@ def _bars(watched: Console) -> Iterator[Progress]:
             finish(but=stage)
             if stage not in known:
                 known[stage] = bars.add_task(f"{stage:<24}", total=max(total, 1))
-            bars.update(known[stage], completed=done, total=max(total, 1))
+            bars.update(known[stage], completed=done if total else 0, total=max(total, 1))
 
         yield show
         finish()

@@ -114,6 +114,7 @@ def test_the_model_with_the_effect_leaves_noise(warm_up, tmp_path):
 # a hose that no library knows
 
 
+@pytest.mark.slow  # the users' own effect below begins where this ends
 def test_the_hose_is_unexplained_and_seen_where_it_is(tmp_path):
     matstd("diagnose", "hose.csv", "--no-report", "-o", tmp_path / "out")
     found = result(tmp_path / "out")

@@ -53,7 +53,7 @@ def check(reader, data: bytes) -> None:
     assert "\n" not in refusal
     assert len(refusal) < LONGEST
     if not refusal and reader.said is not None:
-        text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        text = data.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
         assert reader.said(text, result)
 
 

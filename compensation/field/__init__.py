@@ -23,6 +23,7 @@ from compensation.field.over_workspace import (
     rms,
     workspace,
 )
+from compensation.field.shares import Share, contributions
 from compensation.field.state import State
 
 __all__ = [
@@ -32,9 +33,11 @@ __all__ = [
     "Left",
     "MachineErrors",
     "Result",
+    "Share",
     "State",
     "actual_tip",
     "aligned",
+    "contributions",
     "correction",
     "datum_of",
     "deviation",

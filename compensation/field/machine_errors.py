@@ -167,6 +167,17 @@ class MachineErrors:
         starts = np.concatenate([[0], np.cumsum(counts)]).astype(int)
         return np.concatenate([np.arange(starts[i], starts[i + 1]) for i in self.groups[group]])
 
+    def only(self, group: str) -> "MachineErrors":
+        """The errors of one group alone."""
+        chosen, rows = self.groups[group], self.parameter_rows(group)
+        return replace(
+            self,
+            effects=tuple(self.effects[i] for i in chosen),
+            theta=tuple(self.theta[i] for i in chosen),
+            root=self.root[rows],
+            tool_root=self.tool_root[rows],
+        )
+
     def switched(self, factors: Mapping[str, float]) -> "MachineErrors":
         """The errors scaled: 0 switches off, 1 leaves, 2 doubles; later words go before earlier.
 

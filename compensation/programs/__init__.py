@@ -6,10 +6,11 @@ machine makes it without and with compensation. A new language is a module with 
 `begin` and `listed`, and its ending in `program`.
 """
 
-from compensation.programs.compensation import TOLERANCE, Compensated, compensated
+from compensation.programs.compensation import TOLERANCE, Compensated, compensated, passed
 from compensation.programs.frame import Frame
 from compensation.programs.motion import Arc, Keep, Motion
 from compensation.programs.program import Program, read_part_program
+from compensation.programs.shares_file import write_shares
 from compensation.programs.trajectory_file import write_trajectory
 
 __all__ = [
@@ -21,6 +22,8 @@ __all__ = [
     "Motion",
     "Program",
     "compensated",
+    "passed",
     "read_part_program",
+    "write_shares",
     "write_trajectory",
 ]

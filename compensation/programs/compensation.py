@@ -183,6 +183,13 @@ def compensated(
     )
 
 
+def passed(program: Program, errors: MachineErrors) -> Touches:
+    """Poses that a program passes, as it is, in the order of the motion."""
+    path = _Path(program, errors)
+    which, share = _shares(_begun(path, TOLERANCE))
+    return path.touches(which, share)
+
+
 MOST_U = 200
 """Points at which the uncertainty is taken: it varies slowly along a program."""
 
@@ -213,17 +220,15 @@ def _begun(path: _Path, tolerance: float) -> IntArray:
 
 def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray, Array, Array]:
     """Motions, shares and compensated coordinates of the ends of all lines, in order."""
-    which = np.repeat(np.arange(len(pieces)), pieces)
-    number = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    share = (number + 1.0) / pieces[which]
+    which, share = _shares(pieces)
     at = path.needed(which, share)
     # a short line of its own is within the spacing over which the field is straight
     is_checked = np.array(
         [p > 1 or m.arc is not None for p, m in zip(pieces, path.motions, strict=True)]
     )
     todo = np.flatnonzero(is_checked[which] & ~np.isin(which, _rapids(path)))
-    low, low_at = (number / pieces[which])[todo], np.empty((len(todo), at.shape[1]))
-    is_first = number[todo] == 0
+    low, low_at = (share - 1.0 / pieces[which])[todo], np.empty((len(todo), at.shape[1]))
+    is_first = np.append(True, which[1:] != which[:-1])[todo]
     low_at[~is_first] = at[todo[~is_first] - 1]
     low_at[is_first] = path.needed(which[todo[is_first]], np.zeros(int(is_first.sum())))
     ends = [(which, share, at)]
@@ -246,6 +251,13 @@ def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray,
     which, share, at = (np.concatenate(parts) for parts in zip(*ends, strict=True))
     order = np.lexsort((share, which))
     return which[order], share[order], at[order]
+
+
+def _shares(pieces: IntArray) -> tuple[IntArray, Array]:
+    """Motion and share at the end of every line, for motions in so many lines, (N,) each."""
+    which = np.repeat(np.arange(len(pieces)), pieces)
+    number = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    return which, (number + 1.0) / pieces[which]
 
 
 def _rapids(path: _Path) -> IntArray:

@@ -31,7 +31,7 @@ WINDOW = 0.2
 """Share of the square explained by the best period of the scan by which another may fall behind and
 still be refined: between two scanned ones up to a tenth is lost."""
 
-REFINED = 60
+REFINED = 200
 """Most periods that are refined."""
 
 LEVELS = 6

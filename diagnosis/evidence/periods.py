@@ -12,7 +12,6 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from diagnosis.evidence.effect_signatures import (
-    GRID_MOST,
     Grid,
     ResidualSpace,
     tuned_variants,
@@ -22,6 +21,10 @@ from twin.model import Effect, Inner, Tunable, columns
 
 KEPT = 300
 """Periods of a long scan that get a signature."""
+
+WHOLE = 1_000_000
+"""Touches times periods up to which all get one: 16 MB, and no spectrum that knows nothing of what
+the model can imitate has to choose among them."""
 
 FINE = 8.0
 """Bins of a reading in the shortest period: within a bin a sine turns by 45 degrees and keeps 97 %
@@ -50,7 +53,7 @@ def scanned_grids(candidates: Sequence[Effect], complement: ResidualSpace) -> li
     out = []
     for effect in candidates:
         inner = period_of(effect, complement)
-        if inner is None or len(inner.grid) <= GRID_MOST:
+        if inner is None:
             variants = tuple(tuned_variants(effect, complement.touches))
             out.append(Grid(effect, variants, len(variants)))
             continue
@@ -62,7 +65,7 @@ def scanned_grids(candidates: Sequence[Effect], complement: ResidualSpace) -> li
 
 
 def strongest(effect: Tunable, inner: Inner, complement: ResidualSpace, residual: Array) -> Array:
-    """Periods at which a residual over an axis is strongest, ascending, at most `KEPT`; mm.
+    """Periods at which a residual over an axis is strongest, ascending; of few touches all; mm.
 
     Half are the strongest of all, half those that stand out most from their neighbours: a slow
     residual hides a small wave in the power that it spreads.
@@ -74,7 +77,7 @@ def strongest(effect: Tunable, inner: Inner, complement: ResidualSpace, residual
         residual: Whitened, data rows first, (N + ...,).
     """
     grid = np.asarray(inner.grid, dtype=float)
-    if len(grid) <= KEPT:
+    if len(grid) <= KEPT or len(grid) * len(complement.u) <= WHOLE:
         return grid
     q = complement.touches.reading(inner.over)[complement.used]
     # at an endless period the cosine is what the effect does to every touch per unit

@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
     from diagnosis.files import write_comparison, write_residuals
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs, with_pitches
-    from matstd.progress import stages
+    from matstd.progress import stages, turns
     from report.words import remark_sentence, structure_words
     from twin.record import without_copies
 
@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
             run,
             model,
             saved.estimates if saved else None,
-            lambda share, doing: show(doing, int(100 * share), 100),
+            turns(show),
             saved.learnt(without_copies(run)) if saved else None,
         )
         write_comparison(

@@ -68,16 +68,14 @@ def run(args: argparse.Namespace) -> int:
 
     from matstd.folder import results_folder
     from matstd.inputs import read_inputs, with_pitches
-    from matstd.progress import stages
+    from matstd.progress import stages, turns
 
     same = "so that its estimates are made anew: no touch counts twice"
     run, saved = read_inputs(args.run_files, model_file(args), args.effects, same, args.hold_out)
     run = with_pitches(run, args.pitch)
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
-        result = _diagnosed(
-            args, run, saved, lambda share, doing: show(doing, int(100 * share), 100)
-        )
+        result = _diagnosed(args, run, saved, turns(show))
         _write(args, result, saved, folder)
         if not args.no_report:
             from report.pages import write_diagnosis_page

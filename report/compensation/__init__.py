@@ -2,6 +2,7 @@
 
 from report.compensation.program_picture import draw_program
 from report.compensation.program_words import program_lines
+from report.compensation.shares_picture import draw_shares_along, share_lines
 from report.compensation.table_page import write_compensation_page
 from report.compensation.table_pictures import draw_errors_left, draw_shares
 from report.compensation.table_words import (
@@ -16,9 +17,11 @@ __all__ = [
     "draw_errors_left",
     "draw_program",
     "draw_shares",
+    "draw_shares_along",
     "held_words",
     "program_lines",
     "result_sentence",
+    "share_lines",
     "table_lines",
     "write_compensation_page",
 ]

@@ -28,14 +28,19 @@ def control_title(name: str) -> str:
 def result_sentence(result: Result) -> str:
     """Before, after, and what to expect with a model that is not the truth, rms."""
     before, after = rms(result.before) / UM, rms(result.after) / UM
-    words = f"{digits(before)} -> {digits(after)} µm rms over the workspace"
+    words = f"{digits(before)} -> {_small(after)} µm rms over the workspace"
     worst = np.linalg.norm(result.after, axis=1).max() / UM
-    words += f" (worst of {len(result.q)} poses {digits(worst)} µm)"
+    words += f" (worst of {len(result.q)} poses {_small(worst)} µm)"
     if result.u_rms > NM:
         numbers = (result.u_rms, result.expected_before, result.expected)
         u, was, will = (digits(v / UM, 2) for v in numbers)
         words += f"; the model is known to {u} µm there, so expect {was} -> {will} µm"
     return words
+
+
+def _small(value: float) -> str:
+    """µm, nothing below a nanometre."""
+    return digits(value) if value >= 1e-3 else "< 0.001"
 
 
 def held_words(left: Left) -> str:

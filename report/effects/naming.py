@@ -93,9 +93,17 @@ def _class(effects: Sequence[Effect]) -> tuple[str, list[str], list[str]]:
     """Text of the first title, the bodies of all that share it, and the titles of the rest."""
     titles = [title_of(e) for e in effects]
     text = titles[0].text
-    bodies = [_BODIES.get(t.carrier, t.carrier) for t in titles if t.text == text]
-    others = [_whole(t) for t in titles if t.text != text]
-    return text, list(dict.fromkeys(bodies)), list(dict.fromkeys(others))
+    bodies = {other.text: _bodies(titles, other.text) for other in titles}
+    others = [
+        f"{other} (carried by {_few(bodies[other])})" if len(bodies[other]) > 1 else whole
+        for other, whole in {t.text: _whole(t) for t in titles if t.text != text}.items()
+    ]
+    return text, bodies[text], others
+
+
+def _bodies(titles: Sequence[Title], text: str) -> list[str]:
+    """What carries the effects that share a text, each once."""
+    return list(dict.fromkeys(_BODIES.get(t.carrier, t.carrier) for t in titles if t.text == text))
 
 
 def _whole(title: Title) -> str:

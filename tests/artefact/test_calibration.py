@@ -7,40 +7,15 @@ import numpy as np
 import pytest
 
 from artefact.layout.sites import Blank
-from artefact.reach.probe_clearance import ProbeShape
-from artefact.reach.touchable import ProbeReach
 from artefact.worth import ball_choice
 from artefact.worth.calibration import Calibration
 from artefact.worth.touch_choice import each_at, face_grid, sphere_grid, table_poses
-from artefact.worth.touch_criterion import criterion_for
 from information.criteria.posterior import Posterior
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
 from twin.errors import DesignError
 from twin.frames import apply, fixed_xyz, pose
-from twin.machine.chain import Axis, make_chain
-from twin.record.touches import Setup
 from twin.units import DEG, NM, UM
 
-PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
-MILL = make_chain(
-    "mill",
-    "[w C' X' f Y Z t]",
-    {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"} | {"C": Axis((-200.0 * DEG, 200.0 * DEG))},
-    (0.0, 0.0, -400.0),
-)
-POSE = np.zeros((1, 1))
 ALGEBRA = 1e-8  # relative: a marginal by a Cholesky factor against a block of an inverse
-
-
-@pytest.fixture(scope="module")
-def criterion():
-    area = Workspace(
-        MILL, {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}, 160.0
-    )
-    reach = ProbeReach(MILL, Setup("a"), PROBE, 160.0)
-    model = Population(MILL).model
-    return criterion_for(reach, model, Blank(), area, 1.0 * UM, np.random.default_rng(4))
 
 
 @pytest.fixture(scope="module")

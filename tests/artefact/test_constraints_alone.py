@@ -22,7 +22,6 @@ from artefact.reach.touchable import ProbeReach, Requests
 from artefact.worth.touch_choice import TouchOptions
 from sensitivity.first_order.workspace import Workspace
 from twin.errors import NotBuildable, NotReachable, OutsideTravel
-from twin.machine.chain import Axis, make_chain
 from twin.record.touches import Setup
 from twin.units import DEG
 
@@ -151,22 +150,6 @@ def test_a_groove_too_narrow_for_ball_and_cutter(standard):
     made = replace(standard, patches=(tiny, *standard.patches[1:]))
     names = {c.name for c in constraints(made, LIMITS) if c.slack < 0.0}
     assert "smallest concave radius" in names
-
-
-@pytest.fixture(scope="module")
-def chain():
-    return make_chain(
-        "HSM 600U",
-        "[w C' B' X' f Y Z (C1) t]",
-        {
-            "X": Axis(range=(-400.0, 400.0)),
-            "Y": Axis(range=(-300.0, 300.0)),
-            "Z": Axis(range=(-500.0, 0.0)),
-            "B": Axis(range=(-110.0 * DEG, 30.0 * DEG), point=(0.0, 0.0, -420.0)),
-            "C": Axis(range=(-360.0 * DEG, 360.0 * DEG)),
-        },
-        (0.0, 0.0, -500.0),
-    )
 
 
 def touch(standard, feature, uv, c_b):

@@ -16,12 +16,10 @@ from artefact.reach.touchable import ProbeReach
 from artefact.worth.touch_choice import TouchOptions, table_poses
 from artefact.worth.touch_criterion import CriterionOptions
 from information.criteria.posterior import Posterior
-from sensitivity.first_order.workspace import Workspace
 from sensitivity.population.dependence import Group, grouped
 from sensitivity.population.sampling import Population
 from sensitivity.population.scales import drawn_scales
 from twin.errors import DesignError, NotBuildable, NotReachable
-from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import table_to_tool, tip
 from twin.record.touches import Setup
 from twin.units import DEG, NM
@@ -32,34 +30,6 @@ LENGTH = 160.0
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
 CHOICE = TouchOptions(touches=160, poses=12)
 OPTIONS = PlacementOptions(name="trial", patches=8, sites=90, choice=CHOICE)
-
-
-@pytest.fixture(scope="module")
-def chain():
-    return make_chain(
-        "HSM 600U",
-        "[w C' B' X' f Y Z (C1) t]",
-        {
-            "X": Axis(range=(-400.0, 400.0)),
-            "Y": Axis(range=(-300.0, 300.0)),
-            "Z": Axis(range=(-500.0, 0.0)),
-            "B": Axis(range=(-110.0 * DEG, 30.0 * DEG), point=(0.0, 0.0, -420.0)),
-            "C": Axis(range=(-360.0 * DEG, 360.0 * DEG)),
-        },
-        (0.0, 0.0, -500.0),
-    )
-
-
-@pytest.fixture(scope="module")
-def workspace(chain):
-    limits = {
-        "X": (-150.0, 150.0),
-        "Y": (-150.0, 150.0),
-        "Z": (-400.0, -150.0),
-        "B": (-90.0 * DEG, 20.0 * DEG),
-        "C": (-180.0 * DEG, 180.0 * DEG),
-    }
-    return Workspace(chain, limits, LENGTH)
 
 
 @pytest.fixture(scope="module")

@@ -3,38 +3,14 @@
 import numpy as np
 import pytest
 
-from artefact.layout.sites import Blank
-from artefact.reach.probe_clearance import ProbeShape
-from artefact.reach.touchable import ProbeReach
-from artefact.worth.touch_criterion import criterion_for, random_touches
+from artefact.worth.touch_criterion import random_touches
 from artefact.worth.touch_curves import TouchCurve, touch_curve
 from information.criteria.posterior import Posterior
 from report.plots.touch_curve_picture import draw_touch_curves
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
 from twin.errors import DesignError
-from twin.machine.chain import Axis, make_chain
-from twin.record.touches import Setup
-from twin.units import DEG, UM
+from twin.units import UM
 
-PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
-MILL = make_chain(
-    "mill",
-    "[w C' X' f Y Z t]",
-    {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"} | {"C": Axis((-200.0 * DEG, 200.0 * DEG))},
-    (0.0, 0.0, -400.0),
-)
 ALGEBRA = 1e-6  # relative: trace of a form against the sum over poses
-
-
-@pytest.fixture(scope="module")
-def criterion():
-    area = Workspace(
-        MILL, {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}, 160.0
-    )
-    reach = ProbeReach(MILL, Setup("a"), PROBE, 160.0)
-    model = Population(MILL).model
-    return criterion_for(reach, model, Blank(), area, 1.0 * UM, np.random.default_rng(4))
 
 
 @pytest.fixture(scope="module")

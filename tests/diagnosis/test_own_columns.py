@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
 from diagnosis.answer.comparison import compare
@@ -17,9 +18,7 @@ from diagnosis.fit.prior import Prior
 from diagnosis.search.task import DiagnosisTask
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
-from twin.machine.chain import Axis, make_chain
 from twin.record.run import Run
-from twin.record.touches import Setup, Touches
 from twin.units import MINUTE, UM
 
 N = 150
@@ -42,17 +41,8 @@ def run() -> Run:
         max_step=30.0,
         rtol=1e-8,
     ).y[0]
-    touches = Touches(
-        chain=make_chain("gauge", "[w f Z t]", {"Z": Axis((0.0, 350.0))}),
-        q=np.zeros((N, 1)),
-        length=np.zeros(N),
-        radius=np.zeros(N),
-        point=np.zeros((N, 3)),
-        normal=np.tile([0.0, 0.0, 1.0], (N, 1)),
-        setups=(Setup("a"),),
-        setup=np.zeros(N, dtype=np.int64),
-        time=time,
-        approach=np.zeros((N, 1)),
+    touches = gauge_touches(
+        time,
         value={"coolant_bar": pressure},
     )
     # Z longer on the tool side: a surface that looks up seems to stand lower

@@ -249,3 +249,15 @@ def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets(
     assert confusion.alike is not None
     assert confusion.alike.pitch == 10.0
     assert len(confusion.alike.periods) > 3
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_the_true_period_is_named_or_listed_where_targets_are_few_and_uneven(seed: int) -> None:
+    """Every period is tried: eleven targets know little of a spectrum."""
+    targets = np.array([3.7, 41.3, 78.2, 127.9, 161.4, 209.6, 242.1, 291.8, 328.3, 372.7, 397.9])
+    found = diagnose(positioning(targets, 10.0, 2.1 * UM, seed))
+    (step,) = found.steps[1:]
+    assert step.effect is not None
+    (period,) = step.effect.tuning.values()
+    alike = () if step.confusion.alike is None else step.confusion.alike.periods
+    assert any(abs(p - 10.0) < 0.05 for p in (period, *alike))

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
 from diagnosis.answer.comparison import compare
@@ -29,10 +30,8 @@ from report.words.diagnosis_words import named_value, promise_sentence
 from twin.errors import DesignError
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
-from twin.machine.chain import Axis, make_chain
 from twin.model.model import columns
 from twin.record.run import Run
-from twin.record.touches import Setup, Touches
 from twin.thermal.thermal_field import field
 from twin.units import MINUTE, UM
 
@@ -73,17 +72,8 @@ def record(seed: int = 3, wander: float = 0.0) -> Run:
     for i in range(1, N):
         slow[i] = 0.97 * slow[i - 1] + np.sqrt(1.0 - 0.97**2) * slow[i]
     z += wander * slow
-    touches = Touches(
-        chain=make_chain("gauge", "[w f Z t]", {"Z": Axis((0.0, 350.0))}),
-        q=np.zeros((N, 1)),
-        length=np.zeros(N),
-        radius=np.zeros(N),
-        point=np.zeros((N, 3)),
-        normal=np.tile([0.0, 0.0, 1.0], (N, 1)),
-        setups=(Setup("a"),),
-        setup=np.zeros(N, dtype=np.int64),
-        time=time,
-        approach=np.zeros((N, 1)),
+    touches = gauge_touches(
+        time,
         temperature={"bed": bed, "frame": frame},
     )
     return Run(touches, z * UM, np.full(N, STATED))

@@ -20,7 +20,9 @@ from diagnosis.geometry.changes import changing
 from diagnosis.geometry.learnt import Rung, changed_runs
 from matstd.cli import main
 from report.geometry.trend_words import change_sentences
+from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
+from twin.model.model import Model
 from twin.record.several_runs import joined
 from twin.units import UM, URAD
 
@@ -90,7 +92,8 @@ def test_where_nothing_changed_it_says_so_and_knows_more() -> None:
     assert np.mean(better) > 0.9
 
 
-def test_an_effect_of_all_runs_is_known_better_than_from_either() -> None:
+@pytest.mark.slow
+def test_an_effect_of_all_runs_is_found_and_known_better_than_from_either() -> None:
     lag = named(np.random.default_rng(1), read_machine(MACHINES[MACHINE]), "thermal-lag(EZZ)")
     lag.amplitude = 8.0
     runs = made(5, [{}, {"EC0Y": CHANGE}], [lag])
@@ -104,6 +107,18 @@ def test_an_effect_of_all_runs_is_known_better_than_from_either() -> None:
     assert abs(sizes[-1].value - lag.amplitude) < COVERED * sizes[-1].u
     assert sizes[-1].u < min(s.u for s in sizes[:-1])
     assert "EC0Y" in {r.symbol for r in both.geometry.rows if r.has_changed}
+
+
+def test_an_effect_of_all_runs_is_known_better_than_from_one(knocked) -> None:
+    """Fitted, not searched: the same lag in one run and in both."""
+    runs, u = joined(knocked), []
+    lag = parse_effect("thermal-lag(EZZ)", runs.touches.chain)
+    for run in (knocked["a"], runs):
+        model = ordinary_model(run.touches.chain)
+        fit = fit_run(run, Model(model.chain, (*model.effects, lag)))
+        place = fit.of_effect(lag.name)
+        u.append(float(np.sqrt(fit.covariance[place, place].item())))
+    assert u[1] < 0.9 * u[0]
 
 
 def test_a_slow_change_is_seen_though_no_step_of_it_would_be() -> None:

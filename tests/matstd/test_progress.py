@@ -6,13 +6,22 @@ import time
 
 import pytest
 
-from matstd.progress import _lines, _State, clock
+from matstd.progress import _lines, _State, clock, turns
 
 
 def test_the_rest_takes_as_long_as_its_share() -> None:
     state = _State("random machines", done=25, total=100, since=100.0)
     assert state.words(130.0) == "random machines: 25 %, about 1:30 min left"
     assert _State("STEP and STL", 0, 1, 0.0).words(9.0) == "STEP and STL"
+
+
+def test_turns_that_nobody_can_foresee_are_counted() -> None:
+    """A search begins anew, and its share with it: no time is promised that will not hold."""
+    told: list[str] = []
+    tell = turns(lambda *shown: told.append(_State(*shown).words(99.0)))
+    for share, doing in ((0.2, "sets"), (0.8, "sets"), (0.5, "structure"), (0.2, "sets")):
+        tell(share, doing)
+    assert told == ["sets", "sets", "structure", "sets, turn 2"]
 
 
 @pytest.mark.parametrize(("seconds", "words"), [(0.4, "0 s"), (59.4, "59 s"), (60.0, "1:00 min")])

@@ -51,6 +51,11 @@ def test_what_else_it_may_be_is_told_beside_the_bodies() -> None:
     )
 
 
+def test_other_titles_that_share_their_words_are_told_once() -> None:
+    words = class_words(step(*LAGS[:2], "thermal-static(EZZ,room)", "thermal-static(EZY,room)"))
+    assert "it may as well be growth along Z with room (carried by Z or Y)) [" in words
+
+
 def test_an_effect_alone_names_its_body_where_its_title_does_not() -> None:
     assert class_words(step("thermal-lag(EZB)")) == (
         "growth along Z after switching on, carried by B [thermal-lag(EZB)]"

@@ -109,6 +109,15 @@ def test_what_is_not_said_is_asked_for(tmp_path, text, found):
         read_circle(read_sheet(tmp_path / "bar.csv"), "XY", RADIUS)
 
 
+def test_places_of_a_grid_plate_are_a_circle(tmp_path):
+    th = np.arange(0.0, 360.0, 15.0) * DEG
+    rows = [f"{RADIUS * np.cos(a) + 0.002:.6f};{RADIUS * np.sin(a):.6f}" for a in th[::-1]]
+    (tmp_path / "grid.csv").write_text("X [mm];Y [mm]\n" + "\n".join(rows))
+    test = read_circle(read_sheet(tmp_path / "grid.csv"), "XY", RADIUS)
+    assert set(test.sense) == {-1}
+    np.testing.assert_allclose(test.deviation, 0.002 * np.cos(test.angle), atol=1e-6)
+
+
 def test_a_circle_beside_the_travel_is_refused(table):
     test = read_circle(table(), "XY", RADIUS)
     with pytest.raises(DesignError, match="--centre"):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
 from twin.effects.once_more import Again
@@ -11,11 +12,10 @@ from twin.errors import BadFile, UnknownEffect
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
 from twin.library.catalogue import parse_effect, proposals
-from twin.machine.chain import Axis, make_chain
 from twin.model.model import columns
 from twin.record.copies import without_copies
 from twin.record.run import Run
-from twin.record.touches import Setup, Touches
+from twin.record.touches import Touches
 from twin.thermal.thermal_field import LAGS, ThermalField, field
 from twin.units import UM
 
@@ -27,22 +27,12 @@ INTEGRATED = 1e-6
 @pytest.fixture
 def touches() -> Touches:
     """One linear axis that stands still under a dial gauge along +Z, with two sensors."""
-    chain = make_chain("gauge", "[w f Z t]", {"Z": Axis((0.0, 350.0))})
     rng = np.random.default_rng(4)
     time = np.cumsum(rng.uniform(30.0, 90.0, N))
     bed = 25.0 + 60.0 * (1.0 - np.exp(-time / 500.0))
     frame = 22.0 + 4.0 * np.sin(time / 900.0)
-    return Touches(
-        chain=chain,
-        q=np.zeros((N, 1)),
-        length=np.zeros(N),
-        radius=np.zeros(N),
-        point=np.zeros((N, 3)),
-        normal=np.tile([0.0, 0.0, 1.0], (N, 1)),
-        setups=(Setup("a"),),
-        setup=np.zeros(N, dtype=np.int64),
-        time=time,
-        approach=np.zeros((N, 1)),
+    return gauge_touches(
+        time,
         temperature={"bed": bed, "frame": frame},
         spindle_rpm=np.where(time > 1000.0, 4000.0, 0.0),
         value={"flow_l_min": 5.0 + 3.0 * np.cos(time / 700.0)},

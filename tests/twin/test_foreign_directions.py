@@ -98,3 +98,20 @@ def test_import_tells_the_figures_and_what_is_missing(tmp_path, capsys):
     path.write_text("target [mm],1 [µm],2 [µm]\n0,1,2\n10,3,4\n", encoding="utf-8")
     assert main(["import", str(path), *arguments, "--force"]) == 0
     assert "no direction of approach is stated" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        # French, with a blank row and a mean below; a column a target; names above names, units
+        "Axe;X\n\nCible [mm];1 aller [µm];1 retour [µm]\n0,0;1,0;-1,0\n\n50,0;2,0;0,5\nMoyenne;;\n",
+        "Axis X\nTarget [mm],0,50\n1 fwd [um],1.0,2.0\n1 rev [um],-1.0,0.5\n",
+        ",Cycle 1,\nTarget,up,down\nmm,um,um\n0,1.0,-1.0\n50,2.0,0.5\n",
+    ],
+)
+def test_layouts_of_other_countries_and_programs(tmp_path, text):
+    (tmp_path / "t.csv").write_text(text, encoding="utf-8")
+    test = read_positioning(read_sheet(tmp_path / "t.csv"), "X")
+    order = np.lexsort([test.target, -test.direction])
+    np.testing.assert_allclose(test.deviation[order] / UM, [1.0, 2.0, -1.0, 0.5])
+    assert test.target[order].tolist() == [0.0, 50.0, 0.0, 50.0]

@@ -289,3 +289,15 @@ def test_angles_about_fixed_axes_come_back(angles):
         rotation(np.array([0, 0, angles[2]])) @ fixed_xyz(np.array([angles[0], angles[1], 0.0])),
         atol=EXACT,
     )
+
+
+def test_a_quill_in_brackets_stays_where_it_is():
+    """Z and W are parallel: of both as programmed axes no tip says which has moved."""
+    axes = {name: Axis((-500.0, 500.0)) for name in "XYZW"}
+    both = make_chain("both", "[w X' f Y Z W t]", axes)
+    with pytest.raises(NotReachable, match=r'4 linear axes, X, Y, Z, W; .* such as "\(W\)"'):
+        inverse_linear(both, np.zeros((1, 3)), np.zeros((1, 4)), 100.0)
+    chain = make_chain("quill", "[w X' f Y Z (W) t]", axes)
+    assert chain.linear_axes == ("X", "Y", "Z")
+    q = inverse_linear(chain, np.array([[10.0, 20.0, -30.0]]), np.zeros((1, 4)), 100.0)
+    np.testing.assert_allclose(q, [[10.0, 20.0, 70.0, 0.0]], rtol=0, atol=NM)

@@ -18,6 +18,7 @@ or tilt, R the body's rotation, with the minus of the workpiece side on C' and B
 
 import numpy as np
 import pytest
+from machines import HSM600U
 
 from twin.effects.geometric import ComponentError
 from twin.effects.location import LocationError
@@ -30,19 +31,6 @@ from twin.units import DEG, NM, UM, URAD
 
 LENGTH = 160.0
 SIZE_UM, SIZE_URAD = 1.0, 10.0
-
-HSM600U = make_chain(
-    "HSM 600U",
-    "[w C' B' X' f Y Z (C1) t]",
-    {
-        "X": Axis(range=(-400.0, 400.0)),
-        "Y": Axis(range=(-300.0, 300.0)),
-        "Z": Axis(range=(-500.0, 0.0)),
-        "B": Axis(range=(-110.0 * DEG, 30.0 * DEG), point=(0.0, 0.0, -420.0)),
-        "C": Axis(range=(-360.0 * DEG, 360.0 * DEG)),
-    },
-    table_origin=(0.0, 0.0, -500.0),
-)
 
 
 def readings(chain: Chain, **given: float) -> np.ndarray:

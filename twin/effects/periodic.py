@@ -26,8 +26,8 @@ scanned down to what they resolve."""
 FRACTIONS = 4
 """Whole fractions of a stated pitch that are scanned: starts of the thread, balls of the nut, lines
 of the encoder on the screw."""
-OVERSAMPLING = 3.0
-"""Scanned frequencies per resolvable one; the nearest keeps 95 % of a sine between two of them."""
+OVERSAMPLING = 4.0
+"""Scanned frequencies per resolvable one; the nearest keeps 97 % of a sine between two of them."""
 HIGHEST_HARMONIC = 12
 """A period of 30 degrees, which 26 distinct readings of the axis can tell from its neighbours."""
 

@@ -64,6 +64,8 @@ class CircularTest:
 def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None) -> CircularTest:
     """A circular test from a table: a row a reading, or a row an angle and a column a run.
 
+    Places `X` and `Y` from the centre, as of a grid plate, may stand for angles and deviations.
+
     Runs are told by a column of directions, by columns named for theirs (CCW, CW, G3, G2, gegen,
     im Uhrzeigersinn), else by angles that rise or fall.
 
@@ -73,13 +75,19 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         unit: Of deviations whose column names none.
 
     Raises:
-        BadFile: No column of angles or of deviations, a unit or a direction that is not stated.
+        BadFile: Neither angles and deviations nor two coordinates, a unit or a direction that is
+            not stated.
     """
     names = [bare(c) for c in sheet.columns]
     at = next((i for i, n in enumerate(names) if _ANGLE.search(n)), None)
+    letters = [_named(names, letter) for letter in plane]
+    if at is None and None not in letters:
+        return _cartesian(sheet, plane, radius, [i for i in letters if i is not None])
     if at is None:
         listed = ", ".join(map(repr, sheet.columns))
-        raise BadFile(sheet.path, "header", f"columns {listed}", "a column of angles")
+        raise BadFile(
+            sheet.path, "header", f"columns {listed}", "a column of angles, or of both coordinates"
+        )
     angle = sheet.numbers(at) * ANGLES.get(unit_of_column(sheet.columns[at]) or "deg", 1.0)
     told = next((i for i, n in enumerate(names) if i != at and _is_told(sheet, i, n)), None)
     values = [i for i, n in enumerate(names) if i not in (at, told) and _is_value(sheet, i, n)]
@@ -97,6 +105,32 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         sense=np.concatenate([p.sense[r] for p, r in both]),
         run=np.concatenate([p.run[r] for p, r in both]),
         line=np.concatenate([p.line[r] for p, r in both]),
+    )
+
+
+def _named(names: Sequence[str], letter: str) -> int | None:
+    """Column of a coordinate, by its letter."""
+    pattern = re.compile(rf"(?<![a-z]){letter}(?![a-z])", re.IGNORECASE)
+    return next((i for i, n in enumerate(names) if pattern.search(n.replace("_", " "))), None)
+
+
+def _cartesian(sheet: Sheet, plane: str, radius: float, columns: list[int]) -> CircularTest:
+    """Places on the circle, as a grid plate or two scales read them."""
+    units = [unit_of_column(sheet.columns[i]) or "mm" for i in columns]
+    if odd := [u for u in units if u not in MM]:
+        raise BadFile(sheet.path, "header", odd[0], f"one of {', '.join(MM)}")
+    x, y = (sheet.numbers(i) * MM[u] for i, u in zip(columns, units, strict=True))
+    angle = np.arctan2(y, x)
+    sense, stroke = strokes(np.unwrap(angle))
+    sense[sense == 0] = sense[sense != 0][0] if sense.any() else 1
+    return CircularTest(
+        plane=plane,
+        radius=radius,
+        angle=angle,
+        deviation=np.hypot(x, y) - radius,
+        sense=sense,
+        run=np.array([f"run{k}" for k in stroke]),
+        line=np.array(sheet.lines),
     )
 
 

@@ -10,7 +10,9 @@ from twin.record import IntArray
 DOWN = re.compile(
     r"down|\bdn\b|dwn|↓|-|−|\bneg|\brev|\bb(ack|wd|kw)|rück|ruck|zur|\bret", re.IGNORECASE
 )
-UP = re.compile(r"\bup|↑|\+|\bpos(itive?)?\b|\bf(wd|or)|\bvor|\bhin\b|\baller", re.IGNORECASE)
+UP = re.compile(
+    r"\bup|↑|\+|\bpos(itive?)?\b|\bf(wd|or)|\bvor|\bhin\b|\baller|montée|croiss", re.IGNORECASE
+)
 
 
 def signs(sheet: Sheet, column: int) -> IntArray:

@@ -27,12 +27,15 @@ from twin.record import Instrument, IntArray, Labels, Run, Setup, Touches
 Meaning = Literal["part", "standard"]
 """Who made a list: see the module."""
 
-_NOMINAL = re.compile(r"nom|soll|target|calib|ref|theor|cad", re.IGNORECASE)
-_MEASURED = re.compile(r"meas|act|ist\b|gemessen|cmm|found", re.IGNORECASE)
-_DEVIATION = re.compile(r"dev|error|abweich|fehler|\bd[xyz]\b|delta", re.IGNORECASE)
+_NOMINAL = re.compile(r"nom|soll|target|calib|ref|theor|théor|cad", re.IGNORECASE)
+_MEASURED = re.compile(r"meas|act|ist\b|\bist|gemessen|mesur|réel|cmm|found", re.IGNORECASE)
+_DEVIATION = re.compile(r"dev|err|abweich|fehler|écart|\bd[xyz]\b|delta", re.IGNORECASE)
 _AFTER_DIR = re.compile(r"\b(dir)(?=[xyz]\b)", re.IGNORECASE)
 _LETTER = re.compile(r"(?<![a-z])d?([xyz])(?![a-z])", re.IGNORECASE)
-_NAME = re.compile(r"name|label|feature|hole|point|element|bohrung|merkmal|\bid\b", re.IGNORECASE)
+_NAME = re.compile(
+    r"name|label|feature|hole|point|element|bohrung|merkmal|élément|trou|alésage|\bid\b",
+    re.IGNORECASE,
+)
 _APPROACH = re.compile(r"dir|richtung|approach|anfahr|revers|umkehr", re.IGNORECASE)
 _SETUP = re.compile(r"set-?up|part|session|date|day|aufspannung|werkst", re.IGNORECASE)
 

@@ -11,7 +11,7 @@ Reference:
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -34,18 +34,25 @@ ENOUGH_CYCLES = 4
 """Cycles from which one can be held out: of fewer it would be more than a quarter of the test."""
 
 _TARGET = re.compile(
-    r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|\bp_?i\b", re.IGNORECASE
+    r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|cible|consigne|\bp_?i\b",
+    re.IGNORECASE,
 )
-_ACTUAL = re.compile(r"actual|measured|ist\b|istwert", re.IGNORECASE)
+_ACTUAL = re.compile(r"actual|measured|ist\b|\bist|réel|mesur", re.IGNORECASE)
 _REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)
 """The better instrument, in tables of two; a `reference position` is a target to others."""
-_DEVIATION = re.compile(r"dev|error|abweich|fehler|\bx_?ij\b", re.IGNORECASE)
+_DEVIATION = re.compile(r"dev|error|abweich|fehler|écart|erreur|\bx_?ij\b", re.IGNORECASE)
 _CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
 _DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
 _WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
 _WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
-_TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
+_TIME = re.compile(r"time|zeit|clock|heure|\btemps", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+")
+_ALONE = re.compile(
+    r"(up|down|fwd|bwd|rev|forward|backward|reverse|vor|rück|zurück|hin|aller|retour|pos|neg|[-+↑↓])"
+    r"(wards?|wärts)?\Z",
+    re.IGNORECASE,
+)
+"""A direction alone, where there is one cycle."""
 _LONGEST = 9  # digits of the number of a cycle
 
 
@@ -96,6 +103,7 @@ def read_positioning(
     Raises:
         BadFile: No column of targets or deviations, a unit that is not stated.
     """
+    sheet = _upright(sheet)
     names = [bare(c) for c in sheet.columns]
     target = _only(names, _TARGET, without=(_ACTUAL, _DEVIATION))
     target = sheet.column(named[0]) if named[0] else target
@@ -152,6 +160,23 @@ def _held(at: Array) -> Array:
     return held
 
 
+def _upright(sheet: Sheet) -> Sheet:
+    """The table with a row a target, where it has a column a target: `Target [mm], 0, 100, 200`."""
+    first = str(sheet.cells[0][0]) if len(sheet) else ""
+    if not _TARGET.search(bare(first)) or not all(isinstance(r[0], str) for r in sheet.cells):
+        return sheet
+    sheet.used.update(range(len(sheet.columns)))
+    columns = list(zip(*sheet.cells, strict=True))
+    return replace(
+        sheet,
+        columns=tuple(str(name) for name in columns[0]),
+        cells=tuple(columns[1:]),
+        lines=(sheet.lines[0],) * (len(columns) - 1),
+        above=("",) * (len(columns) - 1),
+        used=set(),
+    )
+
+
 def _wide(
     sheet: Sheet, axis: str, target: int, at: Array, unit: str | None, base: dict[str, float]
 ) -> PositioningTest:
@@ -160,16 +185,17 @@ def _wide(
     parted = _ways_of_parts(sheet)
     for i, name in enumerate(sheet.columns):
         number = _NUMBER.search(name)
-        if i == target or number is None:
+        digits = number.group(0) if number else "1" if _ALONE.match(bare(name)) else ""
+        if i == target or not digits:
             continue
-        if len(number.group(0)) > _LONGEST:
+        if len(digits) > _LONGEST:
             raise BadFile(sheet.path, "header", f"column {name[:40]!r}", "the number of a cycle")
-        rest = bare(name).replace(number.group(0), "", 1)
+        rest = bare(name).replace(digits, "", 1)
         sign = 1 if UP.search(rest) else -1 if DOWN.search(rest) else 0
         values = _deviations(sheet, i, target, at, unit, base)
         whole = np.ones(len(sheet), dtype=np.int64)
         ways = sign * whole if sign else parted
-        parts.append((at, values, int(number.group(0)) * whole, ways, sheet.lines))
+        parts.append((at, values, int(digits) * whole, ways, sheet.lines))
         signs[name] = sign
     if not parts:
         expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"

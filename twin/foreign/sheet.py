@@ -264,10 +264,12 @@ def _table(
     if first is None:
         return None
     above = [i for i in range(first) if sum(c != "" for c in rows[i][1]) >= 2]
+    width = max(len(row) for _, row in rows[first:])
+    if not above and not names and isinstance(rows[first][1][0], str):
+        names = [f"column {i + 1}" for i in range(width)]  # rows have names, as columns have else
     if not above and not names:
         expected = "a line of column names above, or --columns"
         raise BadFile(path, f"line {rows[first][0]}", "numbers", expected)
-    width = max(len(row) for _, row in rows[first:])
     if names and len(names) != width:
         raise BadFile(path, "table", f"{width} columns", f"{len(names)}, as --columns names them")
     header = tuple(names) or _header([list(rows[i][1]) for i in above[-3:]], width)

@@ -46,7 +46,7 @@ class Link:
         point: Reference point of the angular errors and of a rotary axis's line, machine frame with
             every axis at zero, (3,), mm.
         range: Smallest and largest reading, mm or rad.
-        programmed: False for a bracketed spindle, whose angle is not programmed.
+        programmed: False in brackets: a spindle that is not programmed, a quill that stays in.
         pitch: Of the screw or scale of a linear axis, mm, as its owner states it; None where nobody
             said. Knowledge of the machine, no part of its kinematics.
     """
@@ -131,8 +131,8 @@ class Chain:
 
     @cached_property
     def linear_axes(self) -> tuple[str, ...]:
-        """Names of the linear axes in chain order."""
-        return tuple(link.name for link in self.links if link.kind == "linear")
+        """Names of the programmed linear axes in chain order."""
+        return tuple(ln.name for ln in self.links if ln.kind == "linear" and ln.programmed)
 
     @cached_property
     def rotary_axes(self) -> tuple[str, ...]:

@@ -261,7 +261,9 @@ def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float)
     columns = [chain.axis_index(name) for name in chain.linear_axes]
     if len(columns) != 3:
         raise NotReachable(
-            f"machine {chain.name} has {len(columns)} linear axes; a tip position needs three"
+            f"machine {chain.name} has {len(columns)} linear axes, "
+            f"{', '.join(chain.linear_axes) or 'none'}; a tip position needs three: in brackets, "
+            'such as "(W)", an axis of the chain stays at zero'
         )
     q[:, columns] = 0.0
     D = linear_directions(chain, q)

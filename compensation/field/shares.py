@@ -1,0 +1,47 @@
+"""What every error adds to the deviation of the tool point, one switched on at a time."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from compensation.field.inverse import Datum
+from compensation.field.machine_errors import MachineErrors, deviation
+from compensation.field.over_workspace import rms
+from twin.frames import Array
+from twin.record import Touches
+
+
+class Share(NamedTuple):
+    """What one error adds, all others off.
+
+    Attributes:
+        name: Symbol of ISO 230-1, or effect.
+        field: Deviation of the tool point relative to the datum, table frame, (N, 3), mm.
+        u: Standard uncertainty of its rms size from that of the model, mm.
+    """
+
+    name: str
+    field: Array
+    u: float
+
+
+def contributions(errors: MachineErrors, touches: Touches, datum: Datum) -> tuple[Share, ...]:
+    """What every error adds along some poses, the largest first.
+
+    Each is exact; their sum is the deviation of all together to first order.
+
+    Args:
+        errors: As they are switched.
+        touches: Poses in the order of the motion.
+        datum: Where everything is zero.
+    """
+    out = []
+    for name in errors.groups:
+        alone = errors.only(name)
+        field = deviation(alone, touches) - datum.deviation(alone)
+        there = alone.touches(datum.q[None, :], datum.length)
+        some = np.unique(np.linspace(0, len(touches) - 1, min(len(touches), 100)).astype(int))
+        spread = (alone.columns(touches[some]) - alone.columns(there)) @ alone.root
+        u = float(np.sqrt(np.einsum("nik,nik->", spread, spread) / len(some)))
+        out.append(Share(name, field, u))
+    return tuple(sorted(out, key=lambda share: -rms(share.field)))

@@ -1,0 +1,37 @@
+"""What every error adds along some poses, as CSV."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from compensation.field import Share
+from twin.files import write_whole
+from twin.frames import Array
+from twin.record import Touches
+from twin.units import DEG, UM
+
+
+def write_shares(path: str | Path, touches: Touches, whole: Array, shares: Sequence[Share]) -> None:
+    """Write the table: readings, deviation of all errors together, then of each by itself, µm.
+
+    Args:
+        touches: The poses.
+        whole: Deviation of all together, (N, 3), mm.
+        shares: Of each.
+    """
+    chain = touches.chain
+    axes = list(chain.programmed_axes)
+    is_rotary = [chain.link(a).kind == "rotary" for a in axes]
+    names = [f"{a}_{'deg' if turns else 'mm'}" for a, turns in zip(axes, is_rotary, strict=True)]
+    readings = [
+        touches.reading(a) / (DEG if r else 1.0) for a, r in zip(axes, is_rotary, strict=True)
+    ]
+    fields = [("all", whole), *((s.name.replace(",", " "), s.field) for s in shares)]
+    names += [f"{name}_d{c}_um" for name, _ in fields for c in "xyz"]
+    table = np.column_stack([touches.time, *readings, *(field / UM for _, field in fields)])
+    rows = (
+        ",".join(f"{v:.5g}" if k > len(axes) else f"{v:.5f}" for k, v in enumerate(row))
+        for row in table
+    )
+    write_whole(path, "\n".join([",".join(["time_s", *names]), *rows]) + "\n")

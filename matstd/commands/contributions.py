@@ -1,0 +1,64 @@
+"""`matstd contributions`: what every error adds along a part program, or at poses."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from matstd.compensation.options import add_state
+from twin.errors import DesignError
+
+if TYPE_CHECKING:
+    from matstd.compensation.job import Job
+    from twin.record import Touches
+
+OURS = ("contributions.csv", "contributions.png")
+"""Results."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
+    parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
+    parser.add_argument("--program", metavar="IN", help="a part program (.H, .ngc)")
+    parser.add_argument("--poses", metavar="POSES.csv", help="axis readings, one row per pose")
+    add_state(parser)
+    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
+    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the table and the picture; the folder appears whole or not at all."""
+    from compensation.field import contributions, deviation
+    from compensation.programs import write_shares
+    from matstd.compensation.job import read_job
+    from matstd.console import say
+    from matstd.folder import results_folder
+    from report.compensation import draw_shares_along, share_lines
+
+    if (args.program is None) == (args.poses is None):
+        raise DesignError("expected one of --program FILE and --poses POSES.csv")
+    job = read_job(args)
+    touches = _poses(args, job)
+    with results_folder(args.output, args.force, OURS) as folder:
+        whole = deviation(job.errors, touches) - job.datum.deviation(job.errors)
+        shares = contributions(job.errors, touches, job.datum)
+        write_shares(folder / "contributions.csv", touches, whole, shares)
+        draw_shares_along(folder / "contributions.png", touches.time, whole, shares)
+    for line in share_lines(whole, shares):
+        say(line)
+    say(f"{args.output}: look at contributions.csv, contributions.png")
+    return 0
+
+
+def _poses(args: argparse.Namespace, job: Job) -> Touches:
+    """Poses that the program passes, or those of the file."""
+    from compensation.programs import Frame, passed, read_part_program
+    from twin.files import read_poses
+
+    if args.program is not None:
+        frame = Frame(job.errors.chain, job.datum)
+        return passed(read_part_program(Path(args.program), frame), job.errors)
+    q, length = read_poses(args.poses, job.errors.chain)
+    return job.errors.touches(q, length)

@@ -1,0 +1,72 @@
+"""`matstd machines`: the machines that come with the tool, with the source of every figure."""
+
+import argparse
+from importlib.resources import files
+
+ERRORS = "-errors"
+"""Ending of the name of a machine's error file."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("name", nargs="?", metavar="NAME", help="print its machine file")
+    parser.add_argument("--errors", action="store_true", help="print its error file instead")
+
+
+def names() -> list[str]:
+    """Names of the machines."""
+    folder = files("matstd").joinpath("machines")
+    stems = [path.name.removesuffix(".toml") for path in folder.iterdir()]
+    return sorted(stem for stem in stems if not stem.endswith(ERRORS))
+
+
+def text(name: str, errors: bool = False) -> str:
+    """A machine file, or its error file.
+
+    Raises:
+        DesignError: No such machine, with those that are.
+    """
+    from twin.errors import DesignError
+    from twin.words import did_you_mean
+
+    if name not in names():
+        available = ", ".join(names())
+        raise DesignError(
+            f"machine {name}: expected one of {available}{did_you_mean(name, names())}"
+        )
+    file = files("matstd").joinpath("machines", f"{name}{ERRORS if errors else ''}.toml")
+    return file.read_text(encoding="utf-8").replace("\r\n", "\n")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print the list, or a file to be kept under another name."""
+    if args.name is not None:
+        print(text(args.name, args.errors), end="")
+        return 0
+    from matstd.console import say
+
+    for name in names():
+        say(name, style="bold")
+        for line in _card(name):
+            say(f"  {line}")
+    say("matstd machines NAME > my.toml; matstd machines NAME --errors > my-errors.toml")
+    return 0
+
+
+def _card(name: str) -> list[str]:
+    """What a machine is, its chain, its travels, how many errors are known of it."""
+    import tomllib
+
+    whole = text(name)
+    table, errors = tomllib.loads(whole), tomllib.loads(text(name, errors=True))
+    travels = [f"{a} {low:g} to {high:g}" for a, (low, high) in _ranges(table)]
+    known = len(errors) - 1
+    return [
+        whole.partition("\n")[0].removeprefix("# "),
+        f"{table['chain']}; {', '.join(travels)} (mm, degrees)",
+        f"{known} published errors" if known else "no published errors",
+    ]
+
+
+def _ranges(table: dict[str, dict[str, dict[str, list[float]]]]) -> list[tuple[str, list[float]]]:
+    return [(axis, entry["range"]) for axis, entry in table["axis"].items()]

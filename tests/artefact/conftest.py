@@ -1,0 +1,28 @@
+"""What touches on a mill of three linear axes and a table are worth."""
+
+import numpy as np
+import pytest
+
+from artefact.layout.sites import Blank
+from artefact.reach.probe_clearance import ProbeShape
+from artefact.reach.touchable import ProbeReach
+from artefact.worth.touch_criterion import criterion_for
+from sensitivity.first_order.workspace import Workspace
+from sensitivity.population.sampling import Population
+from twin.machine.chain import Axis, make_chain
+from twin.record.touches import Setup
+from twin.units import DEG, UM
+
+
+@pytest.fixture(scope="module")
+def criterion():
+    mill = make_chain(
+        "mill",
+        "[w C' X' f Y Z t]",
+        {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"} | {"C": Axis((-200.0 * DEG, 200.0 * DEG))},
+        (0.0, 0.0, -400.0),
+    )
+    limits = {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}
+    reach = ProbeReach(mill, Setup("a"), ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0))), 160.0)
+    model, area = Population(mill).model, Workspace(mill, limits, 160.0)
+    return criterion_for(reach, model, Blank(), area, 1.0 * UM, np.random.default_rng(4))
