@@ -14,6 +14,7 @@ COMMANDS = {
     "simulate": "run an emitted probing program on the machine's twin and write a run file",
     "control-test": "emitted programs on an installed LinuxCNC, the exact twin as its machine",
     "evaluate": "logs of our probing programs from the control, made a run file",
+    "replan": "programs planned again for where the standard stands, as a log tells it",
     "import": "tables of instruments, CMMs and spreadsheets made a run file",
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",

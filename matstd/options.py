@@ -22,6 +22,13 @@ REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
 """Results that not every run of such a command leaves."""
 
 
+SHEET = "setup"
+"""Folder of the set-up sheet, and of the programs that are run before the others."""
+
+SHEET_FILES = (f"{SHEET}/setup.pdf", f"{SHEET}/tables/*.csv", f"{SHEET}/*_LOC.*")
+"""Of it, what not every run leaves."""
+
+
 def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = "") -> None:
     """The options -o and --force.
 

@@ -42,6 +42,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _no_lines_of_progress():
+    """A slow machine is told every ten seconds how far it is: nothing a test can count on."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("matstd.progress.PERIOD", 1e6)
+        yield
+
+
 @pytest.fixture(autouse=True)
 def _library_as_it_was():
     """Kinds that a test registers are forgotten after it: the next may have another machine."""

@@ -91,6 +91,7 @@ def test_the_growth_is_one_for_all_runs(crash):
     assert f"amplitude {size:.2f} ± {u:.2f} µm" in quoted(CRASH)
 
 
+@pytest.mark.slow  # tests/diagnosis/test_several_runs.py begins with a model as well
 def test_the_model_of_the_spring_tells_the_crash_as_well(tmp_path):
     model, since = tmp_path / "spring", tmp_path / "since"
     first = ["diagnose", str(CRASH / "spring.csv"), "--auto", "--no-report", "-o", str(model)]

@@ -2,7 +2,6 @@
 
 import hashlib
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -120,8 +119,8 @@ def state_text(state: State) -> str:
     words = [f"t={state.time / MINUTE:.6g}min"]
     if state.spindle_rpm is not None:
         words.append(f"rpm={state.spindle_rpm:.6g}")
-    given: Mapping[str, float] = state.temperature
-    return " ".join([*words, *(f"T_{name}={value:.6g}" for name, value in given.items())])
+    words += [f"T_{name}={value:.6g}" for name, value in state.temperature.items()]
+    return " ".join([*words, *(f"V_{name}={value:.6g}" for name, value in state.value.items())])
 
 
 def _digits(values: object) -> str:

@@ -52,9 +52,9 @@ from diagnosis.search import (
     refined_named,
 )
 from twin.compute import one_blas_thread
-from twin.library import ordinary_model
-from twin.model import Effect, Model
-from twin.record import Run, without_copies
+from twin.library import ordinary_model, parse_effect
+from twin.model import Effect, Model, moved_components
+from twin.record import Run, Touches, without_copies
 from twin.thermal import ThermalField
 
 PERIODS_PLANNED = 8
@@ -98,6 +98,15 @@ def diagnose(
     return with_trend(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
 
 
+def plain_curves(touches: Touches) -> list[Effect]:
+    """Scale and low degrees of every axis that moved, which a model without geometry lacks."""
+    out = []
+    for symbol in moved_components(touches):
+        degree = 1 if touches.chain.link(symbol.link).kind == "rotary" else 2
+        out.append(parse_effect(f"geometric({symbol.name},{degree})", touches.chain))
+    return out
+
+
 def _diagnosed(
     task: DiagnosisTask,
     named: Sequence[Effect],
@@ -108,6 +117,8 @@ def _diagnosed(
     """What a task lacks; arguments as of `diagnose`."""
     touches = task.run.touches
     library = candidate_effects(touches) if candidates is None else list(candidates)
+    if candidates is None and not task.model.effects:
+        library += plain_curves(touches)
     added = refined_named(task, named, progress)
     if len(added) > 1:
         check_distinct(ResidualSpace.of(task.fit()), added)

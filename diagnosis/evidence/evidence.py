@@ -254,7 +254,11 @@ def _scores(effects: EffectSet, pool: Signatures, E: Array, g: Array, share: flo
         values, along = _principal(S, g[cols])
         evidence[which], scale[which] = _scaled_evidence(effects, values, along)
         # beside what is in the set already: a large effect must not hide all smaller ones
-        seen = values * effects.dof > VISIBLE * effects.objective
+        signal, hidden = values * effects.dof, VISIBLE * effects.objective
+        seen = signal > hidden
+        # on a machine worse than its class by a thousand nothing is seen at its usual size
+        large = signal * scale[which, None] ** 2 > hidden
+        seen = np.where(seen.any(axis=1, keepdims=True), seen, large)
         whole = share * (pool.size[cols] ** 2).sum(axis=1)
         is_same = values.sum(axis=1) < SAME * whole
         seen[is_same] = False

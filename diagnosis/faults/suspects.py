@@ -121,7 +121,8 @@ def _numbers(run: Run) -> Iterator[Suspect]:
     if run.touches.radius.any():
         yield Suspect(Fault.BALL_RADIUS, (), run, (ProbeRadius(),))
     by_name = {s.name: s for s in chain.symbols}
-    yield Suspect(Fault.TOOL_LENGTH, (), run, (LocationError(by_name["EZ0t"]),))
+    if not run.touches.offset.any():  # places of reflectors are found, no key states their length
+        yield Suspect(Fault.TOOL_LENGTH, (), run, (LocationError(by_name["EZ0t"]),))
     for axis in chain.rotary_axes:
         own = [s for s in chain.symbols if s.link == axis and s.name[2] == "0"]
         lines = tuple(LocationError(s) for s in own if not s.is_angular)

@@ -259,8 +259,9 @@ def _log_evidence(objective: float, log_det: float, n: int) -> float:
 def _told(before: Fit, trial: _Trial, right: float, is_absurd: bool) -> DescriptionFault | None:
     """A mistake with the figures of the whole run; None where undoing it does not make it fit.
 
-    A number is named for what it gains beside the usual errors of the machine. An axis or a sign
-    is wrong altogether: without the mistake the run must fit, or it was not that.
+    A number is named for what it gains beside the usual errors of the machine, where it predicts
+    better or leaves a machine less odd. An axis or a sign is wrong altogether: without the mistake
+    the run must fit, or it was not that.
     """
     suspect = trial.suspect
     usual = [p.sd for e in _usual_size(suspect) for p in e.parameters]
@@ -272,6 +273,8 @@ def _told(before: Fit, trial: _Trial, right: float, is_absurd: bool) -> Descript
     after = fit_run(undone.run, ordinary_model(chain))
     falls = before.test_rms > BETTER * after.test_rms or before.widened > BETTER * after.widened
     if not suspect.free and (not falls or unit_mistake(after) is not None):
+        return None
+    if suspect.free and not falls and after.test_rms > before.test_rms:
         return None
     changed = chain.notation != before.model.chain.notation
     return DescriptionFault(

@@ -21,6 +21,7 @@ from diagnosis.regression import (
     left_out,
     noise_factor,
     replicate_factor,
+    shots,
     solve,
     whitener,
 )
@@ -29,7 +30,7 @@ from twin.effects import SetupError, setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Effect, Model, Parameter, columns
-from twin.record import Run
+from twin.record import IntArray, Run
 
 PASSES = 5
 SETTLED = 0.005
@@ -315,7 +316,7 @@ def fit_run(
         filter_ = whitener(memory, run.touches, run.u, kept)
         A[kept], y[kept] = filter_.filtered(A[kept]), filter_.filtered(y[kept])
     free = Prior.of_effects((*setups, *moved))
-    factor, widened, weight = 1.0, 1.0, row_weight(memory)
+    factor, widened, weight, shot = 1.0, 1.0, row_weight(memory), shots(run.touches)
     if beside is not None:
         factor, widened = beside.noise.factor, beside.widened
     for remaining in reversed(range(PASSES if beside is None else 1)):
@@ -323,7 +324,7 @@ def fit_run(
         belief = Prior(machine.mean, root, machine.narrowed).joined(free)
         whole = factor * weight
         X, rest = A @ belief.root / whole, (y - A @ belief.mean) / whole
-        solution, found = _solved(X, rest, train, gross)
+        solution, found = _solved(X, rest, train, gross, shot)
         chi2 = float(solution.residual @ solution.residual) * whole**2
         better = noise_factor(chi2, solution.dof)
         if abs(better / factor - 1.0) < SETTLED or not remaining:
@@ -389,10 +390,10 @@ def noise_of(run: Run, solution: Solution, z: Array, used: BoolArray, factor: fl
 
 
 def _solved(
-    X: Array, y: Array, train: BoolArray, gross: GrossErrors | None
+    X: Array, y: Array, train: BoolArray, gross: GrossErrors | None, shot: IntArray
 ) -> tuple[Solution, GrossErrors]:
     """Fit with gross errors looked for, or kept as they were found before."""
     if gross is None:
-        return find_gross(X, y, train)
+        return find_gross(X, y, train, shot)
     used = train & ~gross.rows
     return solve(X[used], y[used]), gross

@@ -94,7 +94,7 @@ def arm_functionals(fit: Fit, joints: Sequence[str]) -> Iterator[Functional]:
             for key, (_, value) in ahead.items():
                 row = weights.setdefault(key, np.zeros(len(fit.model.parameters)))
                 change = value - behind[key][1]
-                if key[0] is Quantity.JOINT_ZERO:  # an angle that may lie at half a turn
+                if key[0] in (Quantity.JOINT_ZERO, Quantity.LINK_TWIST):  # may lie at half a turn
                     change = (change + np.pi) % (2.0 * np.pi) - np.pi
                 row[start] = change / (2.0 * STEP)
     for (quantity, symbol), (axes, _) in _measures(nominal, nominal, names).items():

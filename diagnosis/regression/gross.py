@@ -7,6 +7,7 @@ from scipy.special import ndtri
 
 from diagnosis.regression.linear import BoolArray, Solution, solve
 from twin.frames import Array
+from twin.record import IntArray, Touches
 
 CHANCE = 1e-3
 """Probability that a run without gross errors is said to have one."""
@@ -65,18 +66,36 @@ def _left_out_each(X: Array, y: Array, fit: Solution, used: BoolArray) -> tuple[
     return error, variance
 
 
-def find_gross(X: Array, y: Array, allowed: BoolArray) -> tuple[Solution, GrossErrors]:
+def shots(touches: Touches) -> IntArray:
+    """Number of the shot that every row is of, (N,).
+
+    An instrument that sees a target from afar gives several coordinates at once, rows one after the
+    other at one place and time that differ in direction alone; a touch is a shot of its own.
+    """
+    if touches.radius.any():
+        return np.arange(len(touches))
+    place = np.column_stack([touches.q, touches.time, touches.setup, touches.point])
+    is_same = (place[1:] == place[:-1]).all(axis=1)
+    is_same &= (touches.normal[1:] != touches.normal[:-1]).any(axis=1)
+    return np.concatenate([[0], np.cumsum(~is_same)])
+
+
+def find_gross(
+    X: Array, y: Array, allowed: BoolArray, shot: IntArray | None = None
+) -> tuple[Solution, GrossErrors]:
     """Fit and gross errors together: take out what stands out, take back what fits after all.
 
     Every round tests all touches, inside and outside the fit alike, by the prediction of the other
     touches; the leverage is in the variance of that prediction. The scale is a median, so that
     neither chips nor an unknown effect hides a chip. The limit holds for the largest of N normal
-    scores (Bonferroni).
+    scores (Bonferroni). With one coordinate of a shot the others go: a target that was seen at
+    another moment is wrong in all, and those that are less so would pass for an effect.
 
     Args:
         X: Whitened columns, (N, P).
         y: Whitened observations, (N,).
         allowed: Rows that may be used at all (not those held out), (N,).
+        shot: Of every row, as from `shots`, (N,); None where each is one of its own.
 
     Returns:
         The fit to the used rows, in their order, and the gross errors of all rows.
@@ -96,7 +115,7 @@ def find_gross(X: Array, y: Array, allowed: BoolArray) -> tuple[Solution, GrossE
         inside = np.abs(score[used])
         bar = max(limit, BY_HALVES * float(inside.max(initial=0.0)))
         far = np.abs(score) > np.where(used, bar, limit)
-        wanted = allowed & ~_alone(far)
+        wanted = allowed & ~_whole(_alone(far), shot)
         if (wanted == used).all():
             break
         if n - int(wanted.sum()) > MOST * n:
@@ -108,6 +127,11 @@ def find_gross(X: Array, y: Array, allowed: BoolArray) -> tuple[Solution, GrossE
         used = wanted
         fit = solve(X[used], y[used])
     return fit, GrossErrors(rows=allowed & ~used, size=error, score=score, limit=limit)
+
+
+def _whole(rows: BoolArray, shot: IntArray | None) -> BoolArray:
+    """Those rows, and the others of their shots."""
+    return rows if shot is None else np.isin(shot, shot[rows])
 
 
 def _alone(far: BoolArray) -> BoolArray:

@@ -54,7 +54,7 @@ class HeldOutInDoubt:
 
 @dataclass(frozen=True, slots=True)
 class FewPoses:
-    """So few poses that errors of rotary axes, if there are any, can hardly be seen."""
+    """So few poses that errors of rotary axes, if any were set, can hardly be seen."""
 
     poses: int
     has_rotary: bool = True
@@ -215,7 +215,8 @@ def _touches(fit: Fit) -> list[Remark]:
     t = fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[fit.used], axis=0))
     if poses < MIN_POSES:
-        out.append(FewPoses(poses, bool(t.chain.rotary_axes)))
+        turns = bool(t.chain.rotary_axes) and not t.instrument.reads_angle
+        out.append(FewPoses(poses, turns))
     return out
 
 

@@ -24,6 +24,7 @@ from diagnosis.evidence import (
     quiet,
     score_all,
 )
+from diagnosis.search.nested import would_hold
 from twin.frames import Array
 from twin.model import Effect
 
@@ -245,12 +246,17 @@ class Search:
         ranked = order[np.sort(first)]
         return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
 
+    def additions(self, chosen: EffectSubset) -> list[int]:
+        """The same without what would hold a member."""
+        members, variants = [m.effect for m in chosen.members], self.pool.variants
+        return [v for v in self.ranking(chosen) if not would_hold(variants[v], members)]
+
     def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""
         out: list[EffectSubset] = []
         directions: list[Array] = []
         scores = self.scores(chosen)
-        for variant in self.ranking(chosen)[: 12 * most]:
+        for variant in self.additions(chosen)[: 12 * most]:
             if len(out) >= most or scores.evidence[variant] <= chosen.effects.evidence:
                 break
             direction = self.explained(chosen, variant)
@@ -277,7 +283,8 @@ class Search:
             improved = False
             for i in range(len(chosen.members)):
                 others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
-                best = self.ranking(others)[0]
+                ranked = self.additions(others)
+                best = ranked[0] if ranked else chosen.members[i].variant
                 gain = self.scores(others).evidence[best] - chosen.effects.evidence
                 if gain > 1e-6:
                     members = list(chosen.members)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.commands.replan import programs_of
 from matstd.commands.simulate import add_planted, checked_noise, virtual_machine
 from matstd.options import add_output, seen_from
 
@@ -49,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     dialect = read_dialect("linuxcnc")
     machine = virtual_machine(args, design / "machine.toml", for_errors, dialect)
-    files, out = _programs(design), _output_folder(args)
+    files, out = programs_of(design), _output_folder(args)
 
     def told(made: ProgramSet) -> None:
         touches = sum(program.touches for program in made.programs)
@@ -86,14 +87,3 @@ def _output_folder(args: argparse.Namespace) -> Path:
     for old in [*out.glob("*.TXT"), out / "run.csv"]:  # of an earlier run, which this one replaces
         old.unlink(missing_ok=True)
     return out
-
-
-def _programs(design: Path) -> list[Path]:
-    """Programs of a design in the order in which they are run."""
-    from twin.errors import BadFile
-
-    folder = design / "programs"
-    found = [p for p in folder.glob("*") if p.suffix.lower() in (".h", ".ngc")]
-    if not found:
-        raise BadFile(folder, "folder", "no program", "the folder that `matstd design` made")
-    return sorted(found, key=lambda p: (len(p.name), p.name))

@@ -9,7 +9,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.options import REPORT_FILES, add_output, add_pdf, asked_printer, print_report
+from matstd.options import (
+    REPORT_FILES,
+    SHEET,
+    SHEET_FILES,
+    add_output,
+    add_pdf,
+    asked_printer,
+    print_report,
+)
 from matstd.workers import add_scheduler
 
 if TYPE_CHECKING:
@@ -21,12 +29,6 @@ REFUSED = "reach-refused.png"
 
 NO_ROOM = "room-refused.png"
 """Likewise of the patches that fit side by side."""
-
-SHEET = "setup"
-"""Folder of the set-up sheet."""
-
-SHEET_FILES = (f"{SHEET}/setup.pdf", f"{SHEET}/tables/*.csv")
-"""Of it, what not every run leaves."""
 
 _KEYS = {
     "smallest concave radius": "limits.min_concave_radius_mm (smaller)",
@@ -78,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
     ):
         from matstd.design import design
         from matstd.progress import stages
-        from probe_paths.emit import make_dry_run
+        from probe_paths.locate import companions
         from report.pages import write_design_page, write_setup_page
 
         with stages() as progress, connected(args.scheduler) as workers:
@@ -87,14 +89,16 @@ def run(args: argparse.Namespace) -> int:
             remarks = write_design_page(made, folder)
             print_report(folder, printed_by)
             words, raised = dialect(project), project.workshop.dry_run_mm
-            dry_run = make_dry_run(made.plan, raised, words, feeds(project))
-            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, dry_run, words)
+            first = companions(made.plan, words, feeds(project), raised)
+            first.write(folder / SHEET)
+            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, first, words)
             print_report(sheet.parent, printed_by, sheet.stem)
     say_each(remarks)
     verdict, *others = design_lines(made.placement)
     say(verdict, style="bold")
     say_each(others)
-    say_each(f"touch dropped: {refusal}" for refusal in made.plan.refused)
+    dropped = dict.fromkeys(map(str, made.plan.refused))  # a pose is visited twice
+    say_each(f"touch dropped: {refusal}" for refusal in dropped)
     say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0

@@ -214,7 +214,8 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
         write_whole(machine, machine_text(chain, source, is_known=args.arm))
     write_run(output, measured, seen_from(output.parent, machine))
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
-    say(f"{output}: {len(measured)} readings, deviations {rms:.3f} µm rms")
+    unit = "µrad" if measured.touches.instrument.reads_angle else "µm"  # of an arm of one metre
+    say(f"{output}: {len(measured)} readings, deviations {rms:.3f} {unit} rms")
     say(f"- sign: {_SIGN[meaning]}")
     if not args.machine:
         say(f"- {machine}: made from the data; check what is marked PLACEHOLDER")

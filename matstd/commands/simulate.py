@@ -11,7 +11,9 @@ from matstd.options import add_effects, add_output, load_effects, seen_from
 if TYPE_CHECKING:
     import numpy as np
 
+    from artefact.body import Standard
     from probe_paths.campaign import VirtualMachine
+    from probe_paths.control import ReadProgram
     from probe_paths.language import Dialect
     from twin.files import SensorRecord
 
@@ -50,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
     from probe_paths.campaign import simulate
-    from probe_paths.control import stated_probe
+    from probe_paths.control import read_program, stated_probe
     from probe_paths.language import read_dialect
     from twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
     from twin.units import UM
@@ -63,6 +65,9 @@ def run(args: argparse.Namespace) -> int:
     dialect = read_dialect(args.control)
     machine = virtual_machine(args, args.machine, for_errors, dialect, record)
     probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
+    first = read_program(args.programs[0], machine.chain, probe, dialect)
+    if first.is_search:
+        return _search(args, first, standard, machine, for_noise)
     with stages() as show:
         campaign = simulate(args.programs, standard, machine, for_noise, probe, show)
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
@@ -78,6 +83,30 @@ def run(args: argparse.Namespace) -> int:
     say_each(f"planted: {text}" for text in args.add)
     say_assumed(run.touches.chain)
     say_each(run.remarks)
+    return 0
+
+
+def _search(
+    args: argparse.Namespace,
+    program: ReadProgram,
+    standard: Standard,
+    machine: VirtualMachine,
+    rng: np.random.Generator,
+) -> int:
+    """Write the log of a search, which measures nothing and leaves no run file."""
+    from matstd.console import say
+    from probe_paths.campaign import simulate_search
+    from twin.errors import DesignError
+    from twin.files import write_whole
+
+    if not args.logs or len(args.programs) > 1:
+        raise DesignError(
+            f"{program.path}: a search for the standard leaves a log and no run file: run it "
+            "alone, with --logs FOLDER"
+        )
+    for name, text in simulate_search(program, standard, machine, rng).log.items():
+        write_whole(Path(args.logs) / name, text, newline="\r\n")
+        say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd replan reads it")
     return 0
 
 

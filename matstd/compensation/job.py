@@ -10,7 +10,7 @@ import numpy as np
 from compensation.field import Datum, MachineErrors, State, datum_of, workspace
 from compensation.tables import Header, hashed, header_of
 from diagnosis.files import read_model
-from twin.errors import DesignError
+from twin.errors import DesignError, UnknownEffect
 from twin.files import parse_toml, read_errors, read_machine, read_text
 from twin.frames import Array
 from twin.library import load_installed_effects, load_user_effects
@@ -52,8 +52,16 @@ def read_job(args: argparse.Namespace) -> Job:
         time=args.after * MINUTE,
         temperature=dict(_numbers("--temperature", args.temperature)),
         spindle_rpm=args.rpm,
+        value=dict(_numbers("--value", args.value)),
     )
-    errors = _errors(args, state).switched(dict(_numbers("--switch", args.switch)))
+    try:
+        errors = _errors(args, state)
+    except UnknownEffect as error:
+        expected = "expected --temperature, --rpm or --value for all that the model follows"
+        raise DesignError(f"{args.model}: {error}; {expected}") from error
+    errors = errors.switched(dict(_numbers("--switch", args.switch)))
+    if not any(theta.any() for theta in errors.theta):
+        raise DesignError(f"{args.model}: no error of an axis is known and switched on")
     chain = errors.chain
     files = [args.model] if args.errors is None else [args.model, args.errors]
     job = Job(

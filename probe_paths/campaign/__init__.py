@@ -10,9 +10,10 @@ from probe_paths.campaign.contact_points import foot_points
 from probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
 from probe_paths.campaign.disturbances import effects_over_record, in_campaign
 from probe_paths.campaign.duration import probing_time
-from probe_paths.campaign.evaluation import evaluate
+from probe_paths.campaign.evaluation import ball_centres, evaluate
+from probe_paths.campaign.log_parts import checked_parts
 from probe_paths.campaign.order_study import Order, Ordering, orders
-from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate
+from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate, simulate_search
 from probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
@@ -23,7 +24,9 @@ __all__ = [
     "Order",
     "Ordering",
     "VirtualMachine",
+    "ball_centres",
     "check_moves",
+    "checked_parts",
     "effects_over_record",
     "evaluate",
     "foot_points",
@@ -32,4 +35,5 @@ __all__ = [
     "probing_time",
     "setup_tolerance",
     "simulate",
+    "simulate_search",
 ]

@@ -3,6 +3,7 @@
 import numpy as np
 
 from artefact.body import Meeting, Standard, contact
+from artefact.reach import Mask
 from probe_paths.control import Move, ProbeStep, ReadProgram
 from probe_paths.plan import (
     SMALLEST_GAP,
@@ -101,6 +102,13 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
     way = turn(T_artefact_table, np.einsum("nij,nj->ni", along, direction[:, columns]))
     centre = apply(T_artefact_table, tip(chain, start, clearance.probe.length))
     met = contact(clearance.standard, centre, way, clearance.probe.radius, distance)
+    if program.is_search:
+        words = np.array(
+            [f"{what} {name}".rstrip() for what, name in zip(met.meeting, met.feature, strict=True)]
+        )
+        is_met = np.isfinite(met.travel) & (met.meeting != Meeting.INSIDE)
+        _check_search(program, clearance, start + met.travel[:, None] * direction, is_met, words)
+        return
     good = (met.meeting == Meeting.SURFACE) & (met.feature == feature)
     for i in np.flatnonzero(~good)[:1]:
         found = f"a ball that {met.meeting[i]} {met.feature[i]}".rstrip()
@@ -110,6 +118,19 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
     looks = stroke_gaps(clearance, start, direction, back, distance, feature, SMALLEST_GAP)
     for stage, (gap, nearest) in looks.items():
         _refuse(program, line, gap, np.array([f"{name} {stage}" for name in nearest]))
+
+
+def _check_search(
+    program: ReadProgram, clearance: ToolClearance, end: Array, is_met: Mask, met: Labels
+) -> None:
+    """Long touches from above: each meets something before the tool comes near; raises BadFile."""
+    line = np.array([touch.line for touch in program.touches], dtype=np.int64)
+    for i in np.flatnonzero(~is_met)[:1]:
+        expected = "something of the standard under it"
+        raise BadFile(program.path, f"line {line[i]}", f"a ball that {met[i]}", expected)
+    start = np.array([touch.q for touch in program.touches])
+    gap, nearest = clearance.swept_gap(start, end, with_ball=False)
+    _refuse(program, line, gap, nearest)
 
 
 def _refuse(program: ReadProgram, line: IntArray, gap: Array, nearest: Labels) -> None:

@@ -92,6 +92,8 @@ class ContactSolver:
     def is_contact(self) -> Mask:
         """Touches of a surface, which the control reports as a contact, (N,)."""
         mask: Mask = self.meeting == Meeting.SURFACE
+        if self.program.is_search:
+            mask |= (self.meeting == Meeting.EDGE) | (self.meeting == Meeting.SIDE)
         return mask
 
     @property
@@ -106,7 +108,8 @@ class ContactSolver:
         at the actual readings, S its foot point on the surface and n the normal there. Errors
         hardly vary along the way, so the slope is that of the perfect machine.
         """
-        met = np.flatnonzero(self.is_contact)
+        self._meet_sides(time)
+        met = np.flatnonzero(self.meeting == Meeting.SURFACE)
         for _ in range(_STEPS if len(met) else 0):
             centre, radius = self._true_balls(met, time)
             for name in dict.fromkeys(self.feature[met].tolist()):
@@ -125,6 +128,18 @@ class ContactSolver:
             self.travel[met] -= np.where(np.isfinite(gap), gap, 0.0) / slope
             if np.all(np.abs(gap) < CONTACT_TOLERANCE):
                 break
+
+    def _meet_sides(self, time: Array) -> None:
+        """Edges and sides that a search meets: marched again with the ball where errors take it."""
+        rows = np.flatnonzero(self.is_contact & (self.meeting != Meeting.SURFACE))
+        if not len(rows):
+            return
+        chain, motion = self.machine.chain, self.motion[rows]
+        true, _ = self._true_balls(rows, time)
+        believed = apply(self.T_artefact_table, tip(chain, self.q[rows], self.length))
+        start = apply(self.T_artefact_table, tip(chain, self.start[rows], self.length))
+        hit = contact(self.standard, start + true - believed, motion, self.radius)
+        self.travel[rows] = np.where(np.isfinite(hit.travel), hit.travel, self.travel[rows])
 
     def _true_balls(self, rows: IntArray, time: Array) -> tuple[Array, Array]:
         """True ball centres (M, 3) in the artefact frame and radii (M,) at the trigger."""

@@ -123,6 +123,12 @@ def _probe(parts: Sequence[LogPart]) -> tuple[float, float]:
     return radius, tool_length - radius
 
 
+def ball_centres(part: LogPart, chain: Chain, dialect: Dialect | None = None) -> Array:
+    """Where a nominal machine would have the balls of a log, table frame, (N, 3), mm."""
+    q = _readings(part, chain, dialect or Dialect())
+    return tip(chain, q, part.tool_length - part.radius)
+
+
 def _readings(part: LogPart, chain: Chain, dialect: Dialect) -> Array:
     """Axis readings (N, A) of a log's touches, from what cycle 4 returned."""
     frame = ProgramFrame(chain, Probe(part.radius, part.tool_length - part.radius))

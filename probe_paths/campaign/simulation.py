@@ -12,7 +12,7 @@ from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.virtual_run import VirtualRun, run_programs
-from probe_paths.control import read_log, read_program
+from probe_paths.control import ReadProgram, read_log, read_program
 from probe_paths.plan import Probe
 from twin.compute import Progress, silent
 from twin.record import Run
@@ -38,6 +38,26 @@ class Campaign:
     def logs(self) -> Mapping[str, str]:
         """Text of every log file by name."""
         return {name: text for one in self.runs for name, text in one.log.items()}
+
+
+def simulate_search(
+    program: ReadProgram,
+    standard: Standard,
+    machine: VirtualMachine,
+    rng: np.random.Generator,
+) -> VirtualRun:
+    """What a search for the standard does on the twin, with the log that it leaves.
+
+    Raises:
+        BadFile: A touch that meets nothing, or a tool that comes too near to something, where the
+            standard is believed to stand.
+        NotReachable: A touch that meets nothing where it stands.
+        DesignError: A program made for another standard.
+    """
+    check_moves(program, standard, machine.chain)
+    (run,) = run_programs([program], standard, machine, rng)
+    run.check_done()
+    return run
 
 
 def simulate(

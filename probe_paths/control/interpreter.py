@@ -103,13 +103,13 @@ def interpret(
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head.log_lines)
-    state = _begun(path, frame)
+    state = _begun(path, frame, stated.is_search)
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
     for test in interlocks(language_of(path), frame):
         for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
-            runner.run(0, replace(_begun(path, frame), fault=test, off=off))
+            runner.run(0, replace(_begun(path, frame, False), fault=test, off=off))
     for touch in steps:
         if isinstance(touch, ProbeStep) and touch.feature not in features:
             raise BadFile(
@@ -118,13 +118,20 @@ def interpret(
                 f"feature {touch.feature}",
                 "a number of the head's list (;FEATURE <number> IS <name>)",
             )
-    return ReadProgram(path=path, name=name, heading=head, features=features, steps=tuple(steps))
+    return ReadProgram(
+        path=path,
+        name=name,
+        heading=head,
+        features=features,
+        steps=tuple(steps),
+        is_search=stated.is_search,
+    )
 
 
-def _begun(path: Path, frame: ProgramFrame) -> State:
+def _begun(path: Path, frame: ProgramFrame, is_search: bool) -> State:
     """The control when a program is started: nobody knows where its axes stand."""
     axes = len(frame.chain.axes)
-    return State(path, frame, np.full(axes, np.nan), np.zeros(axes))
+    return State(path, frame, np.full(axes, np.nan), np.zeros(axes), is_search=is_search)
 
 
 def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:

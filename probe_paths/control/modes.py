@@ -62,7 +62,8 @@ def check_cycle(state: State, block: Block, vector: Block, length: float) -> Non
         raise state.refusal(
             block, repr(block.text), f"{state.says.back} between {SHORTEST_BACK:g} mm and the path"
         )
-    if distance - back > LONGEST_SEARCH:
+    is_down = state.is_search and vector.number("z") == -1.0
+    if distance - back > LONGEST_SEARCH and not is_down:
         raise state.refusal(
             block,
             f"a path of {distance:g} mm with {state.says.back} {back:g}",

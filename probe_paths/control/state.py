@@ -46,6 +46,7 @@ class State:
         fault: What is not as planned while it is tried whether the program stops.
         stale: Counters that belong to the touch or the visit before.
         off: By how much, mm or degrees.
+        is_search: Touches may be long where they come from above.
     """
 
     path: Path
@@ -70,6 +71,7 @@ class State:
     fault: Interlock | None = None
     off: float = 0.0
     stale: set[int] = field(default_factory=set)
+    is_search: bool = False
 
     def copied(self) -> "State":
         """A state that can run on its own."""

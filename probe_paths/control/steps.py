@@ -115,6 +115,7 @@ class ReadProgram:
         heading: Standard, set-up and probe that it was made for.
         features: Name of every feature number.
         steps: In order of execution.
+        is_search: Its touches come down from above on whatever is there.
     """
 
     path: Path
@@ -122,6 +123,7 @@ class ReadProgram:
     heading: Heading
     features: Mapping[int, str]
     steps: tuple[Step, ...]
+    is_search: bool = False
 
     @property
     def touches(self) -> list[ProbeStep]:

@@ -11,6 +11,7 @@ from twin.errors import BadFile
 
 _TOUCHES = re.compile(r"TOUCHES (\d+) TO (\d+),.*")
 _DRY = re.compile(r"DRY RUN, RAISED BY [+-][\d.]+ MM, NO TOUCH")
+_SEARCH = re.compile(r"SEARCH FROM ABOVE, STANDS WITHIN [\d.]+ MM AND [\d.]+ DEG")
 _PRESET = re.compile(r"PRESET (\d+):.*")
 _TOOL = re.compile(r"TOOL (\d+) IS THE PROBE: L([+-][\d.]+) R([+-][\d.]+),.*")
 _FEATURE = re.compile(r"FEATURE (\d+) IS (\S+)")
@@ -34,11 +35,13 @@ class Promise(NamedTuple):
         touches: Numbers of the touches; none of a dry run.
         tool: Number of the probe in the tool table.
         preset: Row of the preset table.
+        is_search: Its touches are long ones from above that look for the standard.
     """
 
     touches: range
     tool: int
     preset: int
+    is_search: bool = False
 
 
 def program_name(blocks: Sequence[Block], path: Path) -> str:
@@ -174,7 +177,8 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
     ):
         if abs(float(stated) - planned) > _DIGITS:
             raise BadFile(path, f"line {line}", f"{name}{stated}", f"{planned:+.4f} as PROBE says")
-    return Promise(made, int(tool[0]), int(preset[0]))
+    is_search = any(_SEARCH.fullmatch(text) for _, text in remarks)
+    return Promise(made, int(tool[0]), int(preset[0]), is_search)
 
 
 def _remark(

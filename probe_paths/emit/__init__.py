@@ -4,7 +4,22 @@ In: a `TouchPlan` and a `Dialect`. Out: a `ProgramSet`, text of programs and mas
 interpreter has read back. What stands in a program, and in which order, is in `writer`.
 """
 
-from probe_paths.emit.program import Program, ProgramSet, make_dry_run, make_programs
+from probe_paths.emit.program import (
+    SEARCH,
+    Program,
+    ProgramSet,
+    make_dry_run,
+    make_programs,
+    make_search,
+)
 from probe_paths.emit.writer import Feeds
 
-__all__ = ["Feeds", "Program", "ProgramSet", "make_dry_run", "make_programs"]
+__all__ = [
+    "SEARCH",
+    "Feeds",
+    "Program",
+    "ProgramSet",
+    "make_dry_run",
+    "make_programs",
+    "make_search",
+]

@@ -5,7 +5,7 @@ from the stated side, looks at the status of every touch, and is read back by th
 before it is handed out.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,12 @@ from probe_paths.plan import TouchPlan
 from twin.files import write_whole
 from twin.record import IntArray
 from twin.units import MINUTE
+
+DRY_RUN, SEARCH = "DRY", "LOC"
+"""Last letters of the names of these programs."""
+
+SEARCH_FEED = 800.0
+"""Of a search, mm/min: what is found needs 0.3 mm, and its touches are 100 mm long."""
 
 
 @dataclass(frozen=True)
@@ -50,12 +56,10 @@ class ProgramSet:
     Attributes:
         programs: In order.
         masks: That they print through, by file name.
-        raised: Of a dry run, mm.
     """
 
     programs: tuple[Program, ...]
     masks: dict[str, str]
-    raised: float | None = None
 
     @property
     def duration(self) -> float:
@@ -122,7 +126,28 @@ def make_dry_run(
         clock: For its duration.
     """
     made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), raised)
-    return ProgramSet(made.programs([list(range(len(plan.visits)))]), {}, raised)
+    return ProgramSet(made.programs([list(range(len(plan.visits)))]), {})
+
+
+def make_search(
+    plan: TouchPlan,
+    within: tuple[float, float],
+    dialect: Dialect | None = None,
+    feeds: Feeds | None = None,
+    clock: Clock | None = None,
+) -> ProgramSet:
+    """One program that comes down on a standard from above wherever it stands.
+
+    Args:
+        plan: Of the search.
+        within: How far beside its place the standard may stand, mm and rad.
+        dialect: Words of the control.
+        feeds: Feeds; it touches at `SEARCH_FEED`.
+        clock: For its duration.
+    """
+    feeds = replace(feeds or Feeds(), probing=SEARCH_FEED)
+    made = _Maker(plan, dialect or Dialect(), feeds, clock or Clock(), within=within)
+    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
 
 
 class _Maker:
@@ -135,12 +160,14 @@ class _Maker:
         feeds: Feeds,
         clock: Clock,
         raised: float | None = None,
+        within: tuple[float, float] | None = None,
     ) -> None:
         self.plan, self.dialect, self.clock = plan, dialect, clock
         self.language = LANGUAGES[dialect.language]
         form, rotary = self.language.LOG, plan.chain.rotary_axes
         self.masks = shared_masks(form, dialect.log_decimals, rotary)
-        self.writer = Writer(plan, dialect, feeds, self.masks, raised)
+        self.writer = Writer(plan, dialect, feeds, self.masks, raised, within)
+        self.only = DRY_RUN if raised is not None else SEARCH if within is not None else ""
 
     @property
     def printed_masks(self) -> dict[str, str]:
@@ -150,8 +177,8 @@ class _Maker:
     def programs(self, parts: list[list[int]]) -> tuple[Program, ...]:
         """One program of each part."""
         setup = "".join(c for c in self.plan.setup.name.upper() if c.isalnum() or c == "_")
-        is_dry, count = self.writer.raised is not None, len(parts)
-        names = ["DRY"] if is_dry else [str(i + 1) for i in range(count)]
+        count = len(parts)
+        names = [self.only] if self.only else [str(i + 1) for i in range(count)]
         titles = [f"FREEFORM STANDARD, PART {i + 1} OF {count}" for i in range(count)]
         named = zip(names, titles, parts, strict=True)
         return tuple(
@@ -180,7 +207,9 @@ class _Maker:
         plan, path = self.plan, Path(f"{name}{self.language.ENDING}")
         data, masks = text.encode("ascii"), self.masks.get
         read = interpret(data, path, masks, plan.chain, plan.probe, self.dialect)
+        # what a search meets nobody knows: as long as it can take
         travel = np.full(len(read.touches), plan.options.standoff)
+        travel = np.full(len(travel), plan.distance) if read.is_search else travel
         return float(step_times(plan.chain, read.steps, self.clock, travel)[-1])
 
 

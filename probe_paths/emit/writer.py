@@ -68,6 +68,8 @@ class Writer:
         masks: By file name.
         raised: By how much a dry run is raised, which goes where the program goes and touches
             nothing, mm; None for the program itself.
+        within: How far beside its place the standard may stand in a search from above, mm and rad;
+            None for any other program.
     """
 
     def __init__(
@@ -77,9 +79,10 @@ class Writer:
         feeds: Feeds,
         masks: Mapping[str, str],
         raised: float | None = None,
+        within: tuple[float, float] | None = None,
     ) -> None:
         self.plan, self.dialect, self.feeds, self.masks = plan, dialect, feeds, masks
-        self.raised = raised
+        self.raised, self.within = raised, within
         self.language = LANGUAGES[dialect.language]
         self.frame = ProgramFrame(plan.chain, plan.probe)
         self.rotary = plan.chain.rotary_axes
@@ -133,11 +136,23 @@ class Writer:
                 if self.raised is None
                 else f"DRY RUN, RAISED BY {self.raised:+.1f} MM, NO TOUCH"
             ),
+            *self._spread(),
             k.comment(
                 f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT"
             ),
             k.comment(f"TOOL {self.dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN"),
             k.comment("TABLE MUST BE FREE TO TURN WITH Z RETRACTED"),
+        ]
+
+    def _spread(self) -> list[str]:
+        """What a search says of itself."""
+        if self.within is None:
+            return []
+        mm, angle = self.within
+        return [
+            self.language.comment(
+                f"SEARCH FROM ABOVE, STANDS WITHIN {mm:.1f} MM AND {angle / DEG:.2f} DEG"
+            )
         ]
 
     def _stock(self) -> list[str]:

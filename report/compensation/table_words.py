@@ -53,7 +53,7 @@ def table_lines(played: Played) -> Iterator[tuple[str, bool]]:
     """Lines on the console, and whether each is the first of its control."""
     yield f"{control_title(played.format)}: {result_sentence(played.result)}", True
     where = "over the workspace" if played.by_name else "along the axes through the datum"
-    bound = digits(played.interpolation / UM, 2)
+    bound = _small(played.interpolation / UM)
     yield f"- interpolation and rounding leave at most {bound} µm {where}", False
     held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
     if held:

@@ -21,7 +21,12 @@ _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 _TURNS = {"A": "X", "B": "Y", "C": "Z"}
 """Direction about which a letter turns."""
 
-ARM = (Quantity.JOINT_ZERO, Quantity.LINK_LENGTH, Quantity.JOINT_OFFSET)
+ARM = (
+    Quantity.JOINT_ZERO,
+    Quantity.LINK_LENGTH,
+    Quantity.LINK_TWIST,
+    Quantity.JOINT_OFFSET,
+)
 """What the calibration of a serial arm finds."""
 
 USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)

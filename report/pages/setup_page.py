@@ -5,6 +5,7 @@ from pathlib import Path
 from probe_paths.campaign import setup_tolerance
 from probe_paths.emit import ProgramSet
 from probe_paths.language import LANGUAGES, Dialect, Label, Q, interlocks
+from probe_paths.locate import Companions
 from probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, TouchPlan, calibration_hash
 from report.pages.page import write_page
 from report.plots import write_setup_picture
@@ -28,19 +29,22 @@ _REMEDY = {
 
 
 def write_setup_page(
-    folder: Path, plan: TouchPlan, programs: ProgramSet, dry_run: ProgramSet, dialect: Dialect
+    folder: Path,
+    plan: TouchPlan,
+    programs: ProgramSet,
+    others: Companions,
+    dialect: Dialect,
 ) -> Path:
-    """Write the sheet with its drawing and the dry run; the path of the page.
+    """Write the sheet with its drawing; the path of the page.
 
     Args:
         folder: To be made.
         plan: Of the programs.
         programs: As written.
-        dry_run: Of the plan.
+        others: That are run before them.
         dialect: Of the control.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    dry_run.write(folder)
     write_setup_picture(folder / PICTURE, plan)
     T = plan.setup.T_table_artefact
     tests = interlocks(LANGUAGES[dialect.language], ProgramFrame(plan.chain, plan.probe))
@@ -69,8 +73,7 @@ def write_setup_page(
         visits=len(plan.visits),
         refused=[str(refusal) for refusal in plan.refused],
         alarms=[(int(t.label), t.what, f"{t.limit:g}", _REMEDY[t.label]) for t in tests],
-        dry_run=dry_run.programs[0],
-        raised=dry_run.raised,
+        others=others,
         start=int(Q.START),
         missed=int(Label.NO_CONTACT),
         tolerance=tolerance,

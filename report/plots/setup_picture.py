@@ -31,6 +31,13 @@ def write_setup_picture(path: str | Path, plan: TouchPlan) -> None:
             top.annotate(solid.name, (solid.x, solid.y), color=RED, fontsize=7, ha="center")
     base = apply(T_face_artefact, _outline(plan.standard.base.body))
     top.plot(*base[:, :2].T, color=BLUE, lw=1.4)
+    for patch in plan.standard.patches:
+        a, b = patch.half_size
+        corners = np.array([[-a, -b, 0.0], [a, -b, 0.0], [a, b, 0.0], [-a, b, 0.0], [-a, -b, 0.0]])
+        face = apply(T_face_artefact @ patch.T_artefact_patch, corners)
+        top.fill(*face[:, :2].T, facecolor=BLUE, alpha=0.15, edgecolor=BLUE, lw=0.8)
+        top.annotate(patch.name, face[:4, :2].mean(axis=0), color=INK, fontsize=7, ha="center",
+                     va="center")  # fmt: skip
     for sphere in plan.standard.spheres:
         centre = apply(T_face_artefact, sphere.centre[None])[0]
         top.plot(*centre[:2], "o", color=BLUE, ms=4)

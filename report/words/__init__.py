@@ -19,6 +19,7 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
+from report.words.probe_words import located_lines
 from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (
     dominant_words,
@@ -36,6 +37,7 @@ __all__ = [
     "design_lines",
     "dominant_words",
     "learnt_lines",
+    "located_lines",
     "microns",
     "place_words",
     "promise_sentence",

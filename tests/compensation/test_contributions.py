@@ -32,7 +32,16 @@ def test_one_by_hand(known, datum, bench_chain):
 def test_command(bench, errors_file, tmp_path, capsys):
     source, out = tmp_path / "part.ngc", tmp_path / "out"
     source.write_text("G0 X0 Y0 Z0\nG1 X200 F1000\nG1 B-30\nM30\n")
-    command = ["contributions", str(bench), "--errors", str(errors_file), "--datum", "Z=-200"]
+    command = [
+        "contributions",
+        str(bench),
+        "--errors",
+        str(errors_file),
+        "--datum",
+        "Z=-200",
+        "--tool-length",
+        "0",
+    ]
     command += ["--program", str(source), "-o", str(out), "--switch", "EBX=0"]
     assert main(command) == 0
     said = capsys.readouterr().out

@@ -274,11 +274,48 @@ def test_commands(bench, errors_file, tmp_path, capsys):
         (["--within", "X=9:3"], "the smaller end first"),
         (["--control", "fanuc"], "control fanuc: expected one of iso230"),
         (["--switch", "EQQ=0"], "expected one of"),
+        (["--switch", "all=0"], "no error of an axis is known and switched on"),
         (["--temperature", "bed=warm"], "--temperature bed=warm"),
     ],
 )
 def test_bad_words_are_refused(bench, errors_file, tmp_path, capsys, words, said):
-    command = ["compensate", str(bench), "--errors", str(errors_file), "--tables"]
-    assert main([*command, str(tmp_path / "no"), *words]) == 2
+    command = ["compensate", str(bench), "--errors", str(errors_file), "--tool-length", "160"]
+    assert main([*command, "--tables", str(tmp_path / "no"), *words]) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "no").exists()
+
+
+MODEL = """format = "model/1"
+covariance = [[0.01]]
+[machine]
+name = "small"
+chain = "[w X' f Y Z t]"
+[machine.axis.X]
+range = [-200.0, 200.0]
+[machine.axis.Y]
+range = [-150.0, 150.0]
+[machine.axis.Z]
+range = [-400.0, 0.0]
+[source]
+run = "run.csv"
+touches = 240
+noise_um = 0.6
+[[effect]]
+name = "thermal-static(EZZ,frame)"
+[effect.estimate]
+amplitude_um_per_K = 4.0
+"""
+
+
+def test_what_a_model_follows_has_to_be_stated(tmp_path, capsys):
+    """4 µm/K of growth along Z, 5 K above 20 degC: the zero of Z moves by 20 µm."""
+    path, out = tmp_path / "model.toml", tmp_path / "out"
+    path.write_text(MODEL)
+    command = ["compensate", str(path), "--tool-length", "160", "--control", "linuxcnc"]
+    command += ["--tables", str(out)]
+    assert main(command) == 2
+    assert "expected --temperature, --rpm or --value" in capsys.readouterr().err
+    assert main([*command, "--temperature", "frame=25"]) == 0
+    z = columns(out / "linuxcnc" / "Z.comp", "# matstd sign")
+    np.testing.assert_allclose(z[:, 1:], -0.020, atol=1e-6)
+    assert "T_frame=25" in (out / "linuxcnc" / "Z.comp").read_text()

@@ -1,10 +1,13 @@
 """Chips are found, wherever they hide; structure is not taken for chips."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from made_up import arm_poses
 
 from diagnosis.fit.identification import fit_run
-from diagnosis.regression.gross import find_gross
+from diagnosis.regression.gross import find_gross, shots
 from twin.library.ordinary import ordinary_model
 from twin.units import UM
 
@@ -67,3 +70,24 @@ def test_held_out_touches_stay_out(simulated) -> None:
     fit, gross = find_gross(X, case.run.deviation / (0.6 * UM), allowed)
     assert not gross.rows[::3].any()
     assert len(fit.residual) == int(allowed.sum()) - int(gross.rows.sum())
+
+
+def test_coordinates_of_one_shot_go_together_and_those_of_another_place_stay() -> None:
+    """Rows 30 to 32 are x, y and z of a reflector; z alone is far off."""
+    rng = np.random.default_rng(5)
+    X = np.full((300, 1), 10.0)
+    y = rng.standard_normal(300)
+    y[32] += 40.0
+    shot = np.repeat(np.arange(100), 3)
+    _, gross = find_gross(X, y, np.ones(300, dtype=bool), shot)
+    assert np.flatnonzero(gross.rows).tolist() == [30, 31, 32]
+
+
+def test_a_shot_is_one_place_at_one_time_seen_along_several_directions() -> None:
+    seen = arm_poses()
+    seen = replace(seen, time=10.0 * seen.pose)
+    assert shots(seen).tolist() == seen.pose.tolist()
+    repeated = seen[np.repeat(np.arange(0, len(seen), 3), 2)]  # x of every pose, twice
+    assert shots(repeated).tolist() == list(range(len(repeated)))
+    touched = replace(seen, radius=np.ones(len(seen)))
+    assert shots(touched).tolist() == list(range(len(seen)))

@@ -9,12 +9,15 @@ import pytest
 
 from artefact.body import Meeting, contact
 from probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
-from probe_paths.emit.program import make_dry_run
+from probe_paths.emit.writer import Feeds
 from probe_paths.language.dialect import Dialect
+from probe_paths.locate.beside import companions
+from probe_paths.locate.search_plan import Spread
 from report.pages.setup_page import PAGE, PICTURE, write_setup_page
 from report.pages.tables import page_tables
 from twin.frames import apply, inverse, pose, turn
 from twin.machine.kinematics import linear_directions, tip
+from twin.units import DEG
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "make_programs.py"
 
@@ -32,10 +35,13 @@ def sheet(golden, tmp_path_factory):
     folder = tmp_path_factory.mktemp("sheet") / "setup"
     programs = golden.programs()
     plan = golden.plan()
-    page = write_setup_page(folder, plan, programs, make_dry_run(plan, 80.0), Dialect())
+    others = companions(plan, Dialect(), Feeds(), 80.0, Spread(6.0, 1.5 * DEG))
+    others.write(folder)
+    page = write_setup_page(folder, plan, programs, others, Dialect())
     assert page == folder / PAGE
     assert (folder / PICTURE).stat().st_size > 10_000
     assert "RAISED BY +80.0 MM" in (folder / "MS_A_DRY.H").read_text(encoding="ascii")
+    assert "SEARCH FROM ABOVE" in (folder / "MS_A_LOC.H").read_text(encoding="ascii")
     return page.read_text(encoding="utf-8"), programs
 
 

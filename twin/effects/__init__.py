@@ -8,6 +8,7 @@ from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
 from twin.effects.once_more import MARK, Again, Change, again
 from twin.effects.periodic import usual_distance
+from twin.effects.position_table import PositionTable
 from twin.effects.probe import ProbeRadius, normal_in_tool
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, SetupError, setup_errors
 
@@ -20,6 +21,7 @@ __all__ = [
     "ComponentError",
     "HigherOrder",
     "LocationError",
+    "PositionTable",
     "ProbeRadius",
     "SetupError",
     "again",

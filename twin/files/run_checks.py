@@ -17,6 +17,9 @@ Mask = NDArray[np.bool_]
 ABSURD = 10.0
 """Deviations beyond this (mm) are no measurement: units mixed up, or a wrong set-up or probe."""
 
+ABSURD_ANGLE = 0.35
+"""The same of an instrument that reads angles, rad: cheap encoders are off by some degrees."""
+
 ASTRAY = 0.1
 """Readings beyond the travel by more than this share of it are slips, not a touch at the limit."""
 
@@ -95,7 +98,10 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     for rows, column, found, wanted in beyond_travel(run.touches.chain, run.touches.q, ASTRAY):
         _tell_slip(run, table, rows, f"column {column}", found, wanted, remarks)
         astray[rows] = True
-    far = np.flatnonzero((np.abs(run.deviation) > ABSURD) & ~astray)
+    touches = run.touches
+    arm = float(np.linalg.norm(touches.point, axis=1).max(initial=0.0))
+    absurd = ABSURD_ANGLE * arm if touches.instrument.reads_angle else ABSURD
+    far = np.flatnonzero((np.abs(run.deviation) > absurd) & ~astray)
     if len(far):
         where = "column dev_um" if "dev_um" in table else "deviation computed from the readings"
         found = f"{run.deviation[far[0]]:.4g} mm"

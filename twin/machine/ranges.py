@@ -18,11 +18,11 @@ DEFAULT_RANGES: Mapping[str, tuple[float, float]] = {
     "rotary_location": (20 * UM, 100 * UM),
     "rotary_tilt": (20 * URAD, 100 * URAD),
     "rotary_zero": (20 * URAD, 100 * URAD),
-    "arm_translation": (5 * UM, 20 * UM),
-    "arm_rotation": (20 * URAD, 200 * URAD),
-    "arm_location": (100 * UM, 500 * UM),
-    "arm_tilt": (100 * URAD, 500 * URAD),
-    "arm_zero": (200 * URAD, 2000 * URAD),
+    "arm_translation": (2 * UM, 20 * UM),
+    "arm_rotation": (10 * URAD, 100 * URAD),
+    "arm_location": (100 * UM, 1000 * UM),
+    "arm_tilt": (100 * URAD, 5000 * URAD),
+    "arm_zero": (200 * URAD, 10000 * URAD),
     "setup_translation": (10 * UM, 50 * UM),
     "setup_rotation": (20 * URAD, 100 * URAD),
 }
@@ -32,7 +32,8 @@ The translations of a linear axis (50 to 100 µm) and the upper end of those of 
 are those of the D-MT paper's figures 2 and 3; the angular ones of a linear axis take the same
 figures in µrad, over which the paper is silent; the rest are typical of neglected machines of this
 class and are ours. Joints of a serial arm are those of an arm that was never calibrated, which
-misses by millimetres.
+misses by millimetres: two that were measured had zeros off by 3 mrad, links by 0.9 mm, a twist by
+7 mrad, while the joints themselves ran truer than 0.1 mrad.
 """
 
 

@@ -1,0 +1,165 @@
+"""`matstd replan`: programs planned again for where the standard stands, as a log tells it."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from matstd.options import (
+    REPORT_FILES,
+    SHEET,
+    SHEET_FILES,
+    add_output,
+    add_pdf,
+    asked_printer,
+    print_report,
+)
+
+if TYPE_CHECKING:
+    from artefact.body import Standard
+    from probe_paths.control import LogPart, ReadProgram
+    from probe_paths.emit import Feeds
+    from probe_paths.language import Dialect
+    from probe_paths.locate import Spread
+    from twin.machine import Chain
+    from twin.record import Setup
+
+SEED = 0
+"""Of the places that are tried first: the same log gives the same programs."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "logs",
+        metavar="LOG.TXT",
+        nargs="+",
+        help="of the search in OUT/setup, or of programs that ran beside their place",
+    )
+    parser.add_argument(
+        "--design", metavar="OUT", required=True, help="folder of `matstd design` or of a replan"
+    )
+    parser.add_argument(
+        "--control",
+        metavar="NAME|FILE.toml",
+        help="whose words the programs have (that of the programs in OUT)",
+    )
+    parser.add_argument(
+        "--within-mm", type=float, default=20.0, help="of its place the standard stands (20)"
+    )
+    parser.add_argument("--within-deg", type=float, default=5.0, help="likewise (5)")
+    add_pdf(parser)
+    add_output(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Find the place, plan, write programs and set-up sheet; the folder appears whole or not."""
+    import shutil
+
+    from artefact.body import read_standard
+    from matstd.console import say
+    from matstd.folder import results_folder
+    from probe_paths.control import read_log, read_program
+    from probe_paths.emit import make_programs
+    from probe_paths.locate import Spread, companions, planned_again
+    from report.pages import write_setup_page
+    from twin.files import read_machine
+    from twin.units import DEG
+
+    printed_by, design = asked_printer(args), Path(args.design)
+    spread = Spread(args.within_mm, args.within_deg * DEG)
+    chain = read_machine(design / "machine.toml")
+    standard = read_standard(design / "standard.toml")
+    files = programs_of(design)
+    dialect = _dialect(args.control, files[0])
+    programs = [read_program(file, chain, dialect=dialect) for file in files]
+    parts = [part for log in args.logs for part in read_log(log, chain.rotary_axes)]
+    setup = _place(parts, standard, chain, dialect, spread)
+    plan = planned_again(programs, standard, chain, setup)
+    ours = [*REPORT_FILES, *SHEET_FILES, "programs/*"]
+    with results_folder(args.output, args.force, ours) as folder:
+        for name in ("machine.toml", "standard.toml"):
+            shutil.copyfile(design / name, folder / name)
+        feeds = _feeds(programs)
+        made = make_programs(plan, dialect, feeds)
+        made.write(folder / "programs")
+        others = companions(plan, dialect, feeds)
+        others.write(folder / SHEET)
+        sheet = write_setup_page(folder / SHEET, plan, made, others, dialect)
+        print_report(sheet.parent, printed_by, sheet.stem)
+    touches = sum(program.touches for program in made.programs)
+    say(f"{args.output}: {touches} touches in {len(made.programs)} programs; {SHEET}/setup.html")
+    for refusal in plan.refused:
+        say(f"- touch dropped: {refusal}")
+    return 0
+
+
+def programs_of(design: Path) -> list[Path]:
+    """Programs of a design in the order in which they are run; raises BadFile for none."""
+    from twin.errors import BadFile
+
+    folder = design / "programs"
+    found = [p for p in folder.glob("*") if p.suffix.lower() in (".h", ".ngc")]
+    if not found:
+        raise BadFile(folder, "folder", "no program", "the folder that `matstd design` made")
+    return sorted(found, key=lambda p: (len(p.name), p.name))
+
+
+def _place(
+    parts: list[LogPart], standard: Standard, chain: Chain, dialect: Dialect, spread: Spread
+) -> Setup:
+    """Where the standard stands, and words on it."""
+    import numpy as np
+
+    from matstd.console import say
+    from probe_paths.campaign import ball_centres, checked_parts, evaluate
+    from probe_paths.emit import SEARCH
+    from probe_paths.locate import find_standard
+    from report.words import located_lines
+
+    believed = parts[0].heading.setup
+    is_search = [part.program.endswith(SEARCH) for part in parts]
+    if not any(is_search):
+        run = evaluate(parts, standard, chain, 1e-3, dialect)
+        found = run.touches.setups[0]
+        for line in located_lines(believed, found):
+            say(line)
+        return found
+    searches = [part for part, is_one in zip(parts, is_search, strict=True) if is_one]
+    searches, remarks = checked_parts(searches, standard)
+    for remark in remarks:
+        say(f"- {remark}")
+    part = searches[-1]
+    balls = ball_centres(part, chain, dialect)
+    rng = np.random.default_rng(SEED)
+    made = find_standard(standard, believed, balls, part.radius, rng, spread)
+    for line in located_lines(believed, made.setup, made):
+        say(line)
+    return made.setup
+
+
+def _dialect(control: str | None, program: Path) -> Dialect:
+    """Words of the control, with tool, preset and folder of a program that was made for it."""
+    from dataclasses import replace
+
+    from probe_paths.language import language_of, read_dialect
+
+    name = control or ("linuxcnc" if language_of(program).ENDING != ".H" else "itnc530")
+    dialect, text = read_dialect(name), program.read_text(encoding="ascii", errors="replace")
+    if tool := re.search(r";TOOL (\d+) IS THE PROBE", text):
+        dialect = replace(dialect, tool=int(tool[1]))
+    if preset := re.search(r";PRESET (\d+):", text):
+        dialect = replace(dialect, preset=int(preset[1]))
+    if folder := re.search(r"F-PRINT (\S+)\\[A-Z0-9_]+\.A ", text):
+        dialect = replace(dialect, folder=folder[1])
+    return dialect
+
+
+def _feeds(programs: list[ReadProgram]) -> Feeds:
+    """The feed of the touches; the others are those that programs usually have."""
+    from probe_paths.emit import Feeds
+    from twin.units import MINUTE
+
+    return Feeds(probing=programs[0].touches[0].feed * MINUTE)

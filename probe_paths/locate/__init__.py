@@ -1,0 +1,24 @@
+"""Where a standard really stands: a search from above, and programs planned anew for that place.
+
+In: a standard that stands roughly where it is believed to. Out: a plan of long touches from above
+(`plan_search`), from the log of its program the place with its uncertainty (`find_standard`), and
+the touches of earlier programs, planned again there (`planned_again`). `companions` are the
+programs that are run before those of a plan.
+"""
+
+from probe_paths.locate.again import planned_again
+from probe_paths.locate.beside import Companions, companions
+from probe_paths.locate.find import Found, find_standard
+from probe_paths.locate.relief import Relief
+from probe_paths.locate.search_plan import Spread, plan_search
+
+__all__ = [
+    "Companions",
+    "Found",
+    "Relief",
+    "Spread",
+    "companions",
+    "find_standard",
+    "plan_search",
+    "planned_again",
+]

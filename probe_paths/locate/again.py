@@ -1,0 +1,47 @@
+"""The touches of programs, planned again for where the standard stands."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from artefact.body import Standard
+from artefact.reach import Requests
+from probe_paths.control import ReadProgram
+from probe_paths.linuxcnc import shortened
+from probe_paths.plan import TouchPlan, plan_touches
+from twin.machine import Chain
+from twin.record import Setup
+
+DROPPED = 0.1
+"""Of the touches that may be refused at another place, each with its reason."""
+
+
+def planned_again(
+    programs: Sequence[ReadProgram], standard: Standard, chain: Chain, setup: Setup
+) -> TouchPlan:
+    """Plan of the touches that programs make, for another place of the standard.
+
+    Poses, places on the standard, probe and workshop are those of the programs; anchor touches,
+    heights, ways and order are found anew.
+
+    Args:
+        programs: Of one set-up, as read.
+        standard: For which they were made.
+        setup: Where the standard stands.
+
+    Raises:
+        NotReachable: More touches cannot be made there than may be dropped.
+    """
+    old = shortened(programs, standard, chain)
+    first = np.concatenate([[True], np.diff(old.visit) > 0])
+    balls = [sphere.name for sphere in standard.spheres]
+    rows = np.flatnonzero(~(first & np.isin(old.feature, balls)))
+    wanted = Requests(
+        old.feature[rows],
+        old.point[rows],
+        old.normal[rows],
+        np.array([visit.rotary for visit in old.visits])[old.visit[rows]],
+    )
+    options = replace(old.options, tolerated=int(DROPPED * len(rows)))
+    return plan_touches(standard, chain, old.probe, setup, wanted, options)

@@ -1,0 +1,272 @@
+"""From the log of a search the place where the standard stands.
+
+The touches do not say what they met, so the place is sought, not fitted: balls come down on a
+picture of the standard (`Relief`) at very many places within the spread, the best are improved on
+it, and the best of these on the exact surfaces, edges and sides.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.body import Standard, contact
+from probe_paths.locate.relief import Relief
+from probe_paths.locate.search_plan import Spread
+from twin.errors import NotEnoughData
+from twin.frames import Array, apply, fixed_xyz, inverse, pose
+from twin.record import Setup
+from twin.units import DEG
+
+_TRIED, _FEWEST_TRIED = 40_000, 2_000
+"""Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
+
+_KEPT = 60
+"""That are improved on the picture."""
+
+_EXACT = 3
+"""That are improved on the exact surfaces."""
+
+_ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
+_SHAKES, _SHAKEN = 6, 24
+_SHAKE = np.array([1.5, 1.5, 0.5, 0.01, 0.01, 0.01])  # mm and rad, round what does not fit yet
+_STEP = np.array([0.5, 0.5, 0.5, 0.005, 0.005, 0.005])  # mm and rad, of differences on the picture
+_FINE = np.array([1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5])  # the same on the surfaces
+_ROBUST = 2.0  # mm: a touch beside an edge of the picture shall not pull more than this
+_SAME = 4.0  # mm: two places within this at every touch are the same
+GOOD = 0.1
+"""Root mean square of the touches beyond which nothing has been found, mm: what a machine bends
+within the 100 mm of a search leaves 0.03 mm."""
+
+_KNOWN, _KNOWN_ANGLE = 0.3, 0.1 * DEG
+"""Largest standard uncertainties of a place that programs are planned for, mm and rad."""
+
+_CLEAR, _ROUGH = 3.0, 0.03
+"""Times as well as the next place must the found one fit, and how well any may fit by the errors of
+a machine alone, mm."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Where a standard stands.
+
+    Attributes:
+        setup: With the place.
+        shift: Of the standard from its believed place, in its own frame, (3,), mm.
+        angles: About x, y and z of it, (3,), rad.
+        u: Standard uncertainties of both, (6,), mm and rad.
+        rms: Of the touches, mm.
+        next_rms: Of the touches at the best place that is another one, mm.
+    """
+
+    setup: Setup
+    shift: Array
+    angles: Array
+    u: Array
+    rms: float
+    next_rms: float
+
+
+def find_standard(
+    standard: Standard,
+    believed: Setup,
+    ball_table: Array,
+    radius: float,
+    rng: np.random.Generator,
+    spread: Spread | None = None,
+) -> Found:
+    """Place of a standard from balls that came down on it.
+
+    Args:
+        standard: As calibrated.
+        believed: Where it was believed to stand.
+        ball_table: Centres of the balls at their contacts, table frame, (N, 3), mm; they came along
+            -z of the believed standard.
+        radius: Of the ball, mm.
+        rng: For the places of the first round.
+        spread: How far from the believed place is looked.
+
+    Raises:
+        NotEnoughData: Fewer than nine touches, no place that fits, or two that fit alike.
+    """
+    spread = spread or Spread()
+    if len(ball_table) < 9:
+        raise NotEnoughData(f"{len(ball_table)} touches of a search, expected at least 9")
+    ball = apply(inverse(believed.T_table_artefact), ball_table)
+    limit = np.repeat([spread.distance, spread.angle], 3)
+    relief = Relief.of(standard, radius)
+
+    def on_picture(theta: Array) -> Array:
+        return _lifted(relief, ball, theta)
+
+    def on_surfaces(theta: Array) -> Array:
+        return _lifted_exactly(standard, ball, theta, radius)
+
+    share = (spread.distance / Spread.distance) * (spread.angle / Spread.angle)
+    count = max(int(min(share, 1.0) * _TRIED), _FEWEST_TRIED)
+    tried = rng.uniform(-limit, limit, (count, 6))
+    tried[0] = 0.0
+    best = _settled(_best(tried, on_picture, _KEPT), on_picture, _STEP, _ROUNDS)
+    few = _distinct(best, on_picture, ball)[:_EXACT]
+    few = _settled(few, on_surfaces, _FINE, _EXACT_ROUNDS)
+    few = _distinct(few, on_surfaces, ball)
+    few[:1] = _shaken(few[0], on_surfaces, rng)
+    rms = np.sqrt(np.mean(on_surfaces(few) ** 2, axis=1))
+    theta = few[0]
+    u = _uncertainty(theta, on_surfaces)
+    _check(rms, u)
+    return Found(
+        setup=Setup(believed.name, believed.T_table_artefact @ _pose(theta)),
+        shift=theta[:3],
+        angles=theta[3:],
+        u=u,
+        rms=float(rms[0]),
+        next_rms=float(rms[1]) if len(rms) > 1 else np.inf,
+    )
+
+
+def _check(rms: Array, u: Array) -> None:
+    """One place and no other fits, and it is known well enough to plan touches there."""
+    if rms[0] > GOOD:
+        raise NotEnoughData(
+            f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm; "
+            "another standard, farther away, or another probe?"
+        )
+    if len(rms) > 1 and rms[1] < _CLEAR * max(rms[0], _ROUGH):
+        raise NotEnoughData(
+            f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm): align the standard "
+            "better and search again"
+        )
+    if u[:3].max() > _KNOWN or u[3:].max() > _KNOWN_ANGLE:
+        raise NotEnoughData(
+            f"the touches tell the place to {u[:3].max():.2f} mm and {u[3:].max() / DEG:.2f} "
+            f"degrees only, expected {_KNOWN:g} mm and {_KNOWN_ANGLE / DEG:g} degrees: align the "
+            "standard better and search again"
+        )
+
+
+def _pose(theta: Array) -> Array:
+    """Pose of a standard that stands at shift and angles (..., 6) from its believed place."""
+    return pose(fixed_xyz(theta[..., 3:]), theta[..., :3])
+
+
+Lift = Callable[[Array], Array]
+"""By how much the standard at places (M, 6) would stop balls above where they were, (M, N), mm."""
+
+
+def _lifted(relief: Relief, ball: Array, theta: Array) -> Array:
+    """On the picture: the ball's height over it, along its own way down."""
+    out = []
+    for some in np.array_split(theta, max(len(theta) // 2000, 1)):
+        back = inverse(_pose(some))
+        up = back[:, None, :3, 2]
+        place = apply(back[:, None], ball)
+        travel = np.zeros(place.shape[:2])
+        for _ in range(3):  # the way leans by 5 degrees at most
+            there = place + travel[..., None] * up
+            height = relief.ball_at(there[..., :2].reshape(-1, 2)).reshape(travel.shape)
+            travel = travel + np.clip(height - there[..., 2], -60.0, 60.0) / up[..., 2]
+        out.append(travel)
+    return np.concatenate(out)
+
+
+def _lifted_exactly(standard: Standard, ball: Array, theta: Array, radius: float) -> Array:
+    """On the surfaces: first contact of balls that come down the same ways."""
+    above = 80.0  # mm; farther than any place of the few is from where it shall be
+    back = inverse(_pose(theta))
+    up = back[:, None, :3, 2]
+    start = apply(back[:, None], ball) + above * up
+    way = np.broadcast_to(-up, start.shape)
+    met = contact(standard, start.reshape(-1, 3), way.reshape(-1, 3), radius, 2.0 * above)
+    travel = np.where(np.isfinite(met.travel), met.travel, 2.0 * above)
+    return above - travel.reshape(start.shape[:2])
+
+
+def _cost(lifted: Array) -> Array:
+    """Robust: a touch counts quadratically up to `_ROBUST` and linearly beyond."""
+    size = np.abs(lifted)
+    cost = np.where(size < _ROBUST, 0.5 * size**2, _ROBUST * (size - 0.5 * _ROBUST))
+    total: Array = cost.sum(axis=1)
+    return total
+
+
+def _best(tried: Array, lift: Lift, count: int) -> Array:
+    """The places that fit best, each at its best height."""
+    lifted = lift(tried)
+    middle = np.median(lifted, axis=1, keepdims=True)
+    tried = tried - middle * np.eye(6)[2]
+    some = np.argsort(_cost(lifted - middle))[: 20 * count]
+    for _ in range(2):
+        tried = _improved(tried[some], lift, _STEP)
+        some = np.argsort(_cost(lift(tried)))[: len(some) // 4]
+    return tried[some[:count]]
+
+
+def _settled(theta: Array, lift: Lift, step: Array, rounds: int) -> Array:
+    """Places improved until none moves by a hundredth of a step any more."""
+    for _ in range(rounds):
+        better = _improved(theta, lift, step)
+        if np.all(np.abs(better - theta) < 0.01 * step):
+            return better
+        theta = better
+    return theta
+
+
+def _shaken(theta: Array, lift: Lift, rng: np.random.Generator) -> Array:
+    """The best place round one at which edges may have held the steps, (1, 6)."""
+    best = _settled(theta[None], lift, _FINE, _LAST_ROUNDS)
+    for _ in range(_SHAKES):
+        if np.sqrt(np.mean(lift(best) ** 2)) < _ROUGH:
+            break
+        round_it = best + rng.normal(0.0, 1.0, (_SHAKEN, 6)) * _SHAKE
+        near = _settled(round_it, lift, _FINE, 4)
+        near = near[np.argsort(_cost(lift(near)))[:4]]
+        both = np.concatenate([best, _settled(near, lift, _FINE, _EXACT_ROUNDS)])
+        best = both[[np.argmin(_cost(lift(both)))]]
+    return best
+
+
+def _improved(theta: Array, lift: Lift, step: Array) -> Array:
+    """One step of Gauss and Newton with damping each, taken where it makes the fit better."""
+    moved = theta[:, None] + np.concatenate([np.diag(step), -np.diag(step)])
+    both = lift(np.concatenate([theta[:, None], moved], axis=1).reshape(-1, 6))
+    both = both.reshape(len(theta), 13, -1)
+    now = both[:, 0]
+    J = np.swapaxes(both[:, 1:7] - both[:, 7:], 1, 2) / (2.0 * step)
+    weight = np.minimum(1.0, _ROBUST / np.maximum(np.abs(now), 1e-9))
+    scale = step / step[0]
+    J = J * scale
+    H = np.einsum("mni,mn,mnj->mij", J, weight, J)
+    g = np.einsum("mni,mn,mn->mi", J, weight, now)
+    candidates = [theta]
+    for damping in (1e-6, 0.1, 3.0):
+        eye = damping * np.einsum("mii->m", H)[:, None, None] / 6.0 * np.eye(6) + 1e-9 * np.eye(6)
+        way = -np.linalg.solve(H + eye, g[..., None])[..., 0] * scale
+        size = np.linalg.norm(way / scale, axis=1, keepdims=True)
+        candidates.append(theta + way * np.minimum(1.0, 5.0 / np.maximum(size, 1e-12)))
+    every = np.stack(candidates, axis=1)
+    costs = _cost(lift(every.reshape(-1, 6))).reshape(every.shape[:2])
+    chosen: Array = every[np.arange(len(theta)), np.argmin(costs, axis=1)]
+    return chosen
+
+
+def _distinct(theta: Array, lift: Lift, ball: Array) -> Array:
+    """Places that differ by more than `_SAME` at some touch, the best first."""
+    ranked = theta[np.argsort(_cost(lift(theta)))]
+    kept: list[Array] = []
+    for one in ranked:
+        here = apply(_pose(one), ball)
+        if all(np.abs(here - apply(_pose(k), ball)).max() > _SAME for k in kept):
+            kept.append(one)
+    return np.array(kept)
+
+
+def _uncertainty(theta: Array, lift: Lift) -> Array:
+    """Standard uncertainties by the scatter of the touches and their slopes, (6,)."""
+    moved = theta + np.concatenate([np.diag(_FINE), -np.diag(_FINE)])
+    both = lift(moved)
+    J = (both[:6] - both[6:]).T / (2.0 * _FINE)
+    r = lift(theta[None])[0]
+    s = np.sqrt(r @ r / (len(r) - 6))
+    u: Array = s * np.sqrt(np.diag(np.linalg.pinv(J.T @ J)))
+    return u

@@ -1,0 +1,224 @@
+"""The program that finds a standard: long touches from above, wherever it may stand.
+
+Every touch comes straight down on a place under which there is always something of the standard,
+and beside which nothing is so high that the body of the probe could meet it before the ball meets
+the surface, wherever the standard stands within what is stated. So no touch misses, and none of
+them needs to know what it touches.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from artefact.body import Standard
+from artefact.reach import Workshop
+from probe_paths.locate.relief import NOWHERE, PITCH, Relief
+from probe_paths.plan import (
+    PlanOptions,
+    Probe,
+    ToolClearance,
+    TouchPlan,
+    Visit,
+    home_readings,
+    readings_at,
+)
+from twin.errors import NotReachable
+from twin.frames import Array, apply
+from twin.machine import Chain, inverse_linear, linear_directions
+from twin.record import Setup
+from twin.units import DEG
+
+TOUCHES = 20
+"""Of the search: as many as five minutes have room for."""
+
+_FEWEST = 9
+"""Fewer could not tell a false place from the true one: six numbers are sought."""
+
+_MARGIN = 3.0
+"""Kept free beside the ball's way and under the body besides everything else, mm."""
+
+_UPRIGHT = np.cos(1.0 * DEG)
+BACK = 5.0
+"""Retract after a contact, mm."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How far beside its believed place the standard may stand, either way in every direction.
+
+    Attributes:
+        distance: Along x, y and z of its own frame, mm.
+        angle: About each of them, rad.
+    """
+
+    distance: float = 20.0
+    angle: float = 5.0 * DEG
+
+
+def plan_search(
+    standard: Standard,
+    chain: Chain,
+    probe: Probe,
+    setup: Setup,
+    spread: Spread | None = None,
+    workshop: Workshop | None = None,
+    retract: float = PlanOptions.retract,
+) -> TouchPlan:
+    """Touches from above, at the readings at which programs begin and end.
+
+    Args:
+        probe: In the spindle.
+        setup: Where the standard is believed to stand.
+        spread: How far from there it may stand.
+        workshop: What stands beside it.
+        retract: Below the upper end of Z's travel, mm.
+
+    Raises:
+        NotReachable: The table is not level there, the stylus is too short for the steps of the
+            standard, travel does not suffice, or a clamp stands under the tool.
+    """
+    spread, workshop = spread or Spread(), workshop or Workshop()
+    home = home_readings(chain)
+    relief = Relief.of(standard, probe.radius)
+    place, high, low = _places(relief, standard, probe, spread)
+    T = setup.T_table_artefact
+    q = readings_at(chain, home[None])
+    down = -linear_directions(chain, q)[0][:, chain.linear_axes.index("Z")]
+    if -down @ T[:3, 2] < _UPRIGHT:
+        raise NotReachable("the standard does not stand upright where programs begin and end")
+    # so far may any place be lifted or lowered
+    lift = spread.distance + np.linalg.norm(place, axis=1) * np.sin(spread.angle)
+    top = high + lift + probe.radius + _MARGIN
+    path = float((top - low + lift).max()) + _MARGIN
+    start = apply(T, np.column_stack([place, top]))
+    # sideways above the highest place of all, lifted as far as the corner of the base can be
+    lift = spread.distance + np.linalg.norm(standard.base.half_size) * np.sin(spread.angle)
+    above = apply(T, np.append(place[0], relief.top.max() + lift + probe.radius + _MARGIN))
+    q = np.repeat(q, len(place) + 1, axis=0)
+    q = inverse_linear(chain, np.concatenate([start, above[None]]), q, probe.length)
+    height = float(np.ceil(q[-1, chain.axis_index("Z")]))
+    options = PlanOptions(standoff=BACK, search=path - BACK, retract=retract, workshop=workshop)
+    plan = _plan(standard, chain, probe, setup, options, q[:-1], height)
+    _check(plan, path)
+    return plan
+
+
+def _places(
+    relief: Relief, standard: Standard, probe: Probe, spread: Spread
+) -> tuple[Array, Array, Array]:
+    """Places (N, 2) that are always good, and the highest and lowest that may be under each, mm."""
+    sin, base = np.sin(spread.angle), standard.base.thickness
+    # where the standard leans, what is high moves sideways from what is low
+    beside = _MARGIN + (float(relief.top.max()) - base) * sin
+    is_bad = relief.top <= NOWHERE
+    begins = [end for end, _ in probe.stack]
+    radii = [*(radius for _, radius in probe.stack[1:]), probe.nose_radius]
+    for begin, radius in zip(begins, radii, strict=True):
+        step = _most(relief.top, radius + beside) - relief.ball
+        is_bad |= step > begin - _MARGIN - radius * sin
+    room = ndimage.distance_transform_cdt(~is_bad, metric="chessboard") * PITCH
+    xy = relief.x0 + PITCH * np.moveaxis(np.indices(is_bad.shape), 0, -1)
+    side = spread.distance + (np.linalg.norm(xy, axis=-1) + base + begins[0]) * sin
+    ij = np.argwhere(room > side + probe.radius)
+    place = relief.x0 + ij * PITCH
+    if len(place) < _FEWEST:
+        raise NotReachable(
+            f"a search from above finds no places where a stylus of {begins[0]:g} mm comes down to "
+            f"something wherever the standard stands within {spread.distance:g} mm and "
+            f"{spread.angle / DEG:g} degrees: state a smaller spread"
+        )
+    rows = _far_apart(place, TOUCHES)
+    at = tuple(ij[rows].T)
+    high = _most(relief.top, float(side[at].max()) + probe.radius)[at]
+    return place[rows], high, np.full(len(rows), base)
+
+
+def _most(values: Array, half: float) -> Array:
+    """Largest within a square of half sides, mm."""
+    size = 2 * int(np.ceil(half / PITCH)) + 1
+    largest: Array = ndimage.maximum_filter(values, size=size, mode="nearest")
+    return largest
+
+
+def _far_apart(place: Array, count: int) -> list[int]:
+    """Rows of places (N, 2), each as far as can be from those before it."""
+    rows = [int(np.argmax(np.linalg.norm(place - place.mean(axis=0), axis=1)))]
+    far = np.full(len(place), np.inf)
+    while len(rows) < min(count, len(place)):
+        far = np.minimum(far, np.linalg.norm(place - place[rows[-1]], axis=1))
+        rows.append(int(np.argmax(far)))
+    return rows
+
+
+def _plan(
+    standard: Standard,
+    chain: Chain,
+    probe: Probe,
+    setup: Setup,
+    options: PlanOptions,
+    start: Array,
+    height: float,
+) -> TouchPlan:
+    """The touches as a plan; which feature they name means nothing."""
+    n, z, home = len(start), chain.axis_index("Z"), home_readings(chain)
+    lows = np.array([chain.link(name).range[0] for name in chain.rotary_axes])
+    side = np.where(lows < home, 1.0, -1.0)
+    before = home - side * options.overshoot
+    contact = start.copy()
+    contact[:, z] -= options.standoff
+    return TouchPlan(
+        chain=chain,
+        probe=probe,
+        standard=standard,
+        setup=setup,
+        options=options,
+        visits=(
+            Visit(
+                pose=0,
+                rotary=home,
+                side=side,
+                before=before,
+                rows=np.arange(n),
+                height=height,
+            ),
+        ),
+        visit=np.zeros(n, dtype=np.int64),
+        request=np.arange(n),
+        feature=np.full(n, next(iter(standard.features))),
+        point=np.zeros((n, 3)),
+        normal=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        start=start,
+        contact=contact,
+        direction=np.tile([0.0, 0.0, -1.0], (n, 1)),
+    )
+
+
+def _check(plan: TouchPlan, path: float) -> None:
+    """Travel, and room between the tool and what does not move with the standard."""
+    chain = plan.chain
+    z = chain.axis_index("Z")
+    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    end = plan.start.copy()
+    end[:, z] -= path
+    top = high[z] - plan.options.retract
+    if np.any((end < low - 1e-9) | (plan.start > high + 1e-9)) or plan.visits[0].height > top:
+        raise NotReachable(
+            f"a search from above would go from Z {plan.start[:, z].max():.0f} to "
+            f"{end[:, z].min():.0f} mm and is out of travel: state a smaller spread"
+        )
+    room = ToolClearance(
+        chain=chain,
+        standard=plan.standard,
+        setup=plan.setup,
+        probe=plan.probe,
+        workshop=plan.options.workshop,
+    )
+    ours = np.isin(room.bodies.name, [body.name for body in plan.options.workshop.bodies])
+    spared = np.broadcast_to(~ours, (len(end), len(ours)))
+    gap, nearest = room.swept_gap(plan.start, end, spared=spared)
+    worst = int(np.argmin(gap))
+    if gap[worst] < 0.5:
+        raise NotReachable(
+            f"a search from above comes within {gap[worst]:.1f} mm of {nearest[worst]}"
+        )

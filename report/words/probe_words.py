@@ -1,0 +1,31 @@
+"""Words of where a standard stands."""
+
+import numpy as np
+
+from probe_paths.locate import Found
+from twin.frames import fixed_xyz_angles, inverse
+from twin.record import Setup
+from twin.units import DEG
+
+
+def located_lines(believed: Setup, stands: Setup, found: Found | None = None) -> list[str]:
+    """Where a standard stands, seen from where it was believed to, in words.
+
+    Args:
+        believed: Its set-up in the programs that were run.
+        stands: Where it stands.
+        found: By a search; None where the touches of the programs tell it.
+    """
+    beside = inverse(believed.T_table_artefact) @ stands.T_table_artefact
+    shift, angles = beside[:3, 3], fixed_xyz_angles(beside[:3, :3]) / DEG
+    u = None if found is None else found.u.reshape(2, 3) / np.array([[1.0], [DEG]])
+    lines = ["The standard stands beside its place by"]
+    for i, letter in enumerate("xyz"):
+        spread = ["", ""] if u is None else [f" ± {u[0, i]:.3f}", f" ± {u[1, i]:.3f}"]
+        lines.append(
+            f"- {letter} {shift[i]:+.3f}{spread[0]} mm, about {letter} {angles[i]:+.3f}{spread[1]}°"
+        )
+    if found is not None:
+        other = "" if np.isinf(found.next_rms) else f", at the next best to {found.next_rms:.1f} mm"
+        lines.append(f"- the touches fit there to {found.rms:.3f} mm rms{other}")
+    return lines

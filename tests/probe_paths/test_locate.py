@@ -1,0 +1,183 @@
+"""The search for a standard: always something under the ball, nothing hit, and the place found."""
+
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.body import contact, write_standard
+from matstd.cli import main
+from probe_paths.campaign.collisions import check_moves
+from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.evaluation import ball_centres
+from probe_paths.campaign.simulation import simulate_search
+from probe_paths.campaign.virtual_run import run_program
+from probe_paths.control.interpreter import interpret, read_program
+from probe_paths.control.log import read_log
+from probe_paths.emit.program import make_search
+from probe_paths.locate.find import find_standard
+from probe_paths.locate.relief import Relief
+from probe_paths.locate.search_plan import Spread, plan_search
+from probe_paths.plan.clearance import ToolClearance
+from probe_paths.plan.probe import Probe
+from twin.errors import BadFile, NotEnoughData, NotReachable
+from twin.frames import fixed_xyz, pose
+from twin.record.touches import Setup
+from twin.units import DEG, UM
+
+MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
+
+SPREAD = Spread(6.0, 1.5 * DEG)
+"""Small, so that the first round of places is."""
+
+
+@pytest.fixture(scope="module")
+def search(small, chain, golden):
+    plan = plan_search(small, chain, Probe(), golden.setup(), SPREAD)
+    return make_search(plan, (SPREAD.distance, SPREAD.angle))
+
+
+@pytest.fixture(scope="module")
+def program(search, chain):
+    (made,) = search.programs
+    return interpret(made.text.encode("ascii"), Path(made.file), search.masks.get, chain)
+
+
+def placed(theta):
+    """Pose of a standard beside its place: mm and degrees along and about x, y and z."""
+    theta = np.array(theta)
+    return pose(fixed_xyz(theta[3:] * DEG), theta[:3])
+
+
+@pytest.mark.parametrize("theta", [[6, -6, 6, 1.5, 1.5, -1.5], [-6, 6, -6, -1.5, 1.5, 1.5]])
+def test_at_the_ends_of_the_spread_every_touch_meets_something_and_nothing_else_is_near(
+    theta, program, small, chain, golden
+):
+    beside = placed(theta)
+    run = run_program(
+        program, small, VirtualMachine(chain, setup_error=beside), np.random.default_rng(0)
+    )
+    run.check_done()
+    stands = Setup("a", golden.setup().T_table_artefact @ beside)
+    room = ToolClearance(chain, small, stands, Probe(), program.heading.workshop)
+    start = np.array([touch.q for touch in program.touches])
+    assert room.swept_gap(start, run.q, with_ball=False, enough=1.0)[0].min() > 0.5
+
+
+def test_the_relief_is_where_a_ball_stops(small):
+    """Against first contacts, where the picture is not steep."""
+    relief = Relief.of(small, 3.0)
+    rng = np.random.default_rng(3)
+    xy = rng.uniform(-70.0, 70.0, (60, 2))
+    start = np.column_stack([xy, np.full(60, 150.0)])
+    met = contact(small, start, np.array([0.0, 0.0, -1.0]), 3.0, 200.0)
+    around = np.array([relief.ball_at(xy + s) for s in ([2, 0], [-2, 0], [0, 2], [0, -2])])
+    flat = np.ptp(around, axis=0) < 3.0
+    assert flat.sum() > 30
+    assert np.abs(relief.ball_at(xy) - (150.0 - met.travel))[flat].max() < 1.0
+
+
+@pytest.fixture(scope="module")
+def log(program, small, chain, tmp_path_factory):
+    """What the search logs where the standard stands elsewhere."""
+    beside = placed([5.0, -4.0, 3.0, 1.0, -0.8, 1.4])
+    machine = VirtualMachine(chain, setup_error=beside, noise=5.0 * UM)
+    run = simulate_search(program, small, machine, np.random.default_rng(1))
+    ((name, text),) = run.log.items()
+    path = tmp_path_factory.mktemp("search") / name
+    path.write_text(text, encoding="ascii")
+    return path
+
+
+def test_the_place_is_found_within_its_uncertainty(log, small, chain, golden):
+    (part,) = read_log(log, chain.rotary_axes)
+    balls, rng = ball_centres(part, chain), np.random.default_rng(0)
+    found = find_standard(small, golden.setup(), balls, 3.0, rng, SPREAD)
+    error = np.append(
+        found.shift - [5.0, -4.0, 3.0], found.angles - np.array([1.0, -0.8, 1.4]) * DEG
+    )
+    assert np.abs(error[:3]).max() < 0.05
+    assert np.abs(error[3:]).max() < 0.05 * DEG
+    assert np.all(np.abs(error) < 4.0 * found.u)
+    assert found.rms < 10.0 * UM
+    np.testing.assert_allclose(
+        found.setup.T_table_artefact,
+        golden.setup().T_table_artefact @ pose(fixed_xyz(found.angles), found.shift),
+    )
+
+
+def test_a_place_outside_the_spread_is_not_found_and_few_touches_are_refused(
+    log, small, chain, golden
+):
+    (part,) = read_log(log, chain.rotary_axes)
+    balls, rng = ball_centres(part, chain), np.random.default_rng(0)
+    with pytest.raises(NotEnoughData, match="8 touches of a search, expected at least 9"):
+        find_standard(small, golden.setup(), balls[:8], 3.0, rng, SPREAD)
+    spoilt = balls + np.random.default_rng(2).normal(0.0, 4.0, balls.shape) * [0.0, 0.0, 1.0]
+    with pytest.raises(NotEnoughData, match="no place within the spread fits"):
+        find_standard(small, golden.setup(), spoilt, 3.0, rng, SPREAD)
+
+
+def test_a_probe_that_is_too_short_and_a_spread_out_of_travel_are_refused(small, chain, golden):
+    stub = Probe(stack=((4.0, 1.5), (160.0, 31.0)))
+    with pytest.raises(NotReachable, match=r"a stylus of 4 mm .* state a smaller spread"):
+        plan_search(small, chain, stub, golden.setup(), Spread())
+    with pytest.raises(NotReachable, match="smaller spread"):
+        plan_search(small, chain, Probe(), golden.setup(), Spread(90.0, 1.0 * DEG))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (";SEARCH FROM ABOVE", ";FROM ABOVE", "at most 10 mm beyond the surface"),
+        ("IX+0.0000 IY+0.0000 IZ-1.0000", "IX+1.0000 IY+0.0000 IZ+0.0000", "at most 10 mm beyond"),
+    ],
+)
+def test_only_a_search_may_go_far_and_only_down(old, new, expected, search, chain):
+    text = search.programs[0].text.replace(old, new)
+    with pytest.raises(BadFile, match=expected):
+        interpret(text.encode("ascii"), Path("MS_A_LOC.H"), search.masks.get, chain)
+
+
+@pytest.fixture(scope="module")
+def design(golden, tmp_path_factory):
+    """A folder as a design leaves it, of the small standard; the example's machine is its own."""
+    folder = tmp_path_factory.mktemp("design")
+    write_standard(folder / "standard.toml", golden.standard())
+    shutil.copyfile(MACHINE, folder / "machine.toml")
+    golden.programs().write(folder / "programs")
+    return folder
+
+
+@pytest.mark.slow
+def test_programs_are_planned_again_where_the_standard_stands(
+    log, design, chain, small, golden, tmp_path, capsys
+):
+    out = tmp_path / "again"
+    words = ["--within-mm", "6", "--within-deg", "1.5"]
+    assert main(["replan", str(log), "--design", str(design), *words, "-o", str(out)]) == 0
+    told = capsys.readouterr().out
+    number = r"([+-]\d+\.\d+) ± "
+    shift = [float(re.search(rf"- {a} {number}", told)[1]) for a in "xyz"]
+    assert np.abs(np.array(shift) - [5.0, -4.0, 3.0]).max() < 0.05
+    programs = sorted((out / "programs").glob("*.H"))
+    read = [read_program(path, chain) for path in programs]
+    stands = golden.setup().T_table_artefact @ placed([5.0, -4.0, 3.0, 1.0, -0.8, 1.4])
+    assert np.abs(read[0].heading.setup.T_table_artefact - stands).max() < 0.05
+    for one in read:
+        check_moves(one, small, chain)
+    before = sum(len(read_program(p, chain).touches) for p in sorted(design.glob("programs/*.H")))
+    assert sum(len(one.touches) for one in read) > 0.9 * before
+    assert (out / "setup" / "setup.html").exists()
+    assert (out / "setup" / "MS_A_DRY.H").exists()
+
+
+def test_a_log_of_another_standard_is_refused(log, design, tmp_path, capsys):
+    other = tmp_path / log.name
+    other.write_text(log.read_text(encoding="ascii").replace("SMALL-1", "SMALL-2"), "ascii")
+    out = tmp_path / "again"
+    assert main(["replan", str(other), "--design", str(design), "-o", str(out)]) == 2
+    assert "STANDARD" in capsys.readouterr().err
+    assert not out.exists()
