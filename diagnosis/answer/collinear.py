@@ -19,6 +19,11 @@ SIGNIFICANT = 2.0
 """Standard uncertainties from which a size is significant (GUM, k = 2)."""
 
 
+BEYOND_DOUBT = 1e-12
+"""Probability by chance below which an effect is there, though no single number of it is clear: a
+slip of six numbers that three touches saw."""
+
+
 def left_by(C: Array, others: Array) -> float:
     """Share of the square of some columns (N, K) that other columns (N, L) cannot imitate."""
     whole = float((C**2).sum())
@@ -94,6 +99,8 @@ def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
             worth = worth if step.p_value > LIKELY else np.inf
         elif step.p_value >= CHANCE:
             worth = 0.0
+        elif step.p_value < BEYOND_DOUBT:
+            continue
         if worth < least:
             out, least = step.effect.name, worth
     return out

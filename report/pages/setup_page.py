@@ -74,6 +74,7 @@ def write_setup_page(
         refused=[str(refusal) for refusal in plan.refused],
         alarms=[(int(t.label), t.what, f"{t.limit:g}", _REMEDY[t.label]) for t in tests],
         others=others,
+        within_deg=round(others.spread.angle / DEG, 3),
         start=int(Q.START),
         missed=int(Label.NO_CONTACT),
         tolerance=tolerance,

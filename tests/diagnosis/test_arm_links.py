@@ -1,70 +1,90 @@
-"""Lengths and twists of links, against lines that were displaced and then measured anew."""
+"""Zeros of joints and lengths of links, against Denavit and Hartenberg's products by hand."""
 
 import numpy as np
 import pytest
-from made_up import ARM, arm_poses
-from scipy.optimize import minimize
-from scipy.spatial.transform import Rotation
 
 from diagnosis.fit.identification import fit_run
-from diagnosis.geometry.arm_links import arm_functionals
-from diagnosis.geometry.quantities import geometric_effects
-from twin.effects.location import LocationError
+from diagnosis.geometry.learnt import geometry_rows
+from report.geometry.geometry_words import quantity_name
+from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
+from twin.foreign.sheet import read_sheet
 from twin.library.ordinary import ordinary_model
-from twin.record.run import Run
+from twin.units import DEG, UM, URAD
 
-JOINTS = ("C", "B", "B1", "A")
+A = np.array([350.0, 1150.0, 41.0, 0.0, 0.0, 0.0])
+ALPHA = np.array([-90.0, 0.0, -90.0, 90.0, -90.0, 0.0]) * DEG
+D = np.array([675.0, 0.0, 0.0, 1200.0, 0.0, 215.0])
+THETA = np.array([0.0, -90.0, 0.0, 0.0, 0.0, 0.0]) * DEG
+REFLECTOR = [25.0, 62.0, 30.0, 1.0]
+POSES = 45
+
+PLANTED = {
+    # where a joint of the arm is another than the table says: array, index, step and symbol
+    "zero": (THETA, 2, 60.0 * URAD, "EB0B1"),
+    "wrist zero": (THETA, 4, -80.0 * URAD, "EB0B2"),
+    "upper arm": (A, 1, 90.0 * UM, "a(B,B1)"),
+    "forearm": (D, 3, -70.0 * UM, "d(A)"),
+    "elbow": (A, 2, 50.0 * UM, "a(B1,A)"),
+    "along parallel joints": (D, 2, 60.0 * UM, "d(B,B1)"),
+    "twist": (ALPHA, 2, 60.0 * URAD, "alpha(B1,A)"),
+}
+
+
+def flange(q):
+    T = np.eye(4)
+    for angle, a, al, d, th in zip(q, A, ALPHA, D, THETA, strict=True):
+        c, s, ca, sa = np.cos(angle + th), np.sin(angle + th), np.cos(al), np.sin(al)
+        step = [[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, d]]
+        T = T @ np.array([*step, [0, 0, 0, 1]], dtype=float)
+    return T
 
 
 @pytest.fixture(scope="module")
-def fit():
-    touches = arm_poses(30)
-    quiet = Run(touches, np.zeros(len(touches)), np.full(len(touches), 0.01))
-    return fit_run(quiet, ordinary_model(ARM))
+def learnt(tmp_path_factory):
+    """A function: what is planted -> rows by symbol; the tracker stands anywhere."""
+    folder = tmp_path_factory.mktemp("arm")
+    table = np.column_stack([A, ALPHA / DEG, D, THETA / DEG]).tolist()
+    lines = ["a,alpha,d,theta", *(",".join(map(str, row)) for row in table)]
+    (folder / "dh.csv").write_text("\n".join(lines))
+    q = np.random.default_rng(5).uniform(-1.3, 1.3, (POSES, 6))
+
+    def made(array=None, index=0, step=0.0):
+        if array is not None:
+            array[index] += step
+        seen = np.array([(flange(row) @ REFLECTOR)[:3] for row in q])
+        if array is not None:
+            array[index] -= step
+        turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+        rows = np.column_stack([q / DEG, seen @ turn.T + [900.0, 4000.0, -700.0]])
+        head = ",".join([*(f"j{i}" for i in range(1, 7)), "x", "y", "z"])
+        text = "\n".join([head, *(",".join(f"{v:.9f}" for v in row) for row in rows)])
+        (folder / "log.csv").write_text(text)
+        sheet = read_sheet(folder / "log.csv")
+        readings, _ = joint_readings(sheet)
+        chain, _ = arm_from_dh(read_sheet(folder / "dh.csv"), readings)
+        run = tracker_run(sheet, chain, readings, 0.2 * UM)
+        return geometry_rows(fit_run(run, ordinary_model(chain)))
+
+    return made
 
 
-def displaced(errors: dict[str, float]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Point and direction of every line with location errors in machine directions, mm and rad."""
-    out = {}
-    for joint in JOINTS:
-        link = ARM.link(joint)
-        shift = [errors.get(f"E{c}0{joint}", 0.0) for c in "XYZ"]
-        turn = [errors.get(f"E{c}0{joint}", 0.0) for c in "ABC"]
-        out[joint] = link.point + shift, Rotation.from_rotvec(turn).apply(link.direction)
-    return out
+@pytest.mark.parametrize("name", PLANTED)
+def test_what_is_wrong_with_an_arm_is_told_in_its_terms(learnt, name) -> None:
+    array, index, step, symbol = PLANTED[name]
+    rows = {r.symbol: r for r in learnt(array, index, step)}
+    found = rows[symbol]
+    assert found.is_determined
+    assert found.estimate.value == pytest.approx(step, rel=0.03)
+    for other in rows.values():  # and nothing else is
+        if "0" in other.symbol or other.symbol[0] != "E":
+            wrong = other.symbol != symbol and other.is_determined
+            assert not wrong or abs(other.estimate.value) < max(
+                0.1 * abs(step), 4 * other.estimate.u
+            )
 
 
-def distance(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> float:
-    def square(s: np.ndarray) -> float:
-        apart = one[0] + s[0] * one[1] - other[0] - s[1] * other[1]
-        return float(apart @ apart)
-
-    return float(np.sqrt(minimize(square, np.zeros(2), tol=1e-14).fun))
-
-
-def test_links_of_displaced_lines_are_measured_as_they_are(fit) -> None:
-    """Lengths where lines are apart, angles whatever way the lines run; B and B1 run opposite."""
-    places = {
-        effect.symbol.name: start
-        for start, effect in geometric_effects(fit)
-        if isinstance(effect, LocationError)
-    }
-    chosen = [n for n in places if n[3:] in JOINTS and n[1] != n[3]]
-    rng = np.random.default_rng(3)
-    errors = {n: float(rng.normal(0.0, 0.1 if n[1] in "XYZ" else 1e-4)) for n in chosen}
-    theta = np.zeros(len(fit.model.parameters))
-    for name, value in errors.items():
-        theta[places[name]] = value
-    told = {f.symbol: float(f.weights @ theta) for f in arm_functionals(fit, JOINTS)}
-    before, after = displaced({}), displaced(errors)
-    for one, other in (("C", "B"), ("B1", "A")):
-        change = distance(after[one], after[other]) - distance(before[one], before[other])
-        assert told[f"a({one},{other})"] == pytest.approx(change, abs=2e-3)
-        angle = [np.arccos(s[one][1] @ s[other][1]) for s in (before, after)]
-        assert abs(told[f"alpha({one},{other})"]) == pytest.approx(
-            abs(angle[1] - angle[0]), abs=1e-6
-        )
-    lean = np.array([told["alpha(B,B1)"], told["beta(B,B1)"]])
-    opposite = np.pi - np.arccos(after["B"][1] @ after["B1"][1])
-    assert -np.cos(opposite) == pytest.approx(after["B"][1] @ after["B1"][1])
-    assert np.linalg.norm(lean) == pytest.approx(opposite, rel=1e-3)
+def test_names_of_arms_are_words(learnt) -> None:
+    rows = {r.symbol: r for r in learnt()}
+    assert quantity_name(rows["EB0B1"]) == "zero of joint B1 (EB0B1)"
+    assert quantity_name(rows["a(B,B1)"]) == "length of the link from B to B1 (a(B,B1))"
+    assert quantity_name(rows["d(B,B1)"]) == "length along the line of B and B1 (d(B,B1))"
