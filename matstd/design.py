@@ -4,11 +4,12 @@ Each stage is one call into one room; nothing is computed here.
 """
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from artefact.body import write_standard
+from artefact.body import Standard, write_standard
 from artefact.brief import Project
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
@@ -27,7 +28,7 @@ from matstd.from_project import (
 from matstd.reach import check_reach, check_room
 from matstd.streams import streams
 from matstd.study_run import study_and_maps
-from probe_paths.campaign import VirtualMachine, simulate
+from probe_paths.campaign import Campaign, VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import TouchPlan, plan_touches
 from report.identifiability import write_identifiability, write_identification
@@ -133,7 +134,7 @@ def _plan(project: Project, placement: Placement) -> TouchPlan:
         project.chain,
         probe(project),
         project.setup,
-        placement.requests,
+        placement.touches,
         plan_options(project),
     )
 
@@ -156,7 +157,9 @@ def _prove(
         noise=project.noise,
         dialect=dialect(project),
     )
-    campaign = simulate(programs, placement.standard, machine, rng_noise)
+    campaign = _held_back(
+        simulate(programs, placement.standard, machine, rng_noise), placement.standard
+    )
     fit = fit_run(campaign.run, population.expected())
     in_volume = probed_volume(campaign.run, PROOF_POSES, rng_volume)
     q = latin_hypercube(workspace, PROOF_POSES, rng_workspace)
@@ -170,3 +173,10 @@ def _prove(
         proof=prove(fit, errors, project.setup, in_volume),
         in_workspace=prove(fit, errors, project.setup, in_workspace),
     )
+
+
+def _held_back(campaign: Campaign, standard: Standard) -> Campaign:
+    """A campaign whose touches on freeform faces prove and do not identify."""
+    on_face = np.isin(campaign.run.touches.feature, [p.name for p in standard.patches])
+    run = replace(campaign.run, split=np.where(on_face, "test", "train"))
+    return replace(campaign, run=run)

@@ -165,6 +165,8 @@ def blank(project: Project) -> Blank:
             ball_radius=project.probe_radius,
             gap=limits.gap_mm,
             max_mass=limits.max_mass_kg,
+            table_radius=project.table_radius,
+            slot_pitch=limits.slot_pitch_mm,
         ),
     )
 
@@ -176,6 +178,7 @@ def placement_options(project: Project) -> PlacementOptions:
         name=wanted.name,
         serial=wanted.serial,
         patches=wanted.patches,
+        balls=wanted.balls,
         noise=project.noise,
         criterion=CriterionOptions(
             name=wanted.criterion,
@@ -188,5 +191,5 @@ def placement_options(project: Project) -> PlacementOptions:
                 ball=known.ball_um * UM,
             ),
         ),
-        choice=TouchOptions(touches=wanted.touches, poses=wanted.poses),
+        choice=TouchOptions(wanted.touches, wanted.poses, wanted.proof_touches),
     )

@@ -11,6 +11,7 @@ import numpy as np
 
 from artefact.body import DatumSphere, Standard
 from artefact.brief import Project
+from artefact.layout import least_gap
 from artefact.place import room_for
 from artefact.reach import (
     ANGLE,
@@ -165,20 +166,19 @@ def check_room(project: Project, folder: Path, poses: Array) -> None:
         poses: Table poses to choose from, (K, R), rad.
 
     Raises:
-        NotBuildable: How many fit (fact `fitting`), the gap with which all would (`gap`, mm).
+        NotBuildable: How many fit (fact `fitting`).
     """
     made, options = blank(project), placement_options(project)
-    patches, limits = options.patches, made.limits
+    patches = options.patches
     room = room_for(patches, probe_reach(project), made, poses, options.sites, project.seed)
-    if len(room.sites) >= patches:
+    if len(room.faces) >= patches:
         return
-    save(draw_room(room.sites, patches, made), folder / ROOM_PICTURE)
+    save(draw_room(room.faces, patches, made), folder / ROOM_PICTURE)
     raise NotBuildable(
-        f"only {len(room.sites)} of {patches} patches fit on the blank side by side, of "
-        f"{room.tried} places tried; between them the ball of radius {limits.ball_radius:g} mm has "
-        f"to pass with a gap of {limits.gap:g} mm",
-        fitting=len(room.sites),
-        gap=room.gap,
+        f"only {len(room.faces)} of {patches} patches fit on the blank side by side, of "
+        f"{room.tried} places tried; between two of them cutter and probe need "
+        f"{least_gap(made.limits):g} mm",
+        fitting=len(room.faces),
     )
 
 

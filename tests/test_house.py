@@ -59,7 +59,6 @@ EXCUSED = {
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
-    "artefact/place/placement.py": "what a refusal appends to the limit that binds",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
     "compensation/tables/iso_csv.py": "comment in the head of a file that is written",

@@ -5,7 +5,7 @@ for points, normals and curvatures, whose bodies answer for distances, and whose
 numbers. A new kind of face implements `Surface`; a new limit is one more yield in `limits`.
 """
 
-from artefact.body.datum import DatumSphere, MountingHole
+from artefact.body.datum import DatumSphere, MountingHole, outline_distance
 from artefact.body.first_contact import contact
 from artefact.body.freeform import OVERHANG, ErrorShare, FreeformPatch, graph_patch
 from artefact.body.limits import (
@@ -14,7 +14,6 @@ from artefact.body.limits import (
     constraints,
     max_slope,
     min_concave_radius,
-    overhang,
 )
 from artefact.body.patch import Meeting, Surface, rows, unit
 from artefact.body.solids import Plate
@@ -42,7 +41,7 @@ __all__ = [
     "graph_patch",
     "max_slope",
     "min_concave_radius",
-    "overhang",
+    "outline_distance",
     "read_standard",
     "rows",
     "unit",

@@ -30,6 +30,9 @@ class Limits:
         ball_radius: Of the largest probe ball, mm.
         gap: Left between the ball at any touch and every other body, mm.
         max_mass: Of the standard, kg.
+        table_radius: Of the table's face, mm.
+        slot_pitch: Between the slots of the table, which run along its x, one through its middle;
+            0 where screws may stand anywhere, mm.
     """
 
     min_concave_radius: float = 12.0
@@ -37,6 +40,8 @@ class Limits:
     ball_radius: float = 3.0
     gap: float = 1.0
     max_mass: float = 60.0
+    table_radius: float = np.inf
+    slot_pitch: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

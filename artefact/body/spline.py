@@ -137,9 +137,9 @@ class Jet:
         root = np.sqrt(np.maximum(mean**2 - gauss, 0.0))
         return np.column_stack([mean + root, mean - root])
 
-    def scaled(self, factor: float) -> "Jet":
-        """The jet of the height field times a factor."""
-        return Jet(*(factor * getattr(self, f.name) for f in fields(self)))
+    def plus(self, other: "Jet", factor: float = 1.0) -> "Jet":
+        """The jet of the sum of two height fields, the second times a factor."""
+        return Jet(*(getattr(self, f.name) + factor * getattr(other, f.name) for f in fields(self)))
 
 
 def jet(knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array) -> Jet:

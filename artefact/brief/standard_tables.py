@@ -19,7 +19,7 @@ CORNER_RADIUS = 25.0
 """Of that plate, mm."""
 
 
-FEWEST_PATCHES = 8
+FEWEST_PATCHES = 3
 
 
 class StandardTable(Table):
@@ -32,8 +32,10 @@ class StandardTable(Table):
     material: str = "X40Cr14 (1.2083), hardened"
     density_kg_m3: float = Field(default=7800.0, gt=0.0)
     expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
-    patches: int = Field(default=10, ge=FEWEST_PATCHES, le=16)
+    patches: int = Field(default=6, ge=FEWEST_PATCHES, le=16)
+    balls: int = Field(default=13, ge=3, le=25)
     touches: int = Field(default=480, ge=100, le=2000)
+    proof_touches: int = Field(default=160, ge=30, le=1000)
     poses: int = Field(default=30, ge=8, le=100)
     criterion: Literal["I", "G", "D", "A", "E"] = "I"
     potential: float = Field(default=0.3, ge=0.0, le=0.95)
@@ -56,6 +58,7 @@ class LimitsTable(Table):
     gap_mm: float = Field(default=1.0, ge=0.0)
     max_mass_kg: float = Field(default=60.0, gt=0.0)
     table_radius_mm: float = Field(default=160.0, gt=0.0)
+    slot_pitch_mm: float = Field(default=0.0, ge=0.0)
 
 
 def check_standard(wanted: StandardTable, path: Path) -> None:

@@ -5,21 +5,33 @@ can and cannot know (`IdentifiabilityReport`), with what would resolve it.
 """
 
 from artefact.compare.alternatives import Alternative
-from artefact.compare.comparison import Rival, compare, evaluated, prior_rms, random_lots
+from artefact.compare.comparison import (
+    Rival,
+    compare,
+    evaluated,
+    prior_rms,
+    random_lots,
+)
 from artefact.compare.identifiability import (
     Alone,
     IdentifiabilityReport,
     identifiability_report,
 )
+from artefact.compare.power import ERROR, RISK, WANTED, Power, proof_power
 
 __all__ = [
+    "ERROR",
+    "RISK",
+    "WANTED",
     "Alone",
     "Alternative",
     "IdentifiabilityReport",
+    "Power",
     "Rival",
     "compare",
     "evaluated",
     "identifiability_report",
     "prior_rms",
+    "proof_power",
     "random_lots",
 ]

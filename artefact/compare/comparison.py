@@ -1,15 +1,16 @@
 """What a standard buys over the artefacts that people have, at equal touches and table poses."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from artefact.body import Standard
-from artefact.compare.placed_spheres import COUNTS, placed_spheres
-from artefact.layout import Blank, rivals
-from artefact.reach import Requests, joined
+from artefact.layout import Blank, rivals, with_spheres
+from artefact.reach import Requests, joined, spread_poses
 from artefact.worth import (
+    BallPlaces,
     Criterion,
+    Surfaces,
     TouchOptions,
     Visibility,
     chosen_poses,
@@ -27,6 +28,8 @@ from twin.frames import Array
 _TRIED = 3000  # touches that the ideal scatter may choose from
 _DRAWS = 5  # of random touches, averaged
 
+COUNTS = (4, 5, 7, 13)
+"""Numbers of spheres that the standard is compared with."""
 
 RIVAL_ROUNDS = 20
 """Looks at all candidates on the way to a rival's relaxed optimum: its exchanges mend the rest, and
@@ -48,6 +51,7 @@ class Rival:
         estimable: Combinations of parameters that are determined (effective degrees of freedom).
         visible: Effects of the library, of those that any touches could show, that these show.
         could_be_visible: Number of effects that any touches could show.
+        value: Of the criterion that the touches were chosen by.
         touches: What it is judged by.
         available: Number of different touches among which they were chosen; with fewer than are
             compared, some are made more than once.
@@ -63,6 +67,7 @@ class Rival:
     estimable: float
     visible: int
     could_be_visible: int
+    value: float
     touches: Requests
     available: int
     body: Standard | None = None
@@ -87,7 +92,7 @@ def evaluated(
         available: Number of different touches among which they were chosen.
         body: What is touched; None for scatter that no body has.
     """
-    after = _posterior(criterion, chosen)
+    after, rows = _posterior(criterion, chosen), criterion.rows(chosen)
     over = after.predicted_sd(criterion.tip_volume)
     of_user = after.predicted_sd(criterion.tip_user)
     by_chance = [
@@ -103,6 +108,7 @@ def evaluated(
         estimable=after.degrees_of_freedom,
         visible=library.shown(criterion, chosen),
         could_be_visible=len(library.effects),
+        value=criterion.objective.value(rows.T @ rows),
         touches=chosen,
         available=available,
         body=body,
@@ -134,8 +140,8 @@ def prior_rms(criterion: Criterion) -> tuple[float, float]:
 
 def compare(
     criterion: Criterion,
+    places: BallPlaces | None,
     all_poses: Array,
-    poses: Array,
     blank: Blank,
     options: TouchOptions,
     library: Visibility,
@@ -143,14 +149,14 @@ def compare(
 ) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
     """Other artefacts at as many touches: bodies that people have, and scatter that nobody has.
 
-    Spheres are placed, and table poses and touches on them chosen, as those of the standard are,
-    with no limit to their share; block and face choose theirs from touches drawn at random. The
-    probe needs the same angle, travel, room and free way on all, and calibration knows all alike.
+    Spheres are placed, and table poses and touches on them chosen, as those of the standard are;
+    block and face choose theirs from touches drawn at random. The probe needs the same angle,
+    travel, room and free way on all, and calibration knows all alike.
     The ideal scatter has points anywhere in the volume and any normal, and nothing is in its way.
 
     Args:
+        places: That balls may have; None where the machine touches none.
         all_poses: Table poses that bodies choose from, (K, R), rad.
-        poses: Table poses of the scatter.
         blank: Base, blank and limits of the standard.
         options: Numbers of touches and poses.
         library: Effects of the library that touches could show.
@@ -160,26 +166,26 @@ def compare(
         machine can make too few touches on.
     """
     out, unreachable = [], []
-    free = replace(options, sphere_share=(0.0, 1.0))
-    for name, body in _bodies(criterion, all_poses, blank, options, rng).items():
+    for name, body in _bodies(criterion, places, blank, options, rng).items():
         try:
             if body is None:
                 raise NotReachable("no room")
             here = criterion.on(body)
-            own = chosen_poses(criterion.plain.on(body), body, all_poses, free)
+            surfaces: Surfaces = (*body.patches, *body.spheres)
+            own = chosen_poses(criterion.plain.on(body), body, surfaces, all_poses, options)
             if body.patches:
-                tried = some_touches(here, body, own, free, rng)
-                chosen = chosen_touches(here, here.objective, tried, free)
+                tried = some_touches(here, body, own, options, rng)
+                chosen = chosen_touches(here, here.objective, tried, options)
             else:
-                tried = touches_to_choose_from(here, body, own, free)
-                mask, _ = chosen_touches_on(here, body, tried, free, RIVAL_ROUNDS)
+                tried = touches_to_choose_from(here.reach, body, surfaces, own, options.touches)
+                mask, _ = chosen_touches_on(here, tried, options, RIVAL_ROUNDS)
                 chosen = tried[mask]
         except NotReachable:
             unreachable.append(name)
             continue
         lots = random_lots(tried, options.touches, rng)
         out.append(evaluated(name, here, chosen, lots, library, _different(tried), body))
-    tried = _scatter(criterion, poses, rng)
+    tried = _scatter(criterion, spread_poses(all_poses, options.poses), rng)
     lots = random_lots(tried, options.touches, rng)
     for name, objective in (("I", criterion.objectives["I"]), ("D", criterion.objectives["D"])):
         chosen = chosen_touches(criterion, objective, tried, options)
@@ -194,17 +200,18 @@ def compare(
 
 def _bodies(
     criterion: Criterion,
-    poses: Array,
+    places: BallPlaces | None,
     blank: Blank,
     options: TouchOptions,
     rng: np.random.Generator,
 ) -> dict[str, Standard | None]:
     """Artefacts by name; None for one that the blank has no room for."""
-    try:
-        spheres = placed_spheres(criterion.plain, blank, poses, options.touches, rng)
-    except NotReachable:
-        spheres = dict.fromkeys(COUNTS)
-    named = {f"{count} spheres": body for count, body in spheres.items()}
+    named: dict[str, Standard | None] = {}
+    for count in COUNTS:
+        balls = places.best(count, options.touches) if places is not None else []
+        there = len(balls) == count
+        centres = [ball.centre for ball in balls]
+        named[f"{count} spheres"] = with_spheres(blank, centres) if there else None
     return named | rivals(criterion.volume, blank, rng)
 
 

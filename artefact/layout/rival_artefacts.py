@@ -1,12 +1,13 @@
 """Artefacts that people have, built as bodies that a probe must get round like any other."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch, Standard, graph_patch
-from artefact.layout.candidates import smooth_heights
+from artefact.layout.shapes import smooth_heights
 from artefact.layout.sites import Blank
+from artefact.layout.upright import ball_on_post
 from sensitivity.first_order import Box
 from twin.frames import Array, pose, rotation
 from twin.units import DEG
@@ -51,28 +52,9 @@ def _standard(
     )
 
 
-def with_spheres(
-    blank: Blank, centres: Sequence[Array], name: Callable[[int], str] = "SPH{}".format
-) -> Standard:
-    """Nothing but spheres on upright stems, (3,) each.
-
-    Args:
-        blank: Base, and the balls and stems that every standard gets.
-        centres: Of the balls, artefact frame, mm.
-        name: Of a sphere by its number, from 1.
-    """
-    fit, top = blank.fittings, blank.base.thickness
-    spheres = tuple(
-        DatumSphere(
-            name=name(i),
-            centre=c,
-            radius=fit.sphere_radius,
-            stem_radius=fit.stem_radius,
-            foot_radius=fit.foot_radius,
-            foot=top,
-        )
-        for i, c in enumerate(centres, 1)
-    )
+def with_spheres(blank: Blank, centres: Sequence[Array]) -> Standard:
+    """Nothing but balls on posts, (3,) each, SPH1 ..."""
+    spheres = tuple(ball_on_post(blank, f"SPH{i}", c) for i, c in enumerate(centres, 1))
     return _standard("SPHERES", blank, (), spheres)
 
 

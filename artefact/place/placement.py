@@ -1,40 +1,45 @@
-"""Chooses patches, table poses and touches by what they tell of the machine.
+"""Chooses balls, freeform faces, table poses and touches by what they tell of the machine.
 
-Candidate sites with random shapes stand all over the blank; every touch that could be made on them
-at some table poses is a row ``n^T J`` times the shape functions of the expected errors. Sites, then
-poses, then single touches are chosen so that the tool point can be predicted best over the
-user's poses (`information.selection.touch_selection`), and the finished body is measured against
-every limit.
+Balls on posts identify: nothing tells more of a machine than a precision ball whose centre is known
+to a few tenths of a micrometre, so all identifying touches are made on them. Freeform faces prove:
+they have slopes, curvatures and table poses of real work, they are touched beside the balls and
+held back from the identification, and a model that is wrong shows on them (`artefact.compare`).
+
+Candidate faces and balls stand all over the blank; every touch that could be made on them at some
+table poses is a row ``n^T J`` times the shape functions of the expected errors. Balls, then faces
+between them, then poses, then single touches are chosen so that the tool point can be predicted
+best over the user's poses, and the finished body is measured against every limit.
 """
 
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from artefact.body import Base, Standard, constraints
-from artefact.compare import Rival, compare, evaluated, prior_rms, random_lots
-from artefact.layout import (
-    Blank,
-    Site,
-    most_side_by_side,
-    neighbour_gaps,
-    patch_of_site,
-    random_sites,
-    standard_from_sites,
+from artefact.body import Base, DatumSphere, Standard
+from artefact.compare import (
+    Power,
+    Rival,
+    compare,
+    evaluated,
+    prior_rms,
+    proof_power,
+    random_lots,
 )
-from artefact.place.shaping import with_optimised_shapes
-from artefact.reach import ProbeReach, Requests, joined, spread_poses
+from artefact.layout import Blank, with_spheres
+from artefact.place.body_choice import BodyChoice, body_choice
+from artefact.place.proving import proving_touches
+from artefact.reach import Mask, ProbeReach, Requests, joined
 from artefact.worth import (
+    BallPlaces,
     Criterion,
     CriterionOptions,
     TouchOptions,
+    Visibility,
+    ball_places,
     chosen_poses,
     chosen_touches_on,
     criterion_for,
-    each_at,
     error_shares,
-    face_grid,
     parameter_symbols,
     random_touches,
     table_poses,
@@ -42,19 +47,18 @@ from artefact.worth import (
     visibility,
 )
 from information.criteria import whitened
-from information.selection import Certificate, best_groups
+from information.selection import Certificate
 from sensitivity.first_order import Workspace
 from sensitivity.population import Population
 from twin.compute import Progress, silent
 from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
-from twin.record import IntArray
 from twin.units import UM
 
 __all__ = ["Placement", "PlacementOptions", "design_standard"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
-_REBUILDS = 8  # choices of sites tried before giving up
+_BASES = 3  # sets of balls tried at most
 
 
 @dataclass(frozen=True)
@@ -65,15 +69,17 @@ class PlacementOptions:
         name: Type of the standard.
         serial: Of the piece.
         patches: Number of freeform patches.
-        sites: Number of random sites to choose from.
+        balls: Number of balls, fewer where no more find room.
+        sites: Number of random faces to choose from.
         noise: Standard deviation of one touch, mm.
-        criterion: What sites, poses and touches are chosen for.
-        choice: How many touches at how many table poses, and their shares.
+        criterion: What faces, balls, poses and touches are chosen for.
+        choice: How many touches at how many table poses.
     """
 
     name: str = "FFS"
     serial: str = ""
-    patches: int = 10
+    patches: int = 6
+    balls: int = 13
     sites: int = 400
     noise: float = 1.0 * UM
     criterion: CriterionOptions = field(default_factory=lambda: CriterionOptions(potential=0.3))
@@ -86,28 +92,40 @@ class Placement:
 
     Attributes:
         standard: Measured against every limit; every patch names the errors it is for.
-        requests: The touches.
-        criterion: What they were chosen by, on the standard.
+        requests: The touches that identify, all on balls.
+        proof: The touches that prove, all on freeform faces, at the same table poses.
+        criterion: What they were chosen by, on no body.
         prior_rms: Expected deviation of the tool point before any touch, rms, mm: over the probed
             volume, over the user's workspace.
-        rivals: This standard first, then other artefacts at as many touches.
-        certificate: How near the touches are to the best choice among all that could be made on the
-            standard at its table poses and that keep the same shares of poses, spheres, patches.
+        rivals: This standard first, then other artefacts at as many identifying touches.
+        certificate: How near the identifying touches are to the best choice among all that could be
+            made on the standard at its table poses and that crowd no pose more.
+        power: How surely the proving touches find a model wrong in the probed volume.
+        power_of_balls: The same of as many further touches on the balls, which are no proof: what
+            is wrong with a ball went into the model.
         unreachable: Artefacts that are not compared: this machine can make no touch on them.
     """
 
     standard: Standard
     requests: Requests
+    proof: Requests
     criterion: Criterion
     prior_rms: tuple[float, float]
     rivals: tuple[Rival, ...]
     certificate: Certificate
+    power: Power
+    power_of_balls: Power
     unreachable: tuple[str, ...] = ()
 
     @property
     def own(self) -> Rival:
         """Figures of this standard."""
         return self.rivals[0]
+
+    @property
+    def touches(self) -> Requests:
+        """All touches: those that identify first."""
+        return joined([self.requests, self.proof])
 
 
 def design_standard(
@@ -134,8 +152,8 @@ def design_standard(
         poses_to_try: Table poses to choose from, (K, R), rad; None for a grid over the workspace.
 
     Raises:
-        NotBuildable: The blank is larger than the table, or no choice of sites meets every limit;
-            the message names what binds.
+        NotBuildable: The blank is larger than the table, or no choice of faces and balls meets
+            every limit; the message names what binds.
         NotReachable: The machine reaches too few touches on the standard.
     """
     options = options or PlacementOptions()
@@ -155,35 +173,135 @@ def design_standard(
     )
     progress("placement", 1, 6)
     all_poses = table_poses(criterion, choice.poses) if poses_to_try is None else poses_to_try
-    standard = _standard(criterion.plain, blank, all_poses, options, rng)
-    progress("placement", 3, 6)
-    plain = criterion.plain.on(standard)
-    poses = chosen_poses(plain, standard, all_poses, choice)
-    standard = with_optimised_shapes(plain, standard, poses, blank.limits, choice, rng)
-    progress("placement", 4, 6)
-    here = criterion.on(standard)
-    tried = touches_to_choose_from(here, standard, poses, choice)
-    chosen, nearness = chosen_touches_on(here, standard, tried, choice)
-    requests = tried[chosen]
-    standard = _with_shares(criterion, standard, requests)
-    progress("placement", 5, 6)
+    places = ball_places(criterion.plain, blank, all_poses, rng)
+    bodies = body_choice(criterion.plain, blank, all_poses, options.patches, options.sites, rng)
+    progress("placement", 2, 6)
     free = random_touches(
         reach, criterion.volume, criterion.rotary, max(choice.touches, _FREE), rng
     )
     library = visibility(criterion, free)
+    rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
+    progress("placement", 4, 6)
+    bases = _bases(criterion.plain, rivals, places, all_poses, options)
+    found = _identifying(criterion, bodies, bases, options)
+    standard, tried, chosen = found.standard, found.tried, found.chosen
+    requests = tried[chosen]
+    here = criterion.on(replace(standard, patches=()))
+    proof, powers = _proving(criterion.on(standard), found, choice.proof, library, rng)
+    standard = _with_shares(criterion, standard, proof)
+    progress("placement", 5, 6)
     lots = random_lots(tried, len(requests), rng)
     own = evaluated(f"standard {options.name}", here, requests, lots, library, len(tried), standard)
-    rivals, unreachable = compare(criterion, all_poses, poses, blank, choice, library, rng)
     progress("placement", 6, 6)
     return Placement(
         standard=standard,
         requests=requests,
+        proof=proof,
         criterion=criterion,
         prior_rms=prior_rms(criterion),
         rivals=(own, *rivals),
-        certificate=nearness,
+        certificate=found.nearness,
+        power=powers[0],
+        power_of_balls=powers[1],
         unreachable=unreachable,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Identifying:
+    """A standard with the touches that identify by it: those that can be made, the choice."""
+
+    standard: Standard
+    poses: Array
+    tried: Requests
+    chosen: Mask
+    nearness: Certificate
+
+
+def _bases(
+    criterion: Criterion,
+    rivals: tuple[Rival, ...],
+    places: BallPlaces,
+    all_poses: Array,
+    options: PlacementOptions,
+) -> list[tuple[tuple[DatumSphere, ...], Requests]]:
+    """Balls to build on, with touches: the rivals', the best first, or as many as find room."""
+    of_balls = [
+        r
+        for r in rivals
+        if r.body is not None and not r.body.patches and len(r.body.spheres) <= options.balls
+    ]
+    if of_balls:
+        return [
+            (r.body.spheres, r.touches)
+            for r in sorted(of_balls, key=lambda r: r.value)
+            if r.body is not None
+        ]
+    balls = places.best(options.balls, options.choice.touches)
+    body = with_spheres(places.blank, [b.centre for b in balls])
+    poses = chosen_poses(criterion.on(body), body, body.spheres, all_poses, options.choice)
+    tried = touches_to_choose_from(
+        criterion.reach, body, body.spheres, poses, options.choice.touches
+    )
+    return [(body.spheres, tried)]
+
+
+def _identifying(
+    criterion: Criterion,
+    bodies: BodyChoice,
+    bases: list[tuple[tuple[DatumSphere, ...], Requests]],
+    options: PlacementOptions,
+) -> _Identifying:
+    """The best balls that leave room for the faces, and the touches that identify by them.
+
+    Where every ball of a base stays nothing better is looked for; where some had to go, the next
+    base is tried as well.
+    """
+    best: _Identifying | None = None
+    choice, refused = options.choice, NotReachable("no ball")
+    for balls, touches in bases[:_BASES]:
+        poses = np.unique(touches.rotary, axis=0)
+        standard = bodies.standard(
+            options.name, options.serial, balls, touches, options.patches, choice.proof
+        )
+        here, reach = criterion.on(replace(standard, patches=())), criterion.reach
+        tried = touches_to_choose_from(reach, standard, standard.spheres, poses, choice.touches)
+        try:
+            chosen, nearness = chosen_touches_on(here, tried, choice)
+        except NotReachable as error:
+            refused = error
+            continue
+        if best is None or nearness.value < best.nearness.value:
+            best = _Identifying(
+                standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
+            )
+        if len(standard.spheres) == len(balls):
+            break
+    if best is None:
+        raise refused
+    return best
+
+
+def _proving(
+    criterion: Criterion,
+    found: _Identifying,
+    count: int,
+    library: Visibility,
+    rng: np.random.Generator,
+) -> tuple[Requests, tuple[Power, Power]]:
+    """Touches that prove, and their power beside that of as many further touches on the balls."""
+    standard, requests = found.standard, found.tried[found.chosen]
+    on_faces = touches_to_choose_from(
+        criterion.reach, standard, standard.patches, found.poses, count
+    )
+    proof = proving_touches(criterion, on_faces, requests, count)
+    others = found.tried[~found.chosen]
+    others = others if len(others) >= count else found.tried  # the same ones once more
+    more = proving_touches(criterion, others, requests, min(count, len(others)))
+    of_faces, of_balls = (
+        proof_power(criterion, requests, lot, library.effects, rng) for lot in (proof, more)
+    )
+    return proof, (of_faces, of_balls)
 
 
 def _check_blank(base: Base, reach: ProbeReach) -> None:
@@ -196,108 +314,10 @@ def _check_blank(base: Base, reach: ProbeReach) -> None:
         )
 
 
-def _standard(
-    criterion: Criterion,
-    blank: Blank,
-    poses: Array,
-    options: PlacementOptions,
-    rng: np.random.Generator,
-) -> Standard:
-    """Choose sites until the whole body meets every limit."""
-    sites = random_sites(blank, options.sites, rng)
-    fits = neighbour_gaps(sites, blank) >= blank.limits.gap
-    few = spread_poses(poses, 20)
-    wanted = joined([_face_touches(f"{i}", site, blank.base, few) for i, site in enumerate(sites)])
-    wanted = wanted[criterion.reach.is_reachable(wanted)]
-    if not len(wanted):
-        raise NotReachable(
-            f"no face on any of {len(sites)} sites can be touched at a table pose with every axis "
-            "within its travel"
-        )
-    W, group = criterion.rows(wanted), wanted.feature.astype(np.int64)
-    take = max(4, options.choice.touches // options.patches)
-    limits = blank.limits
-    refused = (
-        f"between them the ball of radius {limits.ball_radius:g} mm has to pass with a gap of "
-        f"{limits.gap:g} mm"
-    )
-    binding: list[str] = []
-    for _ in range(_REBUILDS):
-        chosen = _side_by_side(criterion, W, group, options.patches, take, fits)
-        if len(chosen) < options.patches:
-            raise NotBuildable(
-                f"only {len(chosen)} of {options.patches} patches fit on the blank; {refused}",
-                fitting=len(chosen),
-            )
-        order = sorted(chosen, key=lambda k: (-sites[k].height, sites[k].azimuth))
-        try:
-            standard = standard_from_sites(
-                options.name, [sites[k] for k in order], blank, options.serial
-            )
-        except NotBuildable as error:
-            refused = str(error)
-            _forbid(fits, [chosen[-1]])
-            continue
-        broken = [c for c in constraints(standard, blank.limits) if c.slack < 0.0]
-        if not broken:
-            return standard
-        refused, binding = str(broken[0]), [c.name for c in broken]
-        for constraint in broken:
-            _blame(fits, constraint.features, order, chosen)
-    raise NotBuildable(
-        f"no choice of {options.patches} patches meets every limit; {refused}", binding=binding
-    )
-
-
-def _side_by_side(
-    criterion: Criterion,
-    W: Array,
-    group: IntArray,
-    count: int,
-    take: int,
-    fits: NDArray[np.bool_],
-) -> list[int]:
-    """The sites that are worth most; if their neighbours run out, begun from some that all fit."""
-    chosen = best_groups(criterion.objective, W, group, count, take, apart=fits)
-    if len(chosen) < count:
-        touched = np.isin(np.arange(len(fits)), group)
-        begin = most_side_by_side(fits & touched & touched[:, None], count)
-        if len(begin) > len(chosen):
-            chosen = best_groups(criterion.objective, W, group, count, take, None, fits, begin)
-    return chosen
-
-
-def _face_touches(name: str, site: Site, base: Base, poses: Array) -> Requests:
-    """Touches in the corners and the middle of the face of a site, each at every pose."""
-    patch = patch_of_site(name, site, base)
-    return each_at(patch, face_grid(patch.half_size, 3)[::2], poses)
-
-
-def _blame(
-    fits: NDArray[np.bool_], features: tuple[str, ...], order: list[int], chosen: list[int]
-) -> None:
-    """Keep the sites that violate a limit from being chosen so again."""
-    names = [f"FF{i}" for i in range(1, len(order) + 1)]
-    guilty = [order[names.index(name)] for name in features if name in names]
-    if len(guilty) == 2 and guilty[0] != guilty[1]:
-        fits[guilty[0], guilty[1]] = fits[guilty[1], guilty[0]] = False
-    else:
-        _forbid(fits, guilty or [chosen[-1]])
-
-
-def _forbid(fits: NDArray[np.bool_], sites: list[int]) -> None:
-    """A site that fits beside nothing, not even as the first."""
-    fits[sites, :] = False
-    fits[:, sites] = False
-
-
 def _with_shares(criterion: Criterion, standard: Standard, requests: Requests) -> Standard:
     """The standard with the errors that each patch is for."""
-    on_patch = np.isin(requests.feature, [p.name for p in standard.patches])
-    touches = criterion.reach.touches(requests[on_patch])
+    touches = criterion.reach.touches(requests)
     W = whitened(criterion.model.columns(touches), criterion.model.prior_sd, criterion.noise)
-    shares = error_shares(
-        W, requests.feature[on_patch].tolist(), parameter_symbols(criterion.model)
-    )
+    shares = error_shares(W, requests.feature.tolist(), parameter_symbols(criterion.model))
     patches = tuple(replace(p, errors=shares.get(p.name, ())) for p in standard.patches)
     return replace(standard, patches=patches)

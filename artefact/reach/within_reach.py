@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.layout import RINGS, Blank
+from artefact.layout import Blank
 from artefact.reach.touchable import ROUNDING, Mask, ProbeReach
 from twin.frames import Array, fixed_xyz
 from twin.record import IntArray
@@ -19,7 +19,10 @@ ANGLE = "angle"
 """Name of the limit that is no travel: between a surface's normal and the tool axis."""
 
 PLACES = 240
-"""Tried on a blank, some tens in the least of its rings."""
+"""Tried on a blank."""
+
+_LOWEST, _HIGHEST = 20.0, 0.7  # of a touch: mm above the base, and share of the blank's height
+_TILT = 90.0 * DEG  # of a touch from the standard's z: balls are touched down to their equators
 _MM_PER_RAD = 5.0 / DEG  # mm of travel that weigh as much as an angle where both are in the way
 
 
@@ -92,26 +95,18 @@ class PlacesInReach:
 
 
 def places_on(blank: Blank, count: int = PLACES) -> tuple[Array, Array]:
-    """Places and normals that faces of a standard may have, evenly over the rings, (N, 3) each.
+    """Places and normals that touches of a standard may have, all over the blank, (N, 3) each.
 
     No randomness: the values follow the multiples of the roots of small primes.
     """
-    wide, tall = min(blank.base.half_size) / 140.0, blank.height / 220.0
-    points, normals = [], []
-    for ring in RINGS:
-        n = max(round(ring.share * count), 12)
-        share = (np.arange(n)[:, None] * np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0])) % 1.0
-        radius, height, tilt, lean = (
-            low + (high - low) * share[:, i]
-            for i, (low, high) in enumerate((ring.radius, ring.height, ring.tilt, ring.lean))
-        )
-        azimuth = 2.0 * np.pi * share[:, 4]
-        lean = azimuth + np.where(np.arange(n) % 2, 1.0, -1.0) * lean
-        at = radius * wide
-        points.append(np.column_stack([at * np.cos(azimuth), at * np.sin(azimuth), height * tall]))
-        sin = np.sin(tilt)
-        normals.append(np.column_stack([sin * np.cos(lean), sin * np.sin(lean), np.cos(tilt)]))
-    return np.concatenate(points), np.concatenate(normals)
+    share = (np.arange(count)[:, None] * np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0])) % 1.0
+    (a, b), (low, high) = blank.base.half_size, (_LOWEST, _HIGHEST * blank.height)
+    height = blank.base.thickness + low + (high - blank.base.thickness - low) * share[:, 2]
+    point = np.column_stack([a * (1.8 * share[:, 0] - 0.9), b * (1.8 * share[:, 1] - 0.9), height])
+    tilt, azimuth = _TILT * share[:, 3], 2.0 * np.pi * share[:, 4]
+    sin = np.sin(tilt)
+    normal = np.column_stack([sin * np.cos(azimuth), sin * np.sin(azimuth), np.cos(tilt)])
+    return point, normal
 
 
 def reach_of(reach: ProbeReach, point: Array, normal: Array, poses: Array) -> PlacesInReach:

@@ -7,9 +7,11 @@ in `CRITERIA` and in `criterion_for`.
 """
 
 from artefact.worth.attribution import error_shares, parameter_symbols
+from artefact.worth.ball_choice import BallPlaces, ball_places
 from artefact.worth.calibration import Calibration
 from artefact.worth.effect_visibility import Visibility, visibility
 from artefact.worth.touch_choice import (
+    Surfaces,
     TouchOptions,
     chosen_poses,
     chosen_touches_on,
@@ -18,7 +20,6 @@ from artefact.worth.touch_choice import (
     pose_quota,
     poses_within,
     some_touches,
-    sphere_grid,
     table_poses,
     touches_to_choose_from,
 )
@@ -33,12 +34,15 @@ from artefact.worth.touch_curves import TouchCurve, touch_curve
 
 __all__ = [
     "CRITERIA",
+    "BallPlaces",
     "Calibration",
     "Criterion",
     "CriterionOptions",
+    "Surfaces",
     "TouchCurve",
     "TouchOptions",
     "Visibility",
+    "ball_places",
     "chosen_poses",
     "chosen_touches_on",
     "criterion_for",
@@ -50,7 +54,6 @@ __all__ = [
     "poses_within",
     "random_touches",
     "some_touches",
-    "sphere_grid",
     "table_poses",
     "touch_curve",
     "touches_to_choose_from",

@@ -7,11 +7,12 @@ problem, in which a touch may be made by halves, bounds what any choice of them 
 heaviest touches, exchanged until nothing is gained, are the choice.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Standard, Surface
+from artefact.body import DatumSphere, FreeformPatch, Standard, Surface
 from artefact.reach import Mask, ProbeReach, Requests, joined
 from artefact.worth.touch_criterion import Criterion
 from information.selection import (
@@ -24,10 +25,12 @@ from information.selection import (
     rounded,
 )
 from twin.compute import blocks
-from twin.errors import DesignError, NotReachable
+from twin.errors import NotReachable
 from twin.frames import Array
 from twin.machine import Chain
 from twin.units import DEG
+
+Surfaces = Sequence[FreeformPatch | DatumSphere]
 
 _PITCHES = (5, 9, 15)  # points each way on a face
 _CHOICE = (
@@ -43,21 +46,17 @@ _SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
 
 @dataclass(frozen=True)
 class TouchOptions:
-    """How many touches are chosen, at how many table poses, and who gets which share.
+    """How many touches are chosen, at how many table poses.
 
     Attributes:
-        touches: Number of touches.
+        touches: Number of touches that identify.
         poses: Number of table poses.
-        sphere_share: Part of the touches that goes to the datum spheres, at least and at most. They
-            would take two thirds if they could, but a standard of spheres is no news, and faces
-            are what a freeform standard calibrates.
-        least_on_patch: Fewest touches on a patch, as a part of its even share.
+        proof: Number of touches that prove, on faces that identified nothing.
     """
 
     touches: int = 480
     poses: int = 30
-    sphere_share: tuple[float, float] = (0.15, 0.45)
-    least_on_patch: float = 0.4
+    proof: int = 160
 
 
 def table_poses(criterion: Criterion, wanted: int) -> Array:
@@ -128,11 +127,13 @@ def each_at(surface: Surface, uv: Array, poses: Array) -> Requests:
     )
 
 
-def touches_at(standard: Standard, poses: Array, pitch: int) -> Requests:
-    """Candidate touches on every face and sphere, `pitch` each way, at every pose."""
-    parts = [each_at(p, face_grid(p.half_size, pitch), poses) for p in standard.patches]
-    parts += [each_at(s, sphere_grid(pitch * pitch), poses) for s in standard.spheres]
-    return joined(parts)
+def touches_at(surfaces: Surfaces, poses: Array, pitch: int) -> Requests:
+    """Candidate touches on faces and spheres, `pitch` each way, at every pose."""
+    grids = [
+        sphere_grid(pitch * pitch) if isinstance(s, DatumSphere) else face_grid(s.half_size, pitch)
+        for s in surfaces
+    ]
+    return joined([each_at(s, uv, poses) for s, uv in zip(surfaces, grids, strict=True)])
 
 
 def clear_touches(reach: ProbeReach, standard: Standard, wanted: Requests) -> Requests:
@@ -142,10 +143,14 @@ def clear_touches(reach: ProbeReach, standard: Standard, wanted: Requests) -> Re
 
 
 def chosen_poses(
-    criterion: Criterion, standard: Standard, poses: Array, options: TouchOptions
+    criterion: Criterion,
+    standard: Standard,
+    surfaces: Surfaces,
+    poses: Array,
+    options: TouchOptions,
 ) -> Array:
-    """Table poses whose touches tell most, (K, R)."""
-    tried = touches_at(standard, poses, pitch=3)
+    """Table poses whose touches on some surfaces of a standard tell most, (K, R)."""
+    tried = touches_at(surfaces, poses, pitch=3)
     tried = tried[criterion.reach.is_reachable(tried)]
     reached = tried
     tried = tried[criterion.reach.has_room(standard, tried)]  # the way there is looked at later
@@ -164,14 +169,17 @@ def chosen_poses(
 
 
 def touches_to_choose_from(
-    criterion: Criterion, standard: Standard, poses: Array, options: TouchOptions
+    reach: ProbeReach, standard: Standard, surfaces: Surfaces, poses: Array, count: int
 ) -> Requests:
-    """Touches that can be made at some poses, on grids as fine as a choice among them needs."""
-    tried = clear_touches(criterion.reach, standard, touches_at(standard, poses, _PITCHES[0]))
+    """Touches on some surfaces of a standard that can be made at some poses.
+
+    The grids are as fine as a choice of `count` among them needs.
+    """
+    tried = clear_touches(reach, standard, touches_at(surfaces, poses, _PITCHES[0]))
     for pitch in _PITCHES[1:]:
-        if len(tried) >= _CHOICE * options.touches:
+        if len(tried) >= _CHOICE * count:
             break
-        tried = clear_touches(criterion.reach, standard, touches_at(standard, poses, pitch))
+        tried = clear_touches(reach, standard, touches_at(surfaces, poses, pitch))
     return tried
 
 
@@ -189,7 +197,7 @@ def some_touches(
     Raises:
         NotReachable: None can be made.
     """
-    tried = touches_at(standard, poses, _PITCHES[-1])
+    tried = touches_at(standard.patches, poses, _PITCHES[-1])
     tried = tried[criterion.reach.is_reachable(tried)]
     tried = tried[rng.permutation(len(tried))]
     found: list[Requests] = []
@@ -214,66 +222,32 @@ def pose_quota(tried: Requests, count: int) -> Quota:
     return Quota(pose, np.full(len(there), most))
 
 
-def shares(standard: Standard, tried: Requests, options: TouchOptions) -> tuple[Quota, ...]:
-    """What every choice of touches keeps: of a table pose, of the spheres, of each patch.
-
-    Where fewer touches can be made than a share asks for, all of them will do; where poses are too
-    uneven for theirs, they may be more crowded.
-
-    Raises:
-        NotReachable: Too few touches can be made, whatever the shares.
-    """
-    n, patches = options.touches, len(standard.patches)
-    if len(tried) < n:
-        raise NotReachable(f"{len(tried)} touches can be made on the standard, {n} are wanted")
-    names = [*(p.name for p in standard.patches), *(s.name for s in standard.spheres)]
-    feature = np.array([names.index(f) for f in tried.feature.tolist()])
-    there = np.bincount(feature, minlength=len(names))
-    least = np.minimum(round(options.least_on_patch * n / len(names)), there)
-    least[patches:] = 0
-    on_spheres = int(there[patches:].sum())
-    low, high = (round(share * n) for share in options.sphere_share)
-    high = max(high, n - int(there[:patches].sum()))
-    low = min(low, high, on_spheres, n - int(least.sum()))
-    of_features = (
-        Quota((feature >= patches).astype(np.int64), np.array([n, high]), np.array([0, low])),
-        Quota(feature, np.full(len(names), n), least),
-    )
-    per_pose = pose_quota(tried, n)
-    while True:
-        quotas = (per_pose, *of_features)
-        try:
-            heaviest(np.zeros(len(tried)), n, quotas)
-        except DesignError:
-            if per_pose.most.min() >= n:
-                raise
-            per_pose = replace(per_pose, most=np.minimum(2 * per_pose.most, n))
-        else:
-            return quotas
-
-
 def chosen_touches_on(
     criterion: Criterion,
-    standard: Standard,
     tried: Requests,
     options: TouchOptions,
     rounds: int = ROUNDS,
 ) -> tuple[Mask, Certificate]:
-    """Single touches, and how near they are to the best that keep the same shares.
+    """Single touches, and how near they are to the best that crowd no table pose.
 
     The relaxed optimum comes first; its heaviest touches are exchanged until nothing is gained.
 
     Args:
         criterion: What they are chosen for.
-        standard: The body that they lie on.
         tried: Touches that can be made.
-        options: How many of them, in which shares.
+        options: How many of them.
         rounds: Most looks at all candidates on the way to the relaxed optimum; exchanges follow.
 
     Returns:
         The choice, (N,), and its certificate.
+
+    Raises:
+        NotReachable: Too few touches can be made.
     """
-    quotas, W, n = shares(standard, tried, options), criterion.rows(tried), options.touches
+    n = options.touches
+    if len(tried) < n:
+        raise NotReachable(f"{len(tried)} touches can be made on the standard, {n} are wanted")
+    quotas, W = (pose_quota(tried, n),), criterion.rows(tried)
     start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
     best = relaxed(criterion.objective, W, n, start, _NEAR, quotas, rounds)
     choice = rounded(criterion.objective, W, best.weight, n, most=n // 2, quotas=quotas)

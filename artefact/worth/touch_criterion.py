@@ -34,7 +34,7 @@ from twin.errors import DesignError, NotReachable
 from twin.frames import Array, apply
 from twin.machine import Family
 from twin.model import Model
-from twin.record import at_poses
+from twin.record import Touches, at_poses
 from twin.units import DEG
 
 SETUP_SD = (1.0, 5e-3)
@@ -60,8 +60,8 @@ class Criterion:
         noise: Standard deviation of one touch, mm.
         rotary: Smallest and largest reading of every rotary axis, (R, 2), rad.
         volume: Box that the standard fills, artefact frame, mm.
-        tip_volume: Deviation of the tip per unit of every parameter at poses over the probed
-            volume, (M, 3, P).
+        at_volume: Poses over the probed volume, M of them.
+        tip_volume: Deviation of the tip per unit of every parameter at them, (M, 3, P).
         tip_user: The same at poses over the user's workspace, (M, 3, P).
         objectives: What touches can be chosen for, by the names in `CRITERIA`.
         name: The one that they are chosen for.
@@ -76,6 +76,7 @@ class Criterion:
     noise: float
     rotary: Array
     volume: Box
+    at_volume: Touches
     tip_volume: Array
     tip_user: Array
     objectives: Mapping[str, DesignCriterion]
@@ -209,7 +210,8 @@ def criterion_for(
     options = options or CriterionOptions()
     volume = _probed_volume(blank)
     rotary = np.array([workspace.limit(n) for n in reach.chain.rotary_axes]).reshape(-1, 2)
-    tips = _tips(reach, model, volume, workspace, rng)
+    at = _at(reach, volume, workspace, rng)
+    tips = [model.tip_columns(poses) for poses in at]
     prior_sd = _with_free_setup(model)
     scatter = random_touches(reach, volume, rotary, _SCATTER, rng)
     free = reach.touches(scatter)
@@ -237,6 +239,7 @@ def criterion_for(
         noise=noise,
         rotary=rotary,
         volume=volume,
+        at_volume=at[0],
         tip_volume=tips[0],
         tip_user=tips[1],
         objectives=objectives,
@@ -290,10 +293,10 @@ def _probed_volume(blank: Blank) -> Box:
     )
 
 
-def _tips(
-    reach: ProbeReach, model: Model, volume: Box, workspace: Workspace, rng: np.random.Generator
-) -> tuple[Array, Array]:
-    """Deviation of the tip per unit of every parameter: probed volume, user's workspace."""
+def _at(
+    reach: ProbeReach, volume: Box, workspace: Workspace, rng: np.random.Generator
+) -> list[Touches]:
+    """Poses over the probed volume and over the user's workspace."""
     chain = reach.chain
     limits = {name: workspace.limit(name) for name in chain.rotary_axes}
     on_table = apply(
@@ -302,11 +305,10 @@ def _tips(
     corners = np.array([on_table.min(axis=0), on_table.max(axis=0)])
     box: Box = (tuple(corners[0]), tuple(corners[1]))
     probed = Workspace(chain, limits, reach.length, box)
-    tips = []
-    for area, length in ((probed, reach.length), (workspace, workspace.length)):
-        q = latin_hypercube(area, _POSES, rng)
-        tips.append(model.tip_columns(at_poses(chain, q, length)))
-    return tips[0], tips[1]
+    return [
+        at_poses(chain, latin_hypercube(area, _POSES, rng), area.length)
+        for area in (probed, workspace)
+    ]
 
 
 def _is_setup(model: Model) -> NDArray[np.bool_]:

@@ -99,7 +99,7 @@ def run(args: argparse.Namespace) -> int:
     say_each(others)
     dropped = dict.fromkeys(map(str, made.plan.refused))  # a pose is visited twice
     say_each(f"touch dropped: {refusal}" for refusal in dropped)
-    say_each(proof_line(m.seed + 1, m.in_workspace, m.proof) for m in made.machines)
+    say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0
 
@@ -144,11 +144,10 @@ def _to_change(error: DesignError) -> str:
     from artefact.brief import FEWEST_PATCHES
 
     fitting, binding = error.facts.get("fitting"), error.facts.get("binding")
-    gap = error.facts.get("gap")
     keys = []
     if isinstance(fitting, int):
         if fitting >= FEWEST_PATCHES:
             keys.append(f"standard.patches (to {fitting})")
-        keys.append(f"limits.gap_mm (to {gap:g})" if gap else _KEYS["room for the ball before"])
+        keys.append(_KEYS["room for the ball before"])
     keys += [_KEYS.get(name, _ALWAYS) for name in binding] if isinstance(binding, list) else []
     return " or ".join(dict.fromkeys([*keys, _ALWAYS]))

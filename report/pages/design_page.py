@@ -109,8 +109,9 @@ def _draw_curves(design: Design, folder: Path) -> str:
     return (
         "Error left against the number of touches, predicted for every artefact by one rule: its "
         "touches in the order in which each helps most, and beyond their number all of them again. "
-        f"Marked: the {len(placement.requests)} touches of the table above. No machine is drawn "
-        "for it: it is the spread that the touches leave to machines of the stated error ranges."
+        f"Marked: the {len(placement.requests)} identifying touches of the table above. No machine "
+        "is drawn for it: it is the spread that the touches leave to machines of the stated error "
+        "ranges."
     )
 
 

@@ -21,8 +21,8 @@ def minutes(design: Design) -> dict[str, float]:
     """Minutes on the machine by artefact, by one planner and one clock; nan without a body."""
     project, placement = design.project, design.placement
     probe = design.plan.probe
-    found = {placement.own.name: design.programs.duration / MINUTE}
-    for rival in placement.rivals[1:]:
+    found = {}
+    for rival in placement.rivals:
         seconds = np.nan
         if rival.body is not None:
             seconds = probing_time(

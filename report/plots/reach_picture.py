@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from artefact.layout import Blank, Site
+from artefact.body import FreeformPatch
+from artefact.layout import Blank, least_gap
 from artefact.reach import ANGLE, Limit, PlacesInReach
-from report.style import BLUE, INK, RED, SOFT, figure, plain
-from twin.frames import apply
+from report.style import BLUE, INK, RED, figure, plain
 from twin.machine import Chain
 from twin.units import DEG
 
@@ -107,34 +107,28 @@ def _words(limit: Limit) -> str:
     return f"{limit.name} {'above' if limit.upper else 'below'} {limit.at:g} mm"
 
 
-def draw_room(sites: Sequence[Site], wanted: int, blank: Blank) -> Figure:
-    """Faces that stand side by side, each with the ball over its middle, from above and the side.
+def draw_room(faces: Sequence[FreeformPatch], wanted: int, blank: Blank) -> Figure:
+    """Faces that stand side by side, from above and the side.
 
     Args:
-        sites: Those that fit.
+        faces: Those that fit.
         wanted: How many were asked for.
-        blank: With the ball that has to pass, and the gap.
+        blank: On which they stand.
     """
     drawn = figure(5.0)
-    radius, gap = blank.limits.ball_radius, blank.limits.gap
     drawn.suptitle(
-        f"{len(sites)} of {wanted} patches fit side by side: a ball of radius {radius:g} mm has to "
-        f"touch each everywhere, {gap:g} mm from all others",
+        f"{len(faces)} of {wanted} patches fit side by side: between two of them cutter and "
+        f"probe need {least_gap(blank.limits):g} mm",
         color=INK,
     )
     a, b = blank.base.half_size
     views = ((1, "from above", -b, b), (2, "from the side", 0.0, blank.height))
     for axes, (other, title, low, high) in zip(drawn.subplots(1, 2), views, strict=True):
-        for site in sites:
-            x, y = site.half_size
-            corners = np.array([[-x, -y, 0.0], [x, -y, 0.0], [x, y, 0.0], [-x, y, 0.0]])
-            outline = apply(site.T_artefact_patch, corners)
+        for face in faces:
+            x, y = face.half_size
+            uv = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
+            outline = face.point(uv)
             axes.fill(outline[:, 0], outline[:, other], color=BLUE, alpha=0.5, lw=0.0)
-            ball = apply(site.T_artefact_patch, np.array([0.0, 0.0, radius]))
-            for size, style in ((radius, "-"), (radius + gap, ":")):
-                turn = np.linspace(0.0, 2.0 * np.pi, 60)
-                across, along = ball[0] + size * np.cos(turn), ball[other] + size * np.sin(turn)
-                axes.plot(across, along, style, color=SOFT, lw=1.0)
         axes.plot([-a, a, a, -a, -a], [low, low, high, high, low], color=INK, lw=1.0)
         axes.set(
             title=f"the blank {title}",

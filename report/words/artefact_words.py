@@ -1,6 +1,7 @@
 """Sentences about a design: what its touches were chosen for, how it compares."""
 
 from artefact.brief import StandardTable
+from artefact.compare import ERROR, RISK, WANTED
 from artefact.place import Placement
 from report.numbers import digits, percent
 from twin.units import UM
@@ -42,6 +43,20 @@ def identification_sentence(placement: Placement) -> str:
         f"{percent(abs(change))} over the user's workspace: after as many touches the standard "
         f"leaves {digits(own.rms_user / UM)} µm rms, {best.name} placed by the same optimiser "
         f"{digits(best.rms_user / UM)} µm, with the calibration of every feature taken in."
+    )
+
+
+def proof_sentence(placement: Placement) -> str:
+    """What the freeform faces buy in proof, beside what the balls would."""
+    faces, balls = placement.power, placement.power_of_balls
+    return (
+        f"Proof: {faces.touches} touches on the {len(placement.standard.patches)} freeform faces, "
+        f"held back from the identification, find a model that is wrong by {digits(ERROR / UM)} µm "
+        f"rms in the probed volume with a power of {percent(float(faces.power.mean()))} on average "
+        f"at {percent(RISK)} risk ({percent(WANTED)} or more for {faces.found} of "
+        f"{len(faces.effects)} effects of the library). As many further touches on the balls would "
+        f"for {balls.found}, but they share the calibration that went into the model, and no ball "
+        f"is like the surface of a workpiece."
     )
 
 

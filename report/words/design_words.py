@@ -4,11 +4,14 @@ The user's workspace comes first, because that is where parts are made; the prob
 that the ball reaches on the standard, comes second and is named as such.
 """
 
+import numpy as np
+
 from artefact.compare import Rival
 from artefact.place import Placement
 from diagnosis.answer import Proof
+from diagnosis.fit import Fit
 from report.numbers import digits
-from report.words.artefact_words import identification_sentence
+from report.words.artefact_words import identification_sentence, proof_sentence
 from twin.units import UM
 
 EQUAL = 1.05
@@ -55,14 +58,21 @@ def design_lines(placement: Placement) -> list[str]:
     if others:
         rival = min(others, key=lambda r: r.rms)
         line += f", the best other artefact there, {rival.name}, {_um(rival.rms)}"
-    return [verdict_of_design(placement), line, *filter(None, [identification_sentence(placement)])]
+    told = [identification_sentence(placement), proof_sentence(placement)]
+    return [verdict_of_design(placement), line, *filter(None, told)]
 
 
-def proof_line(number: int, in_workspace: Proof, in_volume: Proof) -> str:
-    """One simulated machine: what its model does not predict."""
+def proof_line(number: int, in_workspace: Proof, in_volume: Proof, fit: Fit) -> str:
+    """One simulated machine: what its model does not predict, there and on the faces held back."""
+    held_back = fit.test_rows
+    left, noise = (
+        float(np.sqrt(np.mean(v[held_back] ** 2))) if held_back.any() else 0.0
+        for v in (fit.residual, fit.run.u)
+    )
+    faces = f"; on the faces held back {_um(left)} rms is left, noise {_um(noise)}" if left else ""
     return (
         f"machine {number}: in your workspace {_after(in_workspace)}; "
-        f"in the probed volume {_after(in_volume)}"
+        f"in the probed volume {_after(in_volume)}{faces}"
     )
 
 

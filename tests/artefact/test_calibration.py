@@ -1,12 +1,13 @@
 """Features known as well as their calibration: columns, averages over them, and what stays."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
 
-from artefact.compare.placed_spheres import COUNTS, placed_spheres
 from artefact.layout.sites import Blank
+from artefact.worth import ball_choice
 from artefact.worth.calibration import Calibration
 from artefact.worth.touch_choice import each_at, face_grid, sphere_grid, table_poses
 from information.criteria.posterior import Posterior
@@ -87,11 +88,11 @@ def test_an_exact_calibration_changes_nothing(criterion, standard, touches):
         Calibration(patch=-1.0 * UM)
 
 
-def test_placed_spheres_stand_apart_and_beat_spheres_anywhere(criterion):
+def test_placed_balls_stand_apart_and_beat_balls_anywhere(criterion, monkeypatch):
+    monkeypatch.setattr(ball_choice, "_PLACES", 150)
     blank, rng = Blank(), np.random.default_rng(3)
     poses = table_poses(criterion, 12)
-    found = placed_spheres(criterion, blank, poses, 160, rng)
-    assert set(found) == set(COUNTS)
+    places = ball_choice.ball_places(criterion, blank, poses, rng)
 
     def left(spheres):
         """Criterion after the same directions on every sphere at the same few poses."""
@@ -99,16 +100,18 @@ def test_placed_spheres_stand_apart_and_beat_spheres_anywhere(criterion):
         W = np.concatenate([criterion.rows(t) for t in touches]) / np.sqrt(len(spheres))
         return criterion.objective.value(W.T @ W)
 
-    for count, body in found.items():
-        centres = np.stack([s.centre for s in body.spheres])
-        assert len(centres) == count
-        across = np.linalg.norm(centres[:, None, :2] - centres[:, :2], axis=-1)
-        assert across[np.triu_indices(count, 1)].min() >= 2.0 * (12.5 + 3.0) + 1.0
-        assert np.abs(centres[:, :2]).max() < 140.0 - 9.0
-        assert not body.patches
-    candidates = placed_spheres.__globals__["_candidates"](blank, criterion.volume, rng)
+    found = {count: places.best(count, 160) for count in (4, 7)}
+    for count, balls in found.items():
+        assert len(balls) == count
+        for one, other in combinations(balls, 2):
+            across = np.linalg.norm(one.centre[:2] - other.centre[:2])
+            assert across >= one.foot_radius + other.foot_radius + 12.0
+            assert across >= 2.0 * (12.5 + 3.0) + 1.0
+        assert max(np.abs(b.centre[:2]).max() + b.radius for b in balls) < 140.0
     anywhere = [
-        left([candidates[k] for k in rng.choice(len(candidates), 4, replace=False)])
+        left([places.balls[k] for k in rng.choice(len(places.balls), 4, replace=False)])
         for _ in range(20)
     ]
-    assert left(found[4].spheres) < np.median(anywhere)
+    assert left(found[4]) < np.median(anywhere)
+    barred = np.array([b.centre[0] > 0.0 for b in places.balls])
+    assert all(b.centre[0] <= 0.0 for b in places.best(4, 160, ~barred))

@@ -198,9 +198,7 @@ def test_what_is_against_a_touch(standard, chain, feature, uv, c_b, what, reason
     assert can_be_made.tolist() == [not reason]
 
 
-OPTIONS = PlacementOptions(
-    name="trial", patches=8, sites=60, choice=TouchOptions(touches=160, poses=12)
-)
+OPTIONS = PlacementOptions(name="trial", sites=60, choice=TouchOptions(touches=160, poses=12))
 LIMITS_OF_USER = {
     "X": (-150.0, 150.0),
     "Y": (-150.0, 150.0),
@@ -213,7 +211,7 @@ LIMITS_OF_USER = {
 @pytest.mark.parametrize(
     ("limits", "what", "kind", "line"),
     [
-        (Limits(gap=60.0), {}, NotBuildable, r"only \d of 8 patches fit .* with a gap of 60 mm"),
+        (Limits(gap=60.0), {}, NotBuildable, r"only \d of 6 patches fit .* probe need 66 mm"),
         (
             Limits(),
             {"steepest": 1e-3},

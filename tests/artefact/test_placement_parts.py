@@ -1,16 +1,27 @@
 """Shapes, sites and touchable points that the placement chooses from."""
 
+from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
 import pytest
 
+from artefact.body.datum import outline_distance
 from artefact.body.freeform import graph_patch
 from artefact.body.limits import Limits, max_slope, min_concave_radius
-from artefact.layout.candidates import TALLEST, random_sites, smooth_heights
-from artefact.layout.side_by_side import most_side_by_side, neighbour_gaps
-from artefact.layout.sites import Blank, Site
+from artefact.layout.post import post_foot, post_stiffness
+from artefact.layout.shapes import smooth_heights
+from artefact.layout.side_by_side import most_side_by_side
+from artefact.layout.sites import Blank
 from artefact.layout.spread import spread
+from artefact.layout.upright import (
+    balls_fit,
+    balls_on_posts,
+    faces_beside,
+    faces_fit,
+    freeform_faces,
+    holes_on,
+)
 from artefact.reach.probe_clearance import ProbeShape
 from artefact.reach.touchable import ProbeReach, Requests, joined
 from artefact.worth.attribution import error_shares
@@ -42,35 +53,124 @@ def wanted(n=40, seed=1):
     )
 
 
-def test_shapes_keep_the_limits_and_use_them():
+@pytest.mark.parametrize("lean", [0.0, 0.3])
+def test_shapes_keep_the_limits_and_use_them(lean):
     limits = Limits()
     rng = np.random.default_rng(2)
     steep, tight = [], []
-    for _ in range(40):
+    for _ in range(20):
         half = tuple(rng.uniform(15.0, 24.0, 2))
-        patch = graph_patch("FF1", np.eye(4), half, smooth_heights(half, limits, rng))
+        heights = smooth_heights(half, limits, rng, plane=(lean, 0.0))
+        patch = graph_patch("FF1", np.eye(4), half, heights)
         assert min_concave_radius(patch) >= limits.min_concave_radius
-        assert max_slope(patch) <= 35.0 * DEG
-        assert np.abs(patch.jet(patch.grid(1.0)).h).max() <= 1.05 * TALLEST
+        assert max_slope(patch) <= limits.max_slope
+        uv = patch.grid(1.0)
+        assert np.abs(patch.height(uv) - lean * uv[:, 0]).max() <= 1.05 * 7.0
         steep.append(max_slope(patch))
         tight.append(min_concave_radius(patch))
-    assert np.median(steep) > 25.0 * DEG  # normals of a patch differ as much as they may
+    assert np.median(steep) > 28.0 * DEG  # normals of a patch differ as much as they may
     assert max(steep) - min(steep) > 2.0 * DEG
 
 
-def test_sites_that_overlap_do_not_fit():
-    heights = np.zeros((8, 8))
-    sites = [
-        Site(0.0, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
-        Site(10.0 * DEG, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
-        Site(180.0 * DEG, 100.0, 80.0, 50.0 * DEG, (20.0, 20.0), heights),
-    ]
-    fits = neighbour_gaps(sites, Blank()) >= Blank().limits.gap
-    assert not fits[0, 1]
-    assert not fits[1, 0]
-    assert fits[0, 2]
-    assert fits[1, 2]
-    assert not fits.diagonal().any()
+@pytest.fixture(scope="module")
+def faces():
+    return freeform_faces(Blank(), 6, 24, np.random.default_rng(4))
+
+
+def test_faces_lie_within_the_blank_on_round_numbers(faces):
+    base = Blank().base
+    assert len(faces) == 24
+    for face in faces:
+        T, uv = face.T_artefact_patch, face.grid(4.0)
+        np.testing.assert_array_equal(T[:3, :3], np.eye(3))
+        np.testing.assert_allclose(10.0 * T[:3, 3], np.round(10.0 * T[:3, 3]), atol=1e-9)
+        points = face.point(uv)
+        assert outline_distance(points[:, :2], base.half_size, base.corner_radius).max() <= 1e-9
+        assert points[:, 2].min() > base.thickness + 4.0
+        assert points[:, 2].max() < Blank().height
+    slopes = [max_slope(face) for face in faces]
+    assert max(slopes) <= Limits().max_slope
+    directions = np.array([face.normal(np.zeros((1, 2)))[0, :2] for face in faces])
+    assert (directions.max(axis=0) > 0.2).all()  # they look to all sides
+    assert (directions.min(axis=0) < -0.2).all()
+
+
+def walls(face):
+    """Points of the outline of a pillar from above, a millimetre apart."""
+    (a, b), middle = face.half_size, face.T_artefact_patch[:2, 3]
+    t = np.linspace(-1.0, 1.0, 61)
+    sides = [np.column_stack([a * t, s * b + 0.0 * t]) for s in (-1, 1)]
+    sides += [np.column_stack([s * a + 0.0 * t, b * t]) for s in (-1, 1)]
+    return middle + np.concatenate(sides)
+
+
+def test_bodies_that_fit_leave_a_cutter_between_them(faces):
+    """Against the outlines point by point."""
+    blank = Blank()
+    holes = holes_on(replace(blank, limits=Limits(table_radius=160.0, slot_pitch=63.0)))
+    fits = faces_fit(faces, holes, blank.limits)
+    outlines = [walls(face) for face in faces]
+    apart = np.array(
+        [[np.linalg.norm(p[:, None] - q, axis=-1).min() for p in outlines] for q in outlines]
+    )
+    inside = np.abs(
+        np.array([f.T_artefact_patch[:2, 3] for f in faces])[:, None]
+        - np.array([f.T_artefact_patch[:2, 3] for f in faces])
+    ) < np.array([f.half_size for f in faces])[:, None] + np.array([f.half_size for f in faces])
+    apart[inside.all(axis=-1)] = 0.0
+    clear = np.array(
+        [min(np.linalg.norm(p - [h.x, h.y], axis=1).min() for h in holes) for p in outlines]
+    )
+    blocked = clear < 9.0 + 6.0
+    expected = (apart >= 12.0) & ~blocked & ~blocked[:, None]
+    off = np.abs(apart - 12.0) > 0.05  # outlines are sampled
+    np.testing.assert_array_equal(fits[off], expected[off])
+    balls = balls_on_posts(blank, 40, np.random.default_rng(1))
+    beside = faces_beside(faces, balls[:3], blank)
+    for good, outline in zip(beside, outlines, strict=True):
+        for ball in balls[:3]:
+            room = np.linalg.norm(outline - ball.centre[:2], axis=1).min()
+            assert not good or room >= ball.foot_radius + 12.0 - 0.05
+    pairs = balls_fit(balls, blank)
+    for i, j in combinations(range(len(balls)), 2):
+        one, other = balls[i], balls[j]
+        room = np.linalg.norm(one.centre[:2] - other.centre[:2])
+        if pairs[i, j]:
+            assert room >= one.foot_radius + other.foot_radius + 12.0
+
+
+@pytest.mark.parametrize("pitch", [0.0, 63.0, 100.0])
+def test_screws_stand_on_slots_within_table_and_base(pitch):
+    blank = Blank(limits=Limits(table_radius=160.0, slot_pitch=pitch))
+    holes = holes_on(blank)
+    assert len(holes) == 3
+    for hole in holes:
+        assert np.hypot(hole.x, hole.y) + hole.radius <= 160.0 - 8.0
+        inset = -outline_distance(np.array([[hole.x, hole.y]]), (140.0, 140.0), 25.0)[0]
+        assert inset >= hole.bore_radius + 5.0
+        if pitch:
+            assert hole.y / pitch == pytest.approx(round(hole.y / pitch), abs=1e-12)
+    sides = [np.hypot(a.x - b.x, a.y - b.y) for a, b in combinations(holes, 2)]
+    assert min(sides) > 120.0
+    with pytest.raises(NotBuildable, match="no three screw holes"):
+        holes_on(Blank(limits=Limits(table_radius=20.0)))
+
+
+@pytest.mark.parametrize("length", [30.0, 90.0, 125.0])
+def test_a_post_is_as_stiff_as_its_slices(length):
+    """Against the sums over a thousand slices of the cone, each with its own section."""
+    top, E = 8.0, 200e3
+    foot = post_foot(length, top, 10e3, E)
+    s = (np.arange(1000) + 0.5) / 1000.0 * length
+    r = top + (foot - top) * s / length
+    G = E / 2.6
+    slices = np.sum((s**2 / (E * np.pi / 4.0 * r**4) + 1.0 / (0.9 * G * np.pi * r**2)) * length)
+    turn = length**2 / (8.0 * G * foot**3 / (3.0 * 0.7))
+    assert post_stiffness(length, top, foot, E) == pytest.approx(
+        1.0 / (slices / 1000.0 + turn), rel=1e-4
+    )
+    assert post_stiffness(length, top, foot, E) >= 10e3
+    assert foot < top + 0.2 or post_stiffness(length, top, foot - 0.1, E) < 10e3
 
 
 def test_as_many_sites_stand_side_by_side_as_any_search_finds():
@@ -90,22 +190,6 @@ def test_as_many_sites_stand_side_by_side_as_any_search_finds():
         assert len(found) == largest
         assert all(fits[a, b] for a, b in combinations(found, 2))
         assert len(most_side_by_side(fits, 2)) == 2
-
-
-def test_sites_cover_the_blank():
-    sites = random_sites(Blank(), 100, np.random.default_rng(4))
-    assert 95 <= len(sites) <= 105
-    tilt = np.array([s.tilt for s in sites]) / DEG
-    azimuth = np.array([s.azimuth for s in sites])
-    assert tilt.min() < 15.0
-    assert tilt.max() > 55.0
-    flank = azimuth[[s.radius > 90.0 for s in sites]]
-    assert np.diff(np.sort(flank)).max() < 35.0 * DEG
-    lean = np.array([s.lean for s in sites]) / DEG
-    assert np.abs(lean).max() > 90.0
-    assert 0.3 < np.mean(lean > 0.0) < 0.7  # to both sides
-    small = random_sites(Blank(height=110.0), 100, np.random.default_rng(4))
-    assert max(s.height for s in small) < 0.6 * max(s.height for s in sites)
 
 
 def test_readings_are_those_of_the_inverse():

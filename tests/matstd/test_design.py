@@ -12,8 +12,9 @@ import rs274
 from artefact.body.limits import Limits
 from artefact.body.standard_file import read_standard
 from artefact.brief.project_file import read_project
-from artefact.compare import placed_spheres
+from artefact.compare import comparison
 from artefact.place.placement import PlacementOptions
+from artefact.worth import ball_choice
 from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
 from matstd import design, study_run
@@ -31,7 +32,6 @@ from twin.units import UM, URAD
 NEXT_TO_NONE = "0.01"
 """Noise of a simulation, µm: without any, repeated touches would count as copied rows."""
 
-WANTED = "touches = 120                  # 100 to 2000\nposes = 10 "
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
@@ -43,7 +43,8 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
         ("hsm600u-machine.toml", "machine.toml"),
         ("poses = 2000", "poses = 300"),
         ("draws = 2000", "draws = 300"),
-        ("patches = 10", "patches = 8"),
+        ("patches = 6 ", "patches = 5 "),
+        ("# proof_touches = 160", "proof_touches = 60"),
         ("touches = 480", f"touches = {touches}"),
         ("poses = 30 ", f"poses = {poses} "),
         ("machines = 3", f"machines = {machines}"),
@@ -66,8 +67,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         fewer = lambda project: replace(placement_options(project), sites=60)  # noqa: E731
         patch.setattr(design, "placement_options", fewer)
-        patch.setattr(placed_spheres, "_CANDIDATES", 60)
-        patch.setattr(placed_spheres, "COUNTS", (4,))
+        patch.setattr(ball_choice, "_PLACES", 60)
+        patch.setattr(comparison, "COUNTS", (4,))
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
@@ -150,7 +151,7 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("X = [-150.0, 150.0]", "X = [150.0, -150.0]", "workspace.X"),
         ("X = [-150.0, 150.0]", "Q = [-150.0, 150.0]", "workspace.Q"),
         ("X = [-150.0, 150.0]", "X = [-900.0, 150.0]", "within the travel"),
-        ("patches = 8", "patches = 3", "standard.patches"),
+        ("patches = 5", "patches = 2", "standard.patches"),
         ("noise_um = 1.0", "noise_um = nan", "simulation.noise_um"),
         ("noise_um = 1.0", "noises = 1.0", "simulation.noises"),
         ("# [errors.classes]", "[errors.classes]\nspeed = [1.0, 2.0]", "errors.classes.speed"),
@@ -166,14 +167,13 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("worst_share = 1.0", "worst_share = 0.25", "drawn_machines = 0"),
         ("poses = 10 ", "poses = 4 ", "standard.poses"),
         ("touches = 120", "touches = 50", "standard.touches"),
-        (WANTED, "touches = 100\nposes = 60 ", "found 60 with touches = 100"),
+        ("poses = 10 ", "poses = 61 ", "found 61 with touches = 120"),
         ("base_mm = [280.0, 280.0]", "base_mm = [360.0, 280.0]", "no larger than the table, 320"),
         ("base_mm = [280.0, 280.0]", "base_mm = [90.0, 280.0]", "160 mm or more"),
         ("table_radius_mm = 160.0", "table_radius_mm = 100.0", "no larger than the table, 200"),
         ("max_mass_kg = 60.0", "max_mass_kg = 5.0", "more than 18.3 kg"),
         ("\nradius_mm = 3.0", "\nradius_mm = 20.0", "limits.min_concave_radius_mm"),
         ("gap_mm = 1.0", "gap_mm = -1.0", "limits.gap_mm"),
-        ("gap_mm = 1.0", "gap_mm = 60.0", "8 patches fit on the blank; between them the ball"),
         ("B = [-90.0, 20.0]", "B = [28.0, 30.0]", "leave no room: they are approached"),
     ],
 )
@@ -238,7 +238,7 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
     assert made.base.half_size == (120.0, 100.0)
     assert made.height == 180.0
     assert max(made.fittings.sphere_heights) < 180.0
-    assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0)
+    assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0, 130.0)
     assert probe_reach(project).table_radius == 130.0
 
 
@@ -247,7 +247,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert placement_options(read_project(path)) == PlacementOptions(
-        name="FFS-600U", serial="001", patches=8, choice=TouchOptions(touches=120, poses=10)
+        name="FFS-600U", serial="001", patches=5, choice=TouchOptions(120, 10, 60)
     )
     plain = re.sub(
         r"(?m)^(criterion|potential|drawn_machines|worst_share|poses = 10).*\n", "", text
@@ -261,7 +261,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
             wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
         path.write_text(wanted.replace("poses = 10 ", "poses = 12 "))
         options = placement_options(read_project(path))
-        assert options.choice == TouchOptions(touches=120, poses=12)
+        assert options.choice == TouchOptions(120, 12, 60)
         assert options.criterion == CriterionOptions(criterion, 0.1, 8, 0.5)
 
 

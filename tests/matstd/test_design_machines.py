@@ -8,7 +8,7 @@ import pytest
 
 from artefact.body.limits import check
 from artefact.brief.project_file import Project, read_project
-from artefact.compare import placed_spheres
+from artefact.worth import ball_choice
 from matstd import design
 from matstd.from_project import blank, placement_options, probe_reach
 from matstd.reach import PICTURE, check_reach
@@ -35,7 +35,14 @@ def small(name: str) -> Project:
     """One of the examples with few patches, poses and touches, and one machine to prove it on."""
     project = read_project(EXAMPLES / f"{name}.toml")
     few = project.standard.model_copy(
-        update={"patches": 6, "poses": 5, "touches": TOUCHES, "potential": 0.0}
+        update={
+            "patches": 4,
+            "balls": 7,
+            "poses": 5,
+            "touches": TOUCHES,
+            "proof_touches": 40,
+            "potential": 0.0,
+        }
     )
     return replace(project, standard=few, machines=1)
 
@@ -54,7 +61,7 @@ def test_a_design_for_every_kind_of_machine(
     assert project.chain.notation == MACHINES[name]
     fewer = replace(placement_options(project), sites=60)
     monkeypatch.setattr(design, "placement_options", lambda _: fewer)
-    monkeypatch.setattr(placed_spheres, "_CANDIDATES", 60)
+    monkeypatch.setattr(ball_choice, "_PLACES", 60)
     rng_place, rng_proof = np.random.default_rng(project.seed).spawn(2)
     poses = check_reach(project, tmp_path)
     assert (tmp_path / PICTURE).stat().st_size > 0

@@ -13,7 +13,7 @@ from artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
 from matstd.commands.design import NO_ROOM, REFUSED, refusals
 from matstd.from_project import blank, probe_reach
-from matstd.reach import _to_rise, check_reach, check_room
+from matstd.reach import _to_rise, check_reach
 from twin.errors import BadFile, NotBuildable, NotReachable
 from twin.frames import fixed_xyz, pose
 from twin.units import DEG
@@ -159,23 +159,18 @@ def test_travels_of_a_table_entered_the_other_way_are_told(tmp_path: Path) -> No
     check_reach(read_project(changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)), tmp_path)
 
 
-def test_patches_that_do_not_fit_are_told_with_the_gap_that_would_do(
+def test_patches_that_do_not_fit_are_told_with_a_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("matstd.design.design_standard", None)  # not begun
-    wide = {r"\Z": "\n[limits]\ngap_mm = 60.0\n"}
+    wide = {r"\Z": "\n[limits]\ngap_mm = 120.0\n"}
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
     for _ in range(2):
         assert main(["design", str(path), "-o", str(out)]) == 2
         (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
         assert [p.name for p in out.iterdir()] == [NO_ROOM]
-    assert re.search(r"only \d of 10 patches fit on the blank side by side", told)
-    gap = re.search(r"limits.gap_mm \(to ([0-9.]+)\)", told)
-    assert gap, told
-    project = read_project(
-        changed(tmp_path, "vertical", {r"\Z": f"\n[limits]\ngap_mm = {gap[1]}\n"}, {})
-    )
-    check_room(project, tmp_path, np.zeros((1, 0)))
+    assert re.search(r"only \d of 6 patches fit on the blank side by side", told)
+    assert "limits.gap_mm or probe.radius_mm (smaller)" in told
 
 
 def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
@@ -195,7 +190,7 @@ def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
     ("facts", "change"),
     [
         ({"fitting": 9}, "standard.patches (to 9) or limits.gap_mm or probe.radius_mm (smaller)"),
-        ({"fitting": 5}, "limits.gap_mm or probe.radius_mm (smaller) or blank.base_mm and"),
+        ({"fitting": 2}, "limits.gap_mm or probe.radius_mm (smaller) or blank.base_mm and"),
         (
             {"binding": ["mass"]},
             "limits.max_mass_kg (larger) or blank.base_mm and blank.height_mm (larger)",

@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from report.words.design_words import best_rival, design_lines, verdict_of_design
@@ -22,7 +23,11 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
         )
         for name, left in zip(names, (own, spheres, block, scatter), strict=True)
     )
-    return SimpleNamespace(own=rivals[0], rivals=rivals)
+    power = SimpleNamespace(touches=160, power=np.array([0.9, 1.0]), found=1, effects=("a", "b"))
+    body = SimpleNamespace(patches=("FF1", "FF2"))
+    return SimpleNamespace(
+        own=rivals[0], rivals=rivals, power=power, power_of_balls=power, standard=body
+    )
 
 
 @pytest.mark.parametrize(
@@ -50,7 +55,10 @@ def test_scatter_that_nobody_can_build_is_no_rival() -> None:
 
 
 def test_the_probed_volume_comes_second_and_by_name() -> None:
-    first, second, _ = design_lines(placement(1.0, 2.0))
+    first, second, _, proof = design_lines(placement(1.0, 2.0))
+    assert "160 touches on the 2 freeform faces" in proof
+    assert "power of 95 % on average" in proof
+    assert "for 1 of 2 effects" in proof
     assert "probed volume" not in first
     assert "probed volume" in second
     assert "block, 1.11 µm" in second

@@ -1,0 +1,111 @@
+"""Would touches that had no part in an identification show that its model is wrong, and how surely.
+
+A model that lacks an effect of the library is fitted to the identifying touches by ``E``; part of
+the effect goes into the fitted parameters, the rest makes the model wrong in the volume of the
+standard and at the proving touches. The size of the effect is such that the model is wrong there by
+a stated root mean square. The proving touches find it if what they see beyond the prediction, d, is
+larger than noise, calibration and uncertainty of the prediction allow; in units of the noise
+
+    d^T V^-1 d > chi2(1 - risk, n)
+    V = 1 + W_p E E^T W_p^T + W_p (1 - E W)(1 - E W)^T W_p^T + K K^T,   K = C_p - W_p E C
+
+which is a noncentral chi-square variable with the noncentrality ``d^T V^-1 d`` of the expected d.
+``K`` is what calibration does: a feature that identified and proves hides part of its own fault.
+
+Reference:
+    Kendall and Stuart, The Advanced Theory of Statistics II, 24.4 (power of a chi-square test).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from artefact.reach import Requests
+from artefact.worth import Criterion
+from twin.frames import Array
+from twin.model import Effect, Model, columns
+from twin.units import UM
+
+ERROR = 2.0 * UM
+"""By which a model is wrong, rms, mm."""
+
+RISK = 0.05
+"""Of calling a right model wrong."""
+
+WANTED = 0.95
+"""Power that counts as found."""
+
+_MIXES = 8  # of the parameters of an effect that has several, averaged
+_SILENT = 1e-9  # share of an effect that reaches the tool point, below which it is nobody's error
+
+
+@dataclass(frozen=True, eq=False)
+class Power:
+    """How surely some touches find a model wrong.
+
+    Attributes:
+        touches: Their number.
+        effects: Names of what the model lacks, one at a time, (E,).
+        power: Probability that it is found, (E,).
+    """
+
+    touches: int
+    effects: tuple[str, ...]
+    power: Array
+
+    @property
+    def found(self) -> int:
+        """Effects found with the power `WANTED`."""
+        return int(np.sum(self.power >= WANTED))
+
+
+def proof_power(
+    criterion: Criterion,
+    identifying: Requests,
+    proving: Requests,
+    effects: Sequence[Effect],
+    rng: np.random.Generator,
+) -> Power:
+    """Power of some touches against a model that lacks one effect at a time.
+
+    Args:
+        criterion: On the standard, so that touches on one feature share its calibration.
+        identifying: Touches that the model is fitted to.
+        proving: Touches that had no part in it.
+        effects: What the model may lack; those that move no tool point are left out.
+        rng: Draws mixes of the parameters of an effect.
+    """
+    from scipy.stats import chi2, ncx2
+
+    sd, reach = criterion.prior_sd, criterion.reach
+    poses, tip = criterion.at_volume, criterion.tip_volume * sd
+    W, C = criterion.whitened(identifying), criterion.calibrated(identifying)
+    estimate = _estimator(W, C)
+    Wp, Cp = criterion.whitened(proving), criterion.calibrated(proving)
+    shrunk = np.eye(len(sd)) - estimate @ W
+    sources = (np.eye(len(Wp)), Wp @ estimate, Wp @ shrunk, Cp - Wp @ estimate @ C)
+    factor = np.linalg.cholesky(sum(A @ A.T for A in sources))
+    before, after = reach.touches(identifying), reach.touches(proving)
+    names, noncentral = [], []
+    for effect in effects:
+        mixes = rng.normal(size=(len(effect.parameters), _MIXES))
+        absorbed = estimate @ (columns([effect], before) @ mixes / criterion.noise)
+        own = Model(reach.chain, (effect,)).tip_columns(poses) @ mixes
+        wrong = np.sqrt(np.mean(np.sum((own - tip @ absorbed) ** 2, axis=1), axis=0))
+        moved = np.sqrt(np.mean(np.sum(own**2, axis=1), axis=0))
+        if np.all(moved == 0.0) or np.any(wrong < _SILENT * moved):
+            continue
+        seen = columns([effect], after) @ mixes / criterion.noise - Wp @ absorbed
+        whitened = np.linalg.solve(factor, seen * (ERROR / wrong))
+        names.append(effect.name)
+        noncentral.append(np.sum(whitened**2, axis=0))
+    n = len(proving)
+    power = ncx2.sf(chi2.isf(RISK, n), n, np.array(noncentral).reshape(-1, _MIXES)).mean(axis=1)
+    return Power(touches=n, effects=tuple(names), power=np.asarray(power))
+
+
+def _estimator(W: Array, C: Array) -> Array:
+    """What a deviation in units of noise adds to the estimates in units of the prior, (P, N)."""
+    known = np.linalg.solve(np.eye(len(W)) + C @ C.T, W)
+    return np.asarray(np.linalg.solve(np.eye(W.shape[1]) + W.T @ known, known.T))

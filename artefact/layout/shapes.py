@@ -1,0 +1,87 @@
+"""Smooth random shapes of freeform faces, as strong as cutter and probe allow."""
+
+import numpy as np
+
+from artefact.body import Limits, graph_patch
+from twin.frames import Array
+from twin.units import DEG
+
+CONTROL = 8
+"""Control heights of a patch each way: enough for one wave, too few for ripples."""
+
+_MARGIN = 1.15
+"""Shapes stay this far from the limits of curvature and slope, which are measured on grids."""
+
+_STEEPEST = 60.0 * DEG  # of any face, whatever the limits allow: a ball-end cutter still cleans it
+_TALLEST = 7.0  # what a shape may rise above its mean plane, mm
+_PITCH = 2.5  # mm, of the grid on which shapes are scaled
+
+
+def steepest_slope(limits: Limits) -> float:
+    """Slope dh/du that a face takes at most, with a margin."""
+    return float(np.tan(min(limits.max_slope, _STEEPEST) / _MARGIN))
+
+
+def smooth_heights(
+    half_size: tuple[float, float],
+    limits: Limits,
+    rng: np.random.Generator,
+    tallest: float = _TALLEST,
+    plane: tuple[float, float] = (0.0, 0.0),
+) -> Array:
+    """Control heights of a random smooth shape on a plane, as strong as the limits allow.
+
+    A random bowl, dome or saddle with a random wave of one to two times the patch's length on it.
+    It is scaled until its slope or its smallest concave radius is a seventh from the limit, so
+    that the normals of a patch differ as much as a cutter and a probe can follow.
+
+    Args:
+        half_size: Half sides of the face, mm.
+        limits: Of slope and concave radius.
+        rng: Draws the shape.
+        tallest: What a shape may rise above its plane or sink below it, mm.
+        plane: Slopes of the plane along u and v.
+
+    Returns:
+        Shape (`CONTROL`, `CONTROL`), mm, with mean zero.
+    """
+    flat = graph_patch("flat", np.eye(4), half_size, np.zeros((CONTROL, CONTROL)))
+    x, y = flat.poles[..., 0], flat.poles[..., 1]
+    slanted = plane[0] * x + plane[1] * y
+    ends = np.linspace(-1.0, 1.0, CONTROL)
+    u, v = np.meshgrid(half_size[0] * ends, half_size[1] * ends, indexing="ij")
+    size = float(np.mean(half_size))
+    bend = rng.uniform(-1.0, 0.6, 2)  # more domes than bowls: every normal of a dome is in the open
+    h = 0.5 * (bend[0] * u**2 + bend[1] * v**2 + rng.uniform(-0.7, 0.7) * u * v) / size
+    direction, phase = rng.uniform(0.0, 2.0 * np.pi, 2)
+    k = np.pi / (size * rng.uniform(1.0, 2.0))
+    across = np.cos(direction) * u + np.sin(direction) * v
+    h += rng.uniform(0.3, 0.9) / k * np.sin(k * across + phase)
+    h -= h.mean()
+    return slanted + h * _strength(half_size, h, limits, tallest, slanted)
+
+
+def _strength(
+    half_size: tuple[float, float], heights: Array, limits: Limits, tallest: float, slanted: Array
+) -> float:
+    """Factor that brings a shape on a plane to its limits.
+
+    Slope and height are bounded by the triangle inequality; with ``w^2 = 1 + |grad h|^2`` the
+    curvatures are the eigenvalues of ``I^-1 II``, so for them the factor is bisected on a grid of
+    derivatives that is evaluated once.
+    """
+    patch = graph_patch("trial", np.eye(4), half_size, heights)
+    plane = graph_patch("plane", np.eye(4), half_size, slanted)
+    uv = patch.grid(_PITCH)
+    j, p = patch.jet(uv), plane.jet(uv)
+    left = steepest_slope(limits) - float(np.hypot(p.hu, p.hv).max())
+    high = min(left / float(np.hypot(j.hu, j.hv).max()), tallest / float(np.abs(j.h).max()))
+    low = 0.0
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        largest = float(p.plus(j, middle).curvature[:, 0].max())
+        if largest * _MARGIN * limits.min_concave_radius > 1.0:
+            high = middle
+        else:
+            low = middle
+    return low

@@ -1,0 +1,253 @@
+"""Balls and faces of a standard: which of all candidates stand on the blank together.
+
+The balls come first, because they identify; faces take the places between them that tell most. A
+body that breaks a limit is chosen again without the faces that are to blame.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from artefact.body import DatumSphere, FreeformPatch, MountingHole, Standard, constraints
+from artefact.layout import (
+    Blank,
+    faces_beside,
+    faces_fit,
+    freeform_faces,
+    holes_on,
+    least_gap,
+    most_side_by_side,
+    with_spheres,
+)
+from artefact.reach import Requests, joined, spread_poses
+from artefact.worth import Criterion, each_at, face_grid
+from information.selection import best_groups
+from twin.errors import NotBuildable, NotReachable
+from twin.frames import Array, inverse, turn
+from twin.machine import table_to_tool
+from twin.record import IntArray
+
+Which = NDArray[np.bool_]
+
+FEWEST_BALLS = 3
+"""A set-up has six unknowns, and a ball alone hides every turn about it."""
+
+_REBUILDS = 8  # choices of faces tried before giving up
+
+_HIDDEN = (0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 1.0)  # of the touches, that a face may hide
+_WAY, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that is looked at, in steps
+_POSES = 20  # at which touches on faces are looked at
+
+
+@dataclass(frozen=True, eq=False)
+class BodyChoice:
+    """What bodies are chosen from.
+
+    Attributes:
+        criterion: What faces are chosen for, without potential terms.
+        blank: On which they stand.
+        faces: F of them, named by their numbers.
+        W: Rows of touches on them, (N, R).
+        group: Face of every row, (N,).
+    """
+
+    criterion: Criterion
+    blank: Blank
+    faces: list[FreeformPatch]
+    W: Array
+    group: IntArray
+
+    def standard(
+        self,
+        name: str,
+        serial: str,
+        balls: Sequence[DatumSphere],
+        touches: Requests,
+        count: int,
+        proving: int,
+    ) -> Standard:
+        """The best body of some balls with faces between them that meets every limit.
+
+        Of the faces those are taken first that stand in the way of fewest touches on the balls.
+
+        Args:
+            name: Type of the standard.
+            serial: Of the piece.
+            balls: The first tells most; as many of them as leave room.
+            touches: On the balls, that shall stay possible.
+            count: Of the faces.
+            proving: Touches on all faces together.
+
+        Raises:
+            NotBuildable: No such body; what binds.
+        """
+        limits, hides = self.blank.limits, self._hidden(touches)
+        standing, holes = self._screwed(list(balls))
+        fits = faces_fit(self.faces, holes, limits)
+        refused, binding = "", list[str]()
+        for _ in range(_REBUILDS):
+            chosen, standing = self._between(
+                standing, hides, count, fits, proving // count, refused
+            )
+            faces = sorted((self.faces[k] for k in chosen), key=_azimuth_of_face)
+            made = self._put_together(name, serial, faces, standing, holes)
+            broken = [c for c in constraints(made, limits) if c.slack < 0.0]
+            if not broken:
+                return made
+            refused, binding = f"; {broken[0]}", [c.name for c in broken]
+            in_order = [int(face.name) for face in faces]
+            for constraint in broken:
+                _blame(fits, constraint.features, [p.name for p in made.patches], in_order)
+        raise NotBuildable(
+            f"no choice of {count} patches meets every limit{refused}", binding=binding
+        )
+
+    def _screwed(
+        self, balls: list[DatumSphere]
+    ) -> tuple[list[DatumSphere], tuple[MountingHole, ...]]:
+        """Balls with screw holes beside them; the last is left out until there is room."""
+        while True:
+            try:
+                return balls, holes_on(self.blank, balls)
+            except NotBuildable:
+                if len(balls) <= FEWEST_BALLS:
+                    raise
+                balls = balls[:-1]
+
+    def _between(
+        self,
+        balls: list[DatumSphere],
+        hides: Array,
+        count: int,
+        fits: Which,
+        take: int,
+        refused: str,
+    ) -> tuple[list[int], list[DatumSphere]]:
+        """Faces between some balls, and the balls: the last is left out until the faces fit."""
+        while True:
+            free = faces_beside(self.faces, balls, self.blank)
+            for most in _HIDDEN:
+                chosen = self._side_by_side(count, max(4, take), fits, free & (hides <= most))
+                if len(chosen) == count and len(balls) >= FEWEST_BALLS:
+                    return chosen, balls
+            if len(balls) <= FEWEST_BALLS:
+                raise NotBuildable(
+                    f"only {len(chosen)} of {count} patches fit on the blank beside {len(balls)} "
+                    f"balls; between two of them cutter and probe need "
+                    f"{least_gap(self.blank.limits):g} mm{refused}",
+                    fitting=len(chosen),
+                )
+            balls = balls[:-1]  # the last one chosen tells least
+
+    def _hidden(self, touches: Requests) -> Array:
+        """Share of some touches that every face stands in the way of, (F,)."""
+        reach = self.criterion.reach
+        frames = table_to_tool(reach.chain, reach.readings(touches))
+        axis = turn(inverse(reach.setup.T_table_artefact), frames[:, :3, 2])
+        ball = touches.point + reach.radius * touches.normal
+        begin, points, radii = 0.0, list[Array](), list[Array]()
+        for end, radius in reach.shape.cylinders:
+            for at in np.arange(begin, min(end, _WAY), _SAMPLES):
+                points.append(ball + at * axis)
+                radii.append(np.full(len(ball), radius + reach.room))
+            begin = end
+        where, least = np.concatenate(points), np.concatenate(radii)
+        bare = replace(with_spheres(self.blank, []), patches=tuple(self.faces))
+        near = [column.distance(where) < least for column in bare.columns.values()]
+        return np.array([n.reshape(-1, len(ball)).any(axis=0).mean() for n in near])
+
+    def _side_by_side(self, count: int, take: int, fits: Which, free: Which) -> list[int]:
+        """The faces worth most; if their neighbours run out, begun from some that all fit."""
+        rows = free[self.group]
+        W, group, objective = self.W[rows], self.group[rows], self.criterion.objective
+        if not len(W):
+            return []
+        chosen = best_groups(objective, W, group, count, take, apart=fits)
+        if len(chosen) < count:
+            touched = np.isin(np.arange(len(fits)), group)
+            begin = most_side_by_side(fits & touched & touched[:, None], count)
+            if len(begin) > len(chosen) and touched[begin].all():
+                chosen = best_groups(objective, W, group, count, take, None, fits, begin)
+        return chosen
+
+    def _put_together(
+        self,
+        name: str,
+        serial: str,
+        faces: list[FreeformPatch],
+        balls: list[DatumSphere],
+        holes: tuple[MountingHole, ...],
+    ) -> Standard:
+        """A standard of some faces and balls, each kind named around its middle."""
+        balls = sorted(balls, key=lambda b: _azimuth(b.centre))
+        return Standard(
+            name=name,
+            serial=serial,
+            material=self.blank.material,
+            base=self.blank.base,
+            core=None,
+            patches=tuple(replace(p, name=f"FF{i}") for i, p in enumerate(faces, 1)),
+            spheres=tuple(replace(b, name=f"SPH{i}") for i, b in enumerate(balls, 1)),
+            holes=holes,
+            blank_height=self.blank.height,
+        )
+
+
+def body_choice(
+    criterion: Criterion,
+    blank: Blank,
+    poses: Array,
+    faces: int,
+    tried: int,
+    rng: np.random.Generator,
+) -> BodyChoice:
+    """Candidates all over a blank.
+
+    Args:
+        criterion: What faces are chosen for, without potential terms.
+        blank: On which all stand.
+        poses: Table poses to choose from, (K, R), rad.
+        faces: How many will be chosen: the more, the smaller they are.
+        tried: Number of random faces.
+        rng: Draws them.
+
+    Raises:
+        NotBuildable: No room for faces at all.
+        NotReachable: No face can be touched.
+    """
+    all_faces = freeform_faces(blank, faces, tried, rng)
+    few = spread_poses(poses, _POSES)
+    wanted = joined([each_at(p, face_grid(p.half_size, 3)[::2], few) for p in all_faces])
+    wanted = wanted[criterion.reach.is_reachable(wanted)]
+    if not len(wanted):
+        raise NotReachable(
+            f"no face at any of {len(all_faces)} places can be touched at a table pose with every "
+            "axis within its travel"
+        )
+    return BodyChoice(
+        criterion=criterion,
+        blank=blank,
+        faces=all_faces,
+        W=criterion.rows(wanted),
+        group=wanted.feature.astype(np.int64),
+    )
+
+
+def _azimuth_of_face(face: FreeformPatch) -> float:
+    return _azimuth(face.T_artefact_patch[:3, 3])
+
+
+def _azimuth(place: Array) -> float:
+    return float(np.arctan2(place[1], place[0]))
+
+
+def _blame(fits: Which, features: tuple[str, ...], names: list[str], chosen: list[int]) -> None:
+    """Keep the faces that violate a limit from being chosen so again."""
+    guilty = [chosen[names.index(name)] for name in features if name in names]
+    if len(guilty) == 2 and guilty[0] != guilty[1]:
+        fits[guilty[0], guilty[1]] = fits[guilty[1], guilty[0]] = False
+    else:
+        out = guilty or [chosen[-1]]
+        fits[out, :] = fits[:, out] = False

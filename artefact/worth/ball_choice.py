@@ -1,0 +1,93 @@
+"""Where balls go: the places whose touches together say most of the machine.
+
+One optimiser for all: the balls of the standard and those of its rivals are chosen by the same
+criterion from the same places. Every touch that machine and probe can make on them at some table
+poses is a row of information.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from artefact.body import DatumSphere
+from artefact.layout import Blank, balls_fit, balls_on_posts
+from artefact.reach import joined, spread_poses
+from artefact.worth.touch_choice import each_at, sphere_grid
+from artefact.worth.touch_criterion import Criterion
+from information.selection import best_groups
+from twin.errors import NotReachable
+from twin.frames import Array
+from twin.record import IntArray
+
+_PLACES = 500  # that are tried; a third of them is barred beside freeform faces
+_DIRECTIONS = 9  # touches tried on each, at each of the poses
+_POSES = 20  # table poses, spread over the user's
+
+
+@dataclass(frozen=True, eq=False)
+class BallPlaces:
+    """Balls of which some are chosen.
+
+    Attributes:
+        balls: B of them.
+        criterion: What they are chosen for.
+        blank: On which they stand.
+        W: Rows of touches on them, (N, R).
+        group: Ball of every row, (N,).
+        fits: Which of them stand beside each other, (B, B).
+    """
+
+    balls: list[DatumSphere]
+    criterion: Criterion
+    blank: Blank
+    W: Array
+    group: IntArray
+    fits: NDArray[np.bool_]
+
+    def best(
+        self, count: int, touches: int, allowed: NDArray[np.bool_] | None = None
+    ) -> list[DatumSphere]:
+        """The balls whose touches together say most, the first the most; fewer without room.
+
+        Args:
+            count: Of balls, at most.
+            touches: That will be made on all of them together.
+            allowed: Those that may be chosen, (B,); None for all.
+        """
+        rows = slice(None) if allowed is None else allowed[self.group]
+        take = max(4, touches // count)
+        chosen = best_groups(
+            self.criterion.objective, self.W[rows], self.group[rows], count, take, apart=self.fits
+        )
+        return [self.balls[k] for k in chosen]
+
+
+def ball_places(
+    criterion: Criterion, blank: Blank, poses: Array, rng: np.random.Generator
+) -> BallPlaces:
+    """Balls all over a blank.
+
+    Args:
+        criterion: What they are chosen for, without potential terms.
+        blank: Base, balls, posts and limits.
+        poses: Table poses to choose from, (K, R), rad.
+        rng: Draws the places that are tried.
+
+    Raises:
+        NotReachable: The machine reaches no touch on any of them.
+    """
+    balls = balls_on_posts(blank, _PLACES, rng)
+    some, grid = spread_poses(poses, _POSES), sphere_grid(_DIRECTIONS)
+    wanted = joined([each_at(ball, grid, some) for ball in balls])
+    wanted = wanted[criterion.reach.is_reachable(wanted)]
+    if not len(wanted):
+        raise NotReachable(f"no ball at any of {len(balls)} places can be touched")
+    return BallPlaces(
+        balls=balls,
+        criterion=criterion,
+        blank=blank,
+        W=criterion.rows(wanted),
+        group=wanted.feature.astype(np.int64),
+        fits=balls_fit(balls, blank),
+    )
