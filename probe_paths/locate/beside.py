@@ -8,9 +8,14 @@ from probe_paths.language import Dialect
 from probe_paths.locate.search_plan import Spread, plan_search
 from probe_paths.plan import TouchPlan
 from twin.errors import NotReachable
+from twin.units import DEG
 
 RAISED = 100.0
 """Of a dry run, mm."""
+
+SPREADS = tuple(Spread(d, a * DEG) for d, a in ((20.0, 5.0), (15.0, 4.0), (10.0, 3.0), (5.0, 2.0)))
+"""That a search is made for, the first for which there is one: by eye, by a rule, by a stop. A
+standard of tall posts leaves a short stylus no room to come down wherever it may stand."""
 
 
 @dataclass(frozen=True)
@@ -52,23 +57,24 @@ def companions(
         dialect: Of the control.
         feeds: Of the programs.
         raised: By how much the dry run is raised, mm.
-        spread: Within which the search finds the standard.
+        spread: Within which the search finds the standard; None for the widest of `SPREADS` for
+            which there is a search.
     """
-    spread = spread or Spread()
     dry_run = make_dry_run(plan, raised, dialect, feeds)
-    try:
-        search = plan_search(
-            plan.standard,
-            plan.chain,
-            plan.probe,
-            plan.setup,
-            spread,
-            plan.options.workshop,
-            plan.options.retract,
-        )
-    except NotReachable as error:
-        return Companions(
-            dry_run=dry_run, raised=raised, search=None, spread=spread, no_search=str(error)
-        )
-    made = make_search(search, (spread.distance, spread.angle), dialect, feeds)
-    return Companions(dry_run=dry_run, raised=raised, search=made, spread=spread)
+    for chosen in SPREADS if spread is None else (spread,):
+        try:
+            search = plan_search(
+                plan.standard,
+                plan.chain,
+                plan.probe,
+                plan.setup,
+                chosen,
+                plan.options.workshop,
+                plan.options.retract,
+            )
+        except NotReachable as error:
+            why = str(error)
+            continue
+        made = make_search(search, (chosen.distance, chosen.angle), dialect, feeds)
+        return Companions(dry_run=dry_run, raised=raised, search=made, spread=chosen)
+    return Companions(dry_run=dry_run, raised=raised, search=None, spread=chosen, no_search=why)
