@@ -35,7 +35,7 @@ def probing_time(
     Returns:
         In s; nan where no plan at all can be made.
     """
-    options = replace(options or PlanOptions(), tolerated=len(requests))
+    options = replace(options or PlanOptions(), tolerated=len(requests), is_swept=False)
     try:
         plan = plan_touches(body, chain, probe, setup, requests, options)
     except NotReachable:

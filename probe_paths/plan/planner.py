@@ -203,7 +203,10 @@ def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
     Those that can be reached, and have room where the ball meets the surface, are tried from other
     sides before they are refused; the reason that stays is that of the approach along the normal.
     """
-    touches = _swept(task, _examined(task, wanted), height)
+    touches = _examined(task, wanted)
+    if not task.options.is_swept:
+        return touches
+    touches = _swept(task, touches, height)
     is_open = (touches.reason != "") & task.probing.is_reachable(wanted)
     rows = np.flatnonzero(is_open)
     room, _ = task.clearance.gap(touches.contact[rows])
@@ -238,6 +241,8 @@ def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
 
 def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     """Touches with a reason against those that bring the tool too near to something."""
+    if not task.options.is_swept:
+        return touches
     o, z, reason = task.options, task.chain.axis_index("Z"), touches.reason.copy()
     reason[(reason == "") & (touches.start[:, z] > height)] = "its start lies above the retract"
     rows = np.flatnonzero(reason == "")

@@ -44,6 +44,8 @@ class PlanOptions:
         shortest_visit: Fewest touches for which a pose is visited twice, half of them each time.
         workshop: What stands beside the standard and is kept clear.
         tolerated: How many requests may be refused before the whole plan is.
+        is_swept: Whether moves are swept with the whole tool; a plan that is timed and never run
+            need not be.
     """
 
     standoff: float = ProbeReach.standoff
@@ -58,6 +60,7 @@ class PlanOptions:
     shortest_visit: int = 4
     workshop: Workshop = field(default_factory=Workshop)
     tolerated: int = 0
+    is_swept: bool = True
 
 
 def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> Requests:
