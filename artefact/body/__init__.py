@@ -15,12 +15,13 @@ from artefact.body.limits import (
     max_slope,
     min_concave_radius,
 )
-from artefact.body.patch import Meeting, Surface, rows, unit
-from artefact.body.solids import Plate
+from artefact.body.patch import Meeting, Surface, unit
+from artefact.body.solids import BLEND, Plate
 from artefact.body.standard import STEEL, Base, Core, Material, Standard
 from artefact.body.standard_file import read_standard, write_standard
 
 __all__ = [
+    "BLEND",
     "OVERHANG",
     "STEEL",
     "Base",
@@ -43,7 +44,6 @@ __all__ = [
     "min_concave_radius",
     "outline_distance",
     "read_standard",
-    "rows",
     "unit",
     "write_standard",
 ]

@@ -22,8 +22,8 @@ def drawn(draw, *arguments):
     return pixels(arguments[2])
 
 
-def test_faces_spheres_and_plane_are_in_the_picture(small, built, tmp_path):
-    image = drawn(draw_standard, small, built[0] / "standard.stl", tmp_path / "standard.png")
+def test_faces_spheres_and_plane_are_in_the_picture(upright, built, tmp_path):
+    image = drawn(draw_standard, upright, built[0] / "standard.stl", tmp_path / "standard.png")
     if isinstance(image, str):
         assert "apt-get install libegl1" in image
         return
@@ -35,11 +35,11 @@ def test_faces_spheres_and_plane_are_in_the_picture(small, built, tmp_path):
 
 
 def test_without_opengl_the_package_is_named_and_nothing_written(
-    small, built, tmp_path, monkeypatch
+    upright, built, tmp_path, monkeypatch
 ):
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
     with pytest.raises(MissingLibrary, match="apt-get install libegl1") as caught:
-        draw_standard(small, built[0] / "standard.stl", tmp_path / "standard.png")
+        draw_standard(upright, built[0] / "standard.stl", tmp_path / "standard.png")
     assert "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
 

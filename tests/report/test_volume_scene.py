@@ -38,7 +38,7 @@ def rendered(*arguments):
     return imread(path)[..., :3]
 
 
-def test_values_have_the_colours_of_the_scale_and_the_standard_is_grey(small, built, tmp_path):
+def test_values_have_the_colours_of_the_scale_and_the_standard_is_grey(upright, built, tmp_path):
     T = np.eye(4)
     T[2, 3] = -380.0
     bare = rendered({tmp_path / "bare.png": [scene()]})
