@@ -178,7 +178,9 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
     values = np.where(seen, curve @ theta, np.nan)
     across = curve[int(np.nanargmax(values))] - curve[int(np.nanargmin(values))]
     whole = _told("peak_to_valley", unit, float(across @ theta), across, covariance)
-    return [whole, *(_reversals(fit, effect) if getattr(effect, "by_direction", False) else ())]
+    if isinstance(effect, PositionTable) and effect.by_direction:
+        return [whole, *_reversals(fit, effect)]
+    return [whole]
 
 
 def _of_same_curve(fit: Fit, effect: Effect) -> list[Effect]:

@@ -9,6 +9,7 @@ from report.numbers import unit_words, with_uncertainty
 from twin.units import UM
 
 NONE_CERTAIN = ", none of which stands with all rows in use"
+"""Behind a way of choosing of which nothing came."""
 
 LISTED = 20
 """Gross errors whose lines are told."""
