@@ -1,10 +1,10 @@
 """What the stated uncertainty of a measuring task covers: new places of workpieces, new machines.
 
-    python benchmarks/task_uncertainty.py OUT [--machines 200] [--visits 10] [--from 0]
+    python benchmarks/task_uncertainty.py OUT PROJECT.toml [--machines N] [--visits N] [--first N]
 
-OUT is a folder of `matstd design`. For every machine the emitted programs probe the standard on the
-exact twin in several visits, clamped anew and with calibration errors, the model is identified from
-the balls of the first, and U is evaluated from the faces. Then workpieces are measured on the same
+OUT is a folder that `matstd design` made of the project. The emitted programs probe every machine
+on the exact twin in several visits, the standard clamped anew and with calibration errors, the
+model is identified from the balls of the first, and U is evaluated from the faces. Then workpieces are measured on the same
 machine that have nothing of the standard but its datum balls: points anywhere in the box of the
 faces, normals of the slopes of its touches in any azimuth, table poses between those probed. Wanted:
 93 to 97 % of the results, corrected by b, within U of the truth.
@@ -47,7 +47,9 @@ def workpieces(run: Run, standard: Standard, rng: np.random.Generator) -> Touche
     while sum(map(len, kept)) < RESULTS:
         k = rng.integers(0, len(like), RESULTS)
         q = like.q[k].copy()
-        q[:, rotary] = rng.uniform(like.q[:, rotary].min(0), like.q[:, rotary].max(0), (RESULTS, len(rotary)))
+        q[:, rotary] = rng.uniform(
+            like.q[:, rotary].min(0), like.q[:, rotary].max(0), (RESULTS, len(rotary))
+        )
         slope = np.arccos(like.normal[k, 2])
         azimuth = rng.uniform(-np.pi, np.pi, RESULTS)
         normal = np.stack(

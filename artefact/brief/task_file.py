@@ -19,7 +19,7 @@ class WorkpieceTable(Table):
 
     form_um: float = Field(default=0.0, ge=0.0)
     length_mm: float = Field(default=0.0, ge=0.0)
-    warmer_K: float = Field(default=0.0, ge=0.0)
+    warmer: float = Field(default=0.0, alias="warmer_K", ge=0.0)
     expansion_u: float = Field(default=1e-6, alias="expansion_u_1_K", ge=0.0, lt=1e-3)
 
 
@@ -76,7 +76,7 @@ def read_task(path: str | Path) -> Task:
             raise BadFile(path, f"poses.{key}", key, "rotary axes: A_deg, B_deg or C_deg")
         rotary[letter] = (low * DEG, high * DEG)
     piece = file.workpiece
-    expands = piece.length_mm * piece.warmer_K * piece.expansion_u
+    expands = piece.length_mm * piece.warmer * piece.expansion_u
     return Task(
         name=file.name,
         slope=(file.slope_deg[0] * DEG, file.slope_deg[1] * DEG),

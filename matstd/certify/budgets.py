@@ -51,7 +51,9 @@ def budgets(
     for run in runs[1:]:
         if differs := run.touches.chain.difference(runs[0].touches.chain):
             key, ours, theirs = differs
-            raise DesignError(f"machines of two visits: {key} is {ours} and {theirs}, expected one machine")
+            raise DesignError(
+                f"machines of two visits: {key} is {ours} and {theirs}, expected one machine"
+            )
     faces = [on_faces(standard, run.touches) for run in runs]
     wanted = [like_task(task, standard, run.touches) for run in runs]
     first = runs[0].touches
