@@ -4,10 +4,10 @@
 
 OUT is a folder that `matstd design` made of the project. The emitted programs probe every machine
 on the exact twin in several visits, the standard clamped anew and with calibration errors, the
-model is identified from the balls of the first, and U is evaluated from the faces. Then workpieces are measured on the same
-machine that have nothing of the standard but its datum balls: points anywhere in the box of the
-faces, normals of the slopes of its touches in any azimuth, table poses between those probed. Wanted:
-93 to 97 % of the results, corrected by b, within U of the truth.
+model is identified from the balls of the first, and U is evaluated from the faces. Then workpieces
+are measured on the same machine that have nothing of the standard but its datum balls: points
+anywhere in the box of the faces, normals of the slopes of its touches in any azimuth, table poses
+between those probed. Wanted: 93 to 97 % of the results, corrected by b, within U of the truth.
 """
 
 import argparse
