@@ -5,6 +5,7 @@ Out: a `Run`. `simulate` checks every move for collisions before it runs the pro
 never learns what the virtual machine knew. `orders` and `probing_time` say what a plan costs.
 """
 
+from probe_paths.campaign.ball_change import BallChange, ball_changes, check_changes
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_points import foot_points
 from probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
@@ -19,12 +20,15 @@ from probe_paths.campaign.tolerance import setup_tolerance
 __all__ = [
     "FIRST_MORNING",
     "SMALLEST_U",
+    "BallChange",
     "Campaign",
     "ContactSolver",
     "Order",
     "Ordering",
     "VirtualMachine",
     "ball_centres",
+    "ball_changes",
+    "check_changes",
     "check_moves",
     "checked_parts",
     "effects_over_record",
