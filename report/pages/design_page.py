@@ -196,7 +196,6 @@ def _patch(patch: FreeformPatch, design: Design) -> dict[str, Any]:
     return {
         "name": patch.name,
         "centre": f"{x:.0f}, {y:.0f}, {z:.0f}".replace("-", "−"),
-        "tilt": f"{np.arccos(patch.direction[2]) / DEG:.0f}",
         "radius": _radius(min_concave_radius(patch)),
         "slope": f"{max_slope(patch) / DEG:.0f}",
         "touches": int(np.sum(design.plan.feature == patch.name)),
