@@ -22,6 +22,7 @@ from report.plots import (
 )
 from report.scenes import draw_standard
 from report.style import save
+from report.task import budget_rows, task_lines
 from report.words import (
     best_rival,
     comparison_remarks,
@@ -213,6 +214,10 @@ def _proof(design: Design) -> dict[str, Any]:
         "proof_poses": len(design.machines[0].proof.before),
         "poses": len({v.pose for v in design.plan.visits}),
         "minutes": round(design.programs.duration / 60.0),
+        "task": design.project.task.name,
+        "budgets": budget_rows(design.budgets),
+        "first_budget": next(iter(design.budgets.values())),
+        "task_lines": task_lines(design.budgets, design.project.task.tolerance, design.visits),
     }
 
 
