@@ -33,31 +33,72 @@ class Freed:
     gram: Array
     along: Array
 
+    def scaled(self, spectra: Array) -> Array:
+        """`gram` at the expected sizes of every roughness, (L, K, K)."""
+        root = np.sqrt(spectra)[:, :, None]
+        return np.asarray(root * self.gram * np.swapaxes(root, 1, 2))
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, eq=False)
 class TestedPattern:
-    """A pattern with what its roughnesses hold.
+    """A pattern with the probability of what its roughnesses hold, and on demand what they hold.
 
     Attributes:
         pattern: Which one.
+        effects: Beside which it was looked for.
+        freed: Its functions, freed of them.
         p: Probability of so much in white noise, not corrected, (L,).
-        evidence: Log evidence at the likeliest size, (L,).
-        size: That size, a variance over that of the noise, (L,).
-        share: Of the squared residual that it holds beyond chance, (L,).
+        rows: Touches in use over those that were looked at.
     """
 
     __test__ = False
 
     pattern: Pattern
+    effects: EffectSet
+    freed: Freed
     p: Array
-    evidence: Array
-    size: Array
-    share: Array
+    rows: float
 
-    def columns(self, complement: ResidualSpace) -> Array:
+    @cached_property
+    def _principal(self) -> tuple[Array, Array]:
+        """Eigenvalues of every roughness and squared parts along its eigenvectors, (L, K) each."""
+        values, vectors = np.linalg.eigh(self.freed.scaled(self.pattern.spectra))
+        along = np.sqrt(self.pattern.spectra) * self.freed.along
+        return np.maximum(values, 0.0), np.einsum("lkj,lk->lj", vectors, along) ** 2
+
+    @cached_property
+    def _at_sizes(self) -> tuple[Array, Array]:
+        """Sizes that are tried (T,), variances over that of the noise, and log evidence (T, L)."""
+        values, along = self._principal
+        sizes = SIZES / max(float(np.mean(values.sum(axis=1))), 1e-300)
+        scaled = sizes[:, None, None]
+        fall = (scaled * along / (1.0 + scaled * values)).sum(axis=2)
+        charge = np.log1p(scaled * values).sum(axis=2)
+        complement, objective = self.effects.complement, self.effects.objective
+        left = np.maximum(objective - fall, 1e-9) + complement.stated
+        n = complement.count + PRIOR_DOF
+        return sizes, -0.5 * n * np.log(left / (objective + complement.stated)) - 0.5 * charge
+
+    @property
+    def evidence(self) -> float:
+        """Log evidence at the likeliest size and roughness, against no pattern."""
+        return float(self._at_sizes[1].max())
+
+    @property
+    def share(self) -> float:
+        """Of the squared residual that a roughness holds beyond chance, at most."""
+        (values, along), (sizes, evidence) = self._principal, self._at_sizes
+        objective = self.effects.objective
+        scaled = sizes[np.argmax(evidence, axis=0)][:, None]
+        by_chance = values * objective / max(self.effects.dof, 1.0)
+        fall = (scaled * (along - by_chance) / (1.0 + scaled * values)).sum(axis=1)
+        return float(fall.max()) * self.rows / objective
+
+    def columns(self) -> Array:
         """Projected functions at their likeliest size, (N + P, K)."""
-        best = int(np.argmax(self.evidence))
-        scale = np.sqrt(self.pattern.spectra[best] * self.size[best])
+        complement, (sizes, evidence) = self.effects.complement, self._at_sizes
+        best, roughness = np.unravel_index(int(np.argmax(evidence.T)), evidence.T.shape)[::-1]
+        scale = np.sqrt(self.pattern.spectra[roughness] * sizes[best])
         every = np.arange(len(complement.u))
         return complement.project(self.pattern.whitened(complement, every) * scale)
 
@@ -116,58 +157,26 @@ class PatternTests:
             effects: Model and effects in it; the model is that of `complement`.
         """
         assert effects.complement is self.complement
-        principal = []
-        for pattern, freed in zip(self.known, self._beside(effects), strict=True):
-            root = np.sqrt(pattern.spectra)[:, :, None]  # (L, K, 1)
-            S = root * freed.gram * np.swapaxes(root, 1, 2)
-            values, vectors = np.linalg.eigh(S)
-            along = np.einsum("lkj,lk->lj", vectors, root[:, :, 0] * freed.along) ** 2
-            principal.append((np.maximum(values, 0.0), along))
-        probabilities = _probabilities(effects, principal)
+        freed = list(self._beside(effects))
+        values, statistic = [], []
+        for pattern, own in zip(self.known, freed, strict=True):
+            values.append(np.maximum(np.linalg.eigvalsh(own.scaled(pattern.spectra)), 0.0))
+            statistic.append((pattern.spectra * own.along**2).sum(axis=1))
         share = len(self.complement.u) / len(self.rows)
-        tested = zip(self.known, principal, probabilities, strict=True)
-        return [_tested(effects, pattern, *found, p, share) for pattern, found, p in tested]
+        probabilities = _probabilities(effects, values, statistic)
+        return [
+            TestedPattern(pattern, effects, own, p, share)
+            for pattern, own, p in zip(self.known, freed, probabilities, strict=True)
+        ]
 
 
-def _probabilities(effects: EffectSet, principal: list[tuple[Array, Array]]) -> list[Array]:
-    """Of every pattern by its eigenvalues and squared parts, (L,) each; all in one go."""
-    if not principal:
-        return []
-    widest = max(values.shape[1] for values, _ in principal)
-    weights = [np.pad(v, ((0, 0), (0, widest - v.shape[1]))) for v, _ in principal]
-    statistic = np.concatenate([along.sum(axis=1) for _, along in principal]) / effects.objective
-    p = ratio_probability(statistic, np.vstack(weights), effects.dof)
-    return np.split(p, np.cumsum([len(v) for v, _ in principal])[:-1])
-
-
-def _tested(
-    effects: EffectSet, pattern: Pattern, values: Array, along: Array, p: Array, share: float
-) -> TestedPattern:
-    """A pattern by its eigenvalues and squared parts (L, K); share: touches in use over those
-    looked at.
-    """  # noqa: D205
-    objective = effects.objective
-    sizes = SIZES / max(float(np.mean(values.sum(axis=1))), 1e-300)
-    gained = _evidence(effects, values, along, sizes)
-    best = np.argmax(gained, axis=0)
-    scaled = sizes[best][:, None]
-    by_chance = values * objective / max(effects.dof, 1.0)
-    fall = (scaled * (along - by_chance) / (1.0 + scaled * values)).sum(axis=1)
-    return TestedPattern(
-        pattern=pattern,
-        p=p,
-        evidence=gained[best, np.arange(len(p))],
-        size=sizes[best],
-        share=fall * share / objective,
-    )
-
-
-def _evidence(effects: EffectSet, values: Array, along: Array, sizes: Array) -> Array:
-    """Log evidence of every size (T,) and roughness (L,) against no pattern, (T, L)."""
-    scaled = sizes[:, None, None]
-    fall = (scaled * along / (1.0 + scaled * values)).sum(axis=2)
-    charge = np.log1p(scaled * values).sum(axis=2)
-    n = effects.complement.count + PRIOR_DOF
-    stated = effects.complement.stated
-    left = np.maximum(effects.objective - fall, 1e-9) + stated
-    return np.asarray(-0.5 * n * np.log(left / (effects.objective + stated)) - 0.5 * charge)
+def _probabilities(
+    effects: EffectSet, values: list[Array], statistic: list[Array]
+) -> Iterator[Array]:
+    """Of every pattern by its eigenvalues (L, K) and statistics (L,), all in one go."""
+    if not values:
+        return iter(())
+    widest = max(v.shape[1] for v in values)
+    weights = np.vstack([np.pad(v, ((0, 0), (0, widest - v.shape[1]))) for v in values])
+    p = ratio_probability(np.concatenate(statistic) / effects.objective, weights, effects.dof)
+    return iter(np.split(p, np.cumsum([len(v) for v in values])[:-1]))

@@ -94,20 +94,17 @@ def find_structure(
     wave = best_wave(effects, complement.touches, smooth.rows)
     neighbours = [*_neighbours(effects), *_crowds(complement)]
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
+    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < CHANCE}
     found = [
-        *(_as_structure(t, count) for t in tested),
+        *beyond,
         _wave_structure(effects, wave, count, smooth.rows),
         *(_corrected(n, count) for n in neighbours),
     ]
     counts = (f for f in found if f.p_value < CHANCE and f.share > MATERIAL)
     found = sorted(counts, key=lambda f: f.p_value)
     progress(1.0, "structure left")
-    by_name = {(t.pattern.variables, t.pattern.direction): t for t in tested}
-    for i, f in enumerate(found[:most]):
-        if f.shape is Shape.SMOOTH:
-            columns = by_name[f.variables, f.direction].columns(complement)
-            found[i] = replace(f, columns=columns)
-    return found
+    first = [replace(f, columns=beyond[f].columns()) if f in beyond else f for f in found[:most]]
+    return [*first, *found[most:]]
 
 
 def _as_structure(tested: TestedPattern, count: int) -> Structure:
@@ -117,8 +114,8 @@ def _as_structure(tested: TestedPattern, count: int) -> Structure:
         variables=tested.pattern.variables,
         direction=tested.pattern.direction,
         p_value=min(1.0, float(tested.p.min()) * count),
-        share=float(tested.share.max()),
-        evidence=float(tested.evidence.max()),
+        share=tested.share,
+        evidence=tested.evidence,
         columns=None,
     )
 
