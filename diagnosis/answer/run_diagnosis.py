@@ -136,7 +136,7 @@ def _diagnosed(
         return result
     fields = [e for e in result.found if isinstance(e, ThermalField)]
     told: tuple[Remark, ...] = (
-        *choice_remarks(choice),
+        *choice_remarks(choice, result.found),
         *(field_shares(result.fit, e) for e in fields),
     )
     return replace(result, choice=choice, remarks=(*told, *result.remarks))

@@ -136,8 +136,12 @@ def field_shares(fit: Fit, effect: ThermalField) -> FieldShares:
     return FieldShares(effect.axis, tuple(ranked[:LISTED]))
 
 
-def choice_remarks(choice: Choice) -> tuple[Remark, ...]:
-    """Every way of a choice with its plain error of blocks left out, and a limit that was met."""
+def choice_remarks(choice: Choice, found: Sequence[Effect]) -> tuple[Remark, ...]:
+    """Every way of a choice with its plain error of blocks left out, and a limit that was met.
+
+    Args:
+        found: What came of it with all rows in use.
+    """
     tried = tuple((rule.name, rule.error) for rule in choice.rules)
-    told = ChosenByPrediction(choice.best.name, choice.blocks, tried)
+    told = ChosenByPrediction(choice.best.name, choice.blocks, tried, is_empty=not found)
     return (told, SearchEnded(SETS)) if choice.is_ended else (told,)

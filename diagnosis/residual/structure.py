@@ -24,6 +24,10 @@ from twin.record import IntArray, Touches
 CHANCE = 1e-3
 """Probability, all tests together, that white noise is said to have structure."""
 
+ROUGHLY = 1e-4
+"""The same where the noise remembers: what it remembers is a model of its own, right as far as it
+goes, and a residual of real parts is never quite it."""
+
 MATERIAL = 0.01
 """Share of the squared residual that a pattern must hold to count: in ten thousand rows less is
 beyond chance too, but whoever knew it would predict no more than half a per cent better."""
@@ -100,7 +104,8 @@ def find_structure(
         _wave_structure(effects, wave, count, smooth.rows),
         *(_corrected(n, count) for n in neighbours),
     ]
-    counts = (f for f in found if f.p_value < CHANCE and f.share > MATERIAL)
+    chance = CHANCE if complement.whitener is None else ROUGHLY
+    counts = (f for f in found if f.p_value < chance and f.share > MATERIAL)
     found = sorted(counts, key=lambda f: f.p_value)
     progress(1.0, "structure left")
     first = [replace(f, columns=beyond[f].columns()) if f in beyond else f for f in found[:most]]

@@ -21,6 +21,8 @@ _WORDS = {
     "length": "correlation length",
     "tau": "time constant",
     "step": "per step of",
+    "reversal_on_average": "reversal on average",
+    "reversal_at_most": "reversal at most",
 }
 
 _GROUPS = ("feature", "pose", "setup")
@@ -31,6 +33,9 @@ PERIODS_TOLD = 4
 
 WITHIN = 0.1
 """Excess over stated noise below which nothing stands out of it: half a per cent of its size."""
+
+HALF = 0.5
+"""Share of the square beyond the stated noise that a pattern must hold to be the reason for it."""
 
 ALL_TOLD = 7
 """Numbers of an effect that are told one by one; of more only the size is."""
@@ -81,7 +86,9 @@ def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
     is_curve = any(r.quantity == "peak_to_valley" for r in told)
     if is_curve or len(told) > ALL_TOLD:
         told = [r for r in told if r.role is not Role.COEFFICIENT]
-    return [named_value(r) for r in told]
+    if is_curve:  # how smooth it was taken to be is in the files
+        told = [r for r in told if r.quantity != "length"]
+    return [named_value(r) for r in told if (r.quantity, r.value) != ("step", 1.0)]
 
 
 def sizes(step: Step, most: int) -> str:
@@ -118,13 +125,19 @@ def excess(fit: Fit) -> float:
 
 
 def _left(diagnosis: Diagnosis) -> str:
-    """How much is left that is no noise, as a clause: beyond the stated noise, or within it."""
+    """How much is left that is no noise, as a clause: beyond the stated noise, or of what is left.
+
+    What follows no pattern may be noise that was stated too small.
+    """
     fit, stated = diagnosis.fit, stated_noise(diagnosis.run)
     beyond = excess(fit)
-    if beyond < WITHIN * stated and diagnosis.left:
-        share = min(max(s.share for s in diagnosis.left), 1.0)
-        size = microns(stated * fit.noise.factor * math.sqrt(share))
-        return f"{size} rms, within the stated noise of {microns(stated)}"
+    share = min(max((s.share for s in diagnosis.left), default=1.0), 1.0)
+    whole = stated * fit.noise.factor
+    if whole**2 * share < HALF * beyond**2 or beyond < WITHIN * stated:
+        return (
+            f"of {microns(whole)} rms that are left (noise stated: {microns(stated)}) "
+            f"{microns(whole * math.sqrt(share))}"
+        )
     return f"{microns(beyond)} rms beyond the stated noise of {microns(stated)}"
 
 

@@ -20,6 +20,8 @@ SPINDLE = "spindle_rpm"
 """The drive that is no sensor: the spindle speed of the run file."""
 SPEED_UNIT = 1.0e4
 """Amplitudes after the spindle speed are those at 10 000 rpm, 1/min."""
+CYCLE = "cycle_1"
+"""Own column that counts the cycles of a positioning test, as import writes it."""
 OWN = "V_"
 """Begins a drive that is a column of the user's own, as in the run file."""
 
