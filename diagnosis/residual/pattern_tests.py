@@ -165,7 +165,7 @@ class PatternTests:
         share = len(self.complement.u) / len(self.rows)
         probabilities = _probabilities(effects, values, statistic)
         return [
-            TestedPattern(pattern, effects, own, p, share)
+            TestedPattern(pattern=pattern, effects=effects, freed=own, p=p, rows=share)
             for pattern, own, p in zip(self.known, freed, probabilities, strict=True)
         ]
 

@@ -147,21 +147,25 @@ def pairs(touches: Touches, known: Mapping[str, Array]) -> list[tuple[str, str]]
 
 def patterns(touches: Touches) -> Iterator[Pattern]:
     """Every smooth pattern and every grouping that a run can show."""
-    known, along = variables(touches), directions(touches)
+    along = directions(touches)
+    for names, shapes, spectra in _shapes(touches):
+        for direction, part in along.items():
+            yield Pattern(
+                variables=names, direction=direction, shapes=shapes, part=part, spectra=spectra
+            )
+
+
+def _shapes(touches: Touches) -> Iterator[tuple[tuple[str, ...], Array, Array]]:
+    """Variables, functions (N, K) and spectra (L, K) of the same, whatever the direction."""
+    known = variables(touches)
     for name, values in known.items():
-        F = half_waves(values, ORDER_ALONE)[:, 1:]
-        for direction, part in along.items():
-            yield Pattern((name,), direction, F, part, alone_spectra(ORDER_ALONE))
+        yield (name,), half_waves(values, ORDER_ALONE)[:, 1:], alone_spectra(ORDER_ALONE)
     for first, second in pairs(touches, known):
-        F, spectra = paired((known[first], known[second]))
-        for direction, part in along.items():
-            yield Pattern((first, second), direction, F, part, spectra)
+        yield (first, second), *paired((known[first], known[second]))
     for name, label in groups(touches).items():
         F = (label[:, None] == np.arange(label.max() + 1)).astype(float)
         F = F[:, F.any(axis=0)]
-        spectra = np.full((1, F.shape[1]), 1.0 / F.shape[1])
-        for direction, part in along.items():
-            yield Pattern((name,), direction, F, part, spectra)
+        yield (name,), F, np.full((1, F.shape[1]), 1.0 / F.shape[1])
 
 
 def thinned(complement: ResidualSpace) -> IntArray:

@@ -98,13 +98,13 @@ def find_structure(
     wave = best_wave(effects, complement.touches, smooth.rows)
     neighbours = [*_neighbours(effects), *_crowds(complement)]
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
-    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < CHANCE}
+    chance = CHANCE if complement.whitener is None else ROUGHLY
+    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < chance}
     found = [
         *beyond,
         _wave_structure(effects, wave, count, smooth.rows),
         *(_corrected(n, count) for n in neighbours),
     ]
-    chance = CHANCE if complement.whitener is None else ROUGHLY
     counts = (f for f in found if f.p_value < chance and f.share > MATERIAL)
     found = sorted(counts, key=lambda f: f.p_value)
     progress(1.0, "structure left")
