@@ -307,7 +307,7 @@ def _candidates(final: SearchState) -> tuple[Candidate, ...]:
 
 def _structures(final: SearchState, progress: Progress) -> tuple[Structure, ...]:
     """What the residual varies with at the start, each pattern freed of those before."""
-    complement = final.library.complement
+    complement = final.smooth.complement
     out: list[Structure] = []
     A = np.zeros((len(complement.residual), 0))
     found: Sequence[Structure] = final.at_start
@@ -319,7 +319,7 @@ def _structures(final: SearchState, progress: Progress) -> tuple[Structure, ...]
         if len(out) == DEPENDENCES or best.columns is None:
             break
         A = np.hstack([A, best.columns])
-        found = find_structure(EffectSet(complement, A), progress)
+        found = find_structure(EffectSet(complement, A), progress, final.smooth)
     return tuple(out)
 
 

@@ -31,7 +31,7 @@ from diagnosis.evidence import (
     signatures,
 )
 from diagnosis.fit import Fit
-from diagnosis.residual import Structure, find_structure
+from diagnosis.residual import PatternTests, Structure, find_structure
 from diagnosis.search.edges import unexplained_near_slip, without
 from diagnosis.search.overtones import with_overtones
 from diagnosis.search.refine import refined_set
@@ -83,6 +83,7 @@ class SearchState:
         search: The last search.
         chosen: Its result.
         effects: The same effects with their inner parameters refined.
+        smooth: Tests for patterns in what the starting model leaves.
         at_start: Structure that the starting model leaves.
         left: Structure that the effects and the patterns leave.
         nameless: Patterns without a name that had to be put beside them.
@@ -96,6 +97,7 @@ class SearchState:
     search: Search
     chosen: EffectSubset
     effects: tuple[ScaledEffect, ...]
+    smooth: PatternTests
     at_start: tuple[Structure, ...]
     left: tuple[Structure, ...]
     nameless: tuple[Structure, ...]
@@ -286,8 +288,9 @@ def _with_structure(
 ) -> SearchState:
     """The search's result with the structure that it leaves, which may bring it down."""
     nothing = search.evaluate(())
-    at_start = find_structure(nothing.effects, progress)
-    left = find_structure(chosen.effects, progress) if chosen.members else at_start
+    smooth = PatternTests(nothing.effects.complement)
+    at_start = find_structure(nothing.effects, progress, smooth)
+    left = find_structure(chosen.effects, progress, smooth) if chosen.members else at_start
     if not left:
         left = _patterns_that_win(at_start, nothing, chosen)
     nameless: list[Structure] = []
@@ -297,7 +300,7 @@ def _with_structure(
         fixed = np.hstack([s.columns for s in nameless if s.columns is not None])
         search = Search(search.pool, fixed, progress, search.budget)
         chosen = search.run(chosen.members)
-        left = find_structure(chosen.effects, progress)
+        left = find_structure(chosen.effects, progress, smooth)
     if _evicted(named[1], chosen):
         (search, chosen, left), nameless = named, []
     return SearchState(
@@ -306,6 +309,7 @@ def _with_structure(
         search=search,
         chosen=chosen,
         effects=tuple(refined_set(library.complement, scaled(chosen))),
+        smooth=smooth,
         at_start=tuple(at_start),
         left=tuple(left),
         nameless=tuple(nameless),
