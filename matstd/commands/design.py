@@ -95,7 +95,7 @@ def run(args: argparse.Namespace) -> int:
             sheet = write_setup_page(folder / SHEET, made.plan, made.programs, first, words)
             print_report(sheet.parent, printed_by, sheet.stem)
     say_each(remarks)
-    verdict, *others = design_lines(made.placement)
+    verdict, *others = design_lines(made.placement, project.workspace)
     say(verdict, style="bold")
     say_each(others)
     dropped = dict.fromkeys(map(str, made.plan.refused))  # a pose is visited twice
