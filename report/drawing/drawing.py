@@ -71,10 +71,8 @@ def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
     """Views, sections, tables, notes and title block."""
     sheet, base = Sheet(), standard.base
     (a, b), tall = base.half_size, _tallest(standard)
-    scale = next(
-        (s for s in _SCALES if s * 2 * (a + b) <= _ROOM[0] - 36 and s * (tall + 2 * b) <= _ROOM[1] - 90),
-        _SCALES[-1],
-    )  # fmt: skip
+    wide, high = (_ROOM[0] - 36.0) / (2.0 * (a + b)), (_ROOM[1] - 90.0) / (tall + 2.0 * b)
+    scale = next((s for s in _SCALES if s <= min(wide, high)), _SCALES[-1])
     floor = _TOP - 12.0 - scale * tall
     front = View(_LEFT + scale * a, floor, scale)
     left = View(_LEFT + scale * 2 * a + 36.0 + scale * b, floor, scale)
@@ -87,7 +85,7 @@ def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
     _axes(sheet, top)
     if standard.spheres:
         enlarged = 2.0 if standard.spheres[0].radius <= 16.0 else 1.0
-        draw_seat(sheet, View(top.x + scale * a + 74.0, floor - 62.0, enlarged), standard, details)
+        draw_seat(sheet, View(top.x + scale * a + 74.0, floor - 76.0, enlarged), standard, details)
     if standard.holes:
         draw_screw(sheet, View(top.x + scale * a + 70.0, 62.0, 1.0), standard, details)
     low = _tables(sheet, standard, details)
@@ -115,7 +113,7 @@ def _dimensions(sheet: Sheet, front: View, top: View, standard: Standard, tall: 
     radius = standard.base.corner_radius
     corner = np.array([a, b]) - radius * (1.0 - np.sqrt(0.5))
     tip = top.at(corner)[0]
-    sheet.leader(tip, tip + [6.0, 6.0], f"R{radius:g}")
+    sheet.leader(tip, np.add(tip, [6.0, 6.0]), f"R{radius:g}")
 
 
 def _datums(
@@ -137,10 +135,10 @@ def _datums(
     for patch in standard.patches[:1]:
         rows.append((patch.name, f"{len(standard.patches)} x FF"))
     for sphere in standard.spheres[:1]:
-        rows.append((f"{sphere.name}_SEAT", f"{len(standard.spheres)} x ball centre"))
+        rows.append((f"{sphere.name}_SEAT", f"{len(standard.spheres)} x centre"))
     for k, (face, words) in enumerate(rows):
         column, row = divmod(k, 3)
-        at = (x + 66.0 * column, y - 14.0 - 8.5 * row)
+        at = (x + 62.0 * column, y - 14.0 - 8.5 * row)
         _frame(sheet, at, tolerances[face], words)
 
 
@@ -148,7 +146,7 @@ def _frame(sheet: Sheet, at: tuple[float, float], tolerance: Tolerance, words: s
     width = f"{tolerance.width:g}"
     width = f"SØ{width}" if tolerance.kind == "position" else width
     sheet.text(at[0], at[1] + 1.8, words, size=2.2)
-    sheet.tolerance(at[0] + 21.0, at[1], tolerance.kind, width, tolerance.datums)
+    sheet.tolerance(at[0] + 23.0, at[1], tolerance.kind, width, tolerance.datums)
 
 
 def _axes(sheet: Sheet, top: View) -> None:
@@ -166,11 +164,11 @@ def _tables(sheet: Sheet, standard: Standard, details: Details) -> float:
     widths = (11, 14, 14, 14, 22, 11, 13, 89)
     y = sheet.table(_TABLES, _TOP, widths, rows, "Freeform faces (middle, steepest, least radius)")
     rows = [["ball", "x", "y", "z", "Ø", "foot", "land z", "identifies the machine; calibrated"]]
-    rows += [
-        [s.name, *(f"{c:.1f}" for c in s.centre), f"{2 * s.radius:g}", f"Ø{2 * s.foot_radius:.1f}"]
-        + [f"{details.seats[s.name].top:.2f}", f"centre and form; {BALL.name}"]
-        for s in standard.spheres
-    ]
+    for ball in standard.spheres:
+        place = [f"{c:.1f}" for c in ball.centre]
+        post = [f"Ø{2 * ball.foot_radius:.1f}", f"{details.seats[ball.name].top:.2f}"]
+        purpose = f"centre and form; {BALL.name}"
+        rows.append([ball.name, *place, f"{2 * ball.radius:g}", *post, purpose])
     widths = (11, 14, 14, 14, 11, 15, 15, 94)
     y = sheet.table(_TABLES, y - 9.0, widths, rows, "Balls (centres)")
     rows = [["hole", "x", "y", "through", "counterbore", "for"]]
@@ -247,7 +245,7 @@ def _title(sheet: Sheet, standard: Standard, issuer: Issuer, scale: float) -> No
         sheet.text(x + left + 1.2, y + low + 3.0, words, size=2.5)
     sheet.box(x + 154.0, y, 34.0, 12.0)
     middle = np.array([x + 163.0, y + 6.0])
-    sheet.circle(middle + [14.0, 0.0], 4.0, 0.3)
-    sheet.circle(middle + [14.0, 0.0], 2.2, 0.3)
+    sheet.circle(np.add(middle, [14.0, 0.0]), 4.0, 0.3)
+    sheet.circle(np.add(middle, [14.0, 0.0]), 2.2, 0.3)
     cone = [[-4.5, -2.2], [4.5, -4.0], [4.5, 4.0], [-4.5, 2.2], [-4.5, -2.2]]
     sheet.line(middle + np.array(cone), 0.3)

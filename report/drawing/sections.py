@@ -25,14 +25,17 @@ def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) ->
     circle = [seat.contact_radius, seat.contact - z]
     tip = view.at([circle])[0]
     contact = f"contact circle Ø{2 * seat.contact_radius:.1f}, metal on metal"
-    sheet.leader(tip, tip + [14.0, 9.0], contact)
+    sheet.leader(tip, np.add(tip, [14.0, 9.0]), contact)
     glue = view.at([[seat.rim_radius, top + 0.5 * glue_gap(sphere, seat)]])[0]
-    sheet.leader(glue, glue + [12.0, 1.0], f"glue outside only, {glue_gap(sphere, seat):.2f} wide")
+    sheet.leader(
+        glue, np.add(glue, [12.0, 1.0]), f"glue outside only, {glue_gap(sphere, seat):.2f} wide"
+    )
     half = seat.half_angle / DEG
-    sheet.leader(view.at([[0.45 * seat.rim_radius, 0.55 * deep + 0.45 * top]])[0],
-                 view.at([[low, floor]])[0] + [8.0, 5.0], f"{2 * half:.0f}°, Ra 0.8")  # fmt: skip
+    flank = view.at([[0.45 * seat.rim_radius, 0.55 * deep + 0.45 * top]])[0]
+    beside = np.add(view.at([[low, floor]])[0], [8.0, 5.0])
+    sheet.leader(flank, beside, f"{2 * half:.0f}°, Ra 0.8")
     size = view.at([[-0.7 * sphere.radius, 0.7 * sphere.radius]])[0]
-    sheet.leader(size, size + [-6.0, 5.0], f"SØ{2 * sphere.radius:g} ±0.0025")
+    sheet.leader(size, np.add(size, [-6.0, 5.0]), f"SØ{2 * sphere.radius:g} ±0.0025")
     where = view.at([[0.0, 1.3 * sphere.radius]])[0]
     title = f"BALL IN ITS SEAT ({_ratio(view.scale)}), all {len(standard.spheres)} alike"
     sheet.text(where[0], where[1] + 3.0, title, size=3.0, ha="center")
@@ -56,7 +59,7 @@ def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -
         sheet.line(view.at([*shape, *head]), THIN, fill="white")
         tip = view.at([[d, end + 4.0]])[0]
         total = sum(len(kind.holes) for kind in details.screws)
-        sheet.leader(tip, tip + [8.0, -1.0], f"{total} x {screw.name}")
+        sheet.leader(tip, np.add(tip, [8.0, -1.0]), f"{total} x {screw.name}")
     sheet.line(view.at([[0.0, -18.0], [0.0, thick + 6.0]]), 0.13, "-.")
     a, b = view.at([[-hole.bore_radius, thick], [hole.bore_radius, thick]])
     sheet.dimension(a, b, 5.0, f"Ø{2 * hole.bore_radius:g}")
@@ -68,8 +71,10 @@ def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -
         a, b = view.at([[-pad, 0.0], [pad, 0.0]])
         sheet.dimension(a, b, -9.0, f"Ø{2 * pad:g}")
         edge = view.at([[-pad - 1.0, RELIEF]])[0]
-        sheet.leader(edge, edge + [-8.0, -9.0], f"R{BLEND:g}, step {RELIEF:g}")
-        sheet.roughness(view.at([[0.5 * (pad + hole.radius), 0.0]])[0] + [0.0, -5.5], "Ra 0.8")
+        sheet.leader(edge, np.add(edge, [-8.0, -9.0]), f"R{BLEND:g}, step {RELIEF:g}")
+        sheet.roughness(
+            np.add(view.at([[0.5 * (pad + hole.radius), 0.0]])[0], [0.0, -5.5]), "Ra 0.8"
+        )
     where = view.at([[0.0, thick]])[0]
     through = f"Ø{2 * hole.radius:g} through"
     title = f"SCREW AND PAD ({_ratio(view.scale)}), {len(standard.holes)} alike, {through}"

@@ -93,7 +93,7 @@ class Sheet:
         self._depth += 1e-3
         self.axes.text(
             x, y, words, fontsize=1.35 * size * _POINT, ha=ha, va="baseline", rotation=turn,
-            rotation_mode="anchor", zorder=self._depth + 10.0,
+            rotation_mode="anchor", zorder=self._depth,
         )  # fmt: skip
 
     def arrow(self, tip: Any, direction: Any) -> None:
@@ -129,7 +129,7 @@ class Sheet:
         self.arrow(p, p - e)
         if words:
             right = e[0] >= p[0]
-            end = e + [4.0 if right else -4.0, 0.0]
+            end = np.add(e, [4.0 if right else -4.0, 0.0])
             self.line([e, end])
             self.text(end[0] + (1.0 if right else -1.0), end[1] - 0.9, words,
                       ha="left" if right else "right")  # fmt: skip
@@ -166,17 +166,22 @@ class Sheet:
             self.text(x + 10.0 + cells[1] + 6.0 * k, y + 1.8, letter, ha="center")
         return sum(cells)
 
+    def contours(self, x: Array, y: Array, z: Array, levels: int) -> None:
+        """Thin lines of equal height over a grid."""
+        self._depth += 1e-3
+        self.axes.contour(x, y, z, levels=levels, colors="0.6", linewidths=0.4, zorder=self._depth)
+
     def _sign(self, kind: str, x: float, y: float) -> None:
         middle, t = np.array([x, y]), np.linspace(0.0, np.pi, 40)
-        lines = {
+        signs: dict[str, list[Any]] = {
             "flatness": [[[-2.4, -1.2], [1.2, -1.2], [2.4, 1.2], [-1.2, 1.2], [-2.4, -1.2]]],
             "parallelism": [[[-1.6, -1.8], [0.2, 1.8]], [[-0.2, -1.8], [1.6, 1.8]]],
             "perpendicularity": [[[-2.0, -1.6], [2.0, -1.6]], [[0.0, -1.6], [0.0, 1.8]]],
             "position": [[[-2.4, 0.0], [2.4, 0.0]], [[0.0, -2.4], [0.0, 2.4]]],
             "profile": [np.column_stack([2.2 * np.cos(t), 2.4 * np.sin(t) - 1.2]),
                         [[-2.2, -1.2], [2.2, -1.2]]],
-        }[kind]  # fmt: skip
-        for points in lines:
+        }  # fmt: skip
+        for points in signs[kind]:
             self.line(middle + np.asarray(points), 0.3)
         if kind == "position":
             self.circle(middle, 1.5, 0.3)

@@ -1,6 +1,7 @@
 """Three views of a standard, drawn far to near so that what is behind is hidden."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -19,6 +20,23 @@ def draw_top(sheet: Sheet, view: View, standard: Standard, details: Details) -> 
     sheet.line(view.at(_outline(base.half_size, base.corner_radius, details)), WIDE, fill="white")
     for pad in details.pads:
         sheet.circle(view.at([pad.x, pad.y])[0], view.scale * pad.radius, THIN, "--")
+    _holes(sheet, view, standard, details)
+    for patch in standard.patches:
+        _patch_from_above(sheet, view, patch)
+    for sphere in standard.spheres:
+        middle = view.at(sphere.centre[:2])[0]
+        sheet.circle(middle, view.scale * max(sphere.foot_radius, sphere.radius), fill="white")
+        sheet.circle(middle, view.scale * sphere.radius)
+        _cross(sheet, view, sphere.centre[:2], sphere.radius)
+        sheet.text(middle[0] + 0.6, middle[1] + 0.6, sphere.name.removeprefix("SPH"), size=2.2)
+    for line in details.lettering:
+        if line.T_artefact_text[2, 2] > 0.5:
+            for stroke in strokes(line.text):
+                ink = np.column_stack([stroke * line.height / HEIGHT, np.zeros(len(stroke))])
+                sheet.line(view.at(apply(line.T_artefact_text, ink)[:, :2]), 0.13)
+
+
+def _holes(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
     for hole in standard.holes:
         for radius in (hole.bore_radius, hole.radius):
             sheet.circle(view.at([hole.x, hole.y])[0], view.scale * radius)
@@ -37,19 +55,6 @@ def draw_top(sheet: Sheet, view: View, standard: Standard, details: Details) -> 
             corners = [begin + across, end + across, end - across, begin - across]
             sheet.line(view.at(corners), THIN, "--")
             _name(sheet, view, end, 2.0, bore.name)
-    for patch in standard.patches:
-        _patch_from_above(sheet, view, patch)
-    for sphere in standard.spheres:
-        middle = view.at(sphere.centre[:2])[0]
-        sheet.circle(middle, view.scale * max(sphere.foot_radius, sphere.radius), fill="white")
-        sheet.circle(middle, view.scale * sphere.radius)
-        _cross(sheet, view, sphere.centre[:2], sphere.radius)
-        sheet.text(middle[0] + 0.6, middle[1] + 0.6, sphere.name.removeprefix("SPH"), size=2.2)
-    for line in details.lettering:
-        if line.T_artefact_text[2, 2] > 0.5:
-            for stroke in strokes(line.text):
-                ink = np.column_stack([stroke * line.height / HEIGHT, np.zeros(len(stroke))])
-                sheet.line(view.at(apply(line.T_artefact_text, ink)[:, :2]), 0.13)
 
 
 def _outline(half: tuple[float, float], radius: float, details: Details) -> Array:
@@ -81,7 +86,7 @@ def _patch_from_above(sheet: Sheet, view: View, patch: FreeformPatch) -> None:
     points = patch.point(uv)
     x, y = (view.at(points[:, :2])[:, k].reshape(_SAMPLES, _SAMPLES) for k in (0, 1))
     z = points[:, 2].reshape(_SAMPLES, _SAMPLES)
-    sheet.axes.contour(x, y, z, levels=_LEVELS, colors="0.6", linewidths=0.4, zorder=5.0)
+    sheet.contours(x, y, z, _LEVELS)
     middle = view.at(patch.T_artefact_patch[:2, 3])[0]
     sheet.text(middle[0], middle[1] - 1.2, patch.name, size=3.0, ha="center")
 
@@ -93,7 +98,7 @@ def _cross(sheet: Sheet, view: View, middle: Array, radius: float) -> None:
 
 
 def _name(sheet: Sheet, view: View, middle: Array, radius: float, name: str) -> None:
-    at = view.at(middle + [0.75 * radius, 0.75 * radius])[0]
+    at = view.at(np.add(middle, [0.75 * radius, 0.75 * radius]))[0]
     sheet.text(at[0] + 0.8, at[1] + 0.8, name, size=1.9)
 
 
@@ -114,10 +119,10 @@ def draw_from(
     items: list[tuple[float, Callable[[], None]]] = []
     for patch in standard.patches:
         depth = float(patch.T_artefact_patch[:3, 3] @ towards)
-        items.append((depth, lambda p=patch: _pillar(sheet, view, p, right, base.thickness)))
+        items.append((depth, partial(_pillar, sheet, view, patch, right, base.thickness)))
     for sphere in standard.spheres:
         depth = float(sphere.centre @ towards)
-        items.append((depth, lambda s=sphere: _post(sheet, view, s, details, right)))
+        items.append((depth, partial(_post, sheet, view, sphere, details, right)))
     for _, draw in sorted(items, key=lambda item: -item[0]):
         draw()
     half = float(np.abs(right[:2]) @ base.half_size)
