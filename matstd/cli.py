@@ -20,6 +20,7 @@ COMMANDS = {
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
     "uncertainty": "of a measuring task, from visits to the calibrated faces (ISO 15530-3)",
     "compensate": "the identified model goes back to the control: tables, or a part program",
+    "serve": "corrections while the machine moves, as an OPC UA server",
     "contributions": "what every error adds along a program or at poses",
     "machines": "the machines that come with the tool, with the source of every figure",
     "new": "a commented minimal file to start from: machine, project, run or effect",
