@@ -6,9 +6,10 @@ import asyncio
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
 
 from compensation.service.service import Answer, Service
-from twin.errors import DesignError, MissingLibrary, OutsideTravel
+from twin.errors import BadValue, DesignError, MissingLibrary, OutsideTravel
 
 if TYPE_CHECKING:
     from asyncua.common.node import Node
@@ -41,6 +42,7 @@ async def serve(
 
     Raises:
         MissingLibrary: asyncua is not installed.
+        BadValue: An endpoint that is no address.
         DesignError: The endpoint cannot be opened.
     """
     try:
@@ -49,6 +51,7 @@ async def serve(
         raise MissingLibrary(
             "the service needs asyncua: pip install material-standard[service]"
         ) from error
+    _check(endpoint)
     server, until = Server(), until or asyncio.Event()
     await server.init()
     server.set_endpoint(endpoint)
@@ -67,6 +70,16 @@ async def serve(
         await slow
     finally:
         await server.stop()
+
+
+def _check(endpoint: str) -> None:
+    try:
+        parts = urlsplit(endpoint)
+        good = parts.scheme == "opc.tcp" and parts.hostname and parts.port
+    except ValueError:  # a port that is no number
+        good = False
+    if not good:
+        raise BadValue("endpoint", repr(endpoint), "an address such as opc.tcp://localhost:4840")
 
 
 async def _follow(service: Service, nodes: _Nodes, until: asyncio.Event) -> None:

@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     limits = OutputLimits(args.most * UM, args.rate * UM, args.patience, args.hold)
     job = read_job(args)
     service = Service(job.errors, args.tool_length, job.datum, limits)
-    logging.getLogger("asyncua").setLevel(logging.ERROR)  # it warns of every security it lacks
+    logging.getLogger("asyncua").setLevel(logging.CRITICAL)  # what stops it is told by us
 
     def ready() -> None:
         say(f"{args.endpoint}: {_corrected(service)}; Ctrl-C stops it")

@@ -145,6 +145,13 @@ def test_a_history_goes_forward_with_its_sensors():
     assert history.states[0].time == 0.0
 
 
+@pytest.mark.parametrize("url", ["nonsense", "http://localhost:80", "opc.tcp://h", "opc.tcp://h:x"])
+def test_an_endpoint_that_is_no_address_is_refused(service, url):
+    pytest.importorskip("asyncua")
+    with pytest.raises(BadValue, match="endpoint"):
+        asyncio.run(serve(service, url))
+
+
 def free_port():
     with socket.socket() as one:
         one.bind(("127.0.0.1", 0))
