@@ -14,7 +14,7 @@ not in the model on what the fit leaves, and says how much a set of them explain
 what users get wrong in a description. `residual` tests what is left for structure, and finds
 regions where a model fails. `search` finds sets of effects, `choice` takes the one that predicts
 best, `answer` turns it into a verdict with sizes and look-alikes. `files` reads and writes models
-and results.
+and results. `drift` has laws of thermal drift from logs.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
 should know about a run is a record in `remarks`, its sentence in `report.words`; a
@@ -45,6 +45,7 @@ PARTS = (
     "choice",
     "answer",
     "files",
+    "drift",
 )
 """From bottom to top: each imports only from those before it."""
 
