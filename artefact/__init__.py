@@ -35,7 +35,7 @@ from artefact.place import Placement, PlacementOptions, design_standard
 from artefact.reach import ProbeReach, Requests
 from artefact.worth import Criterion
 
-PARTS = ("brief", "body", "layout", "reach", "worth", "compare", "place")
+PARTS = ("brief", "body", "layout", "reach", "worth", "certify", "compare", "place")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

@@ -1,6 +1,6 @@
 """Thirty mistakes in the description of a machine or a run: how many are named, how many misnamed.
 
-    python benchmarks/description_faults.py [--seed 1]
+    python benchmarks/description_faults.py [--seed 1] [--first 0] [--runs 30]
 
 Runs come from the independent simulator; the mistake is written into the text of the run file or
 of the machine file, as a user would make it, and both are read back. Beside them as many runs
@@ -211,11 +211,14 @@ def right_one(k: int, seed: int) -> bool:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seed", type=int, default=1)
-    seed = parser.parse_args().seed
-    outcomes = [planted_one(k, seed) for k in range(len(PLANTED))]
-    silent = sum(right_one(k, seed) for k in range(len(PLANTED)))
+    parser.add_argument("--first", type=int, default=0, help="number of the first mistake")
+    parser.add_argument("--runs", type=int, default=len(PLANTED))
+    args = parser.parse_args()
+    numbers = range(args.first, min(args.first + args.runs, len(PLANTED)))
+    outcomes = [planted_one(k, args.seed) for k in numbers]
+    silent = sum(right_one(k, args.seed) for k in numbers)
     counts = {word: outcomes.count(word) for word in ("right", "missed", "misnamed")}
-    print(f"{len(PLANTED)} mistakes: {counts}; {silent} of {len(PLANTED)} right runs unsuspected")
+    print(f"{len(numbers)} mistakes: {counts}; {silent} of {len(numbers)} right runs unsuspected")
 
 
 if __name__ == "__main__":

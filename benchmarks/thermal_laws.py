@@ -9,8 +9,8 @@ import time
 
 import numpy as np
 
-from diagnosis.drift.arx import arx
-from diagnosis.drift.record import DriftRecord, blocks
+from diagnosis.drift import DriftRecord, offered
+from twin.units import UM
 
 ROWS, SENSORS, STEP = 1440, 20, 60.0
 
@@ -35,10 +35,11 @@ def main() -> None:
     """Measure once; it takes seconds."""
     record = day(np.random.default_rng(1))
     begin = time.process_time()
-    law = arx(record, blocks(np.arange(ROWS), 4))
+    law = offered(record, networks=False)["arx"](record, np.array_split(np.arange(ROWS), 4))
     spent = time.process_time() - begin
     print(f"ARX of {ROWS} rows, {SENSORS} sensors, 5 drifts: {spent:.2f} s of processor")
-    print(f"drives {', '.join(law.inputs.drives)}")
+    left = np.sqrt(np.mean((law.predicted(record) - record.displacement) ** 2)) / UM
+    print(f"left {left:.2f} µm of 0.10 µm of noise")
 
 
 if __name__ == "__main__":

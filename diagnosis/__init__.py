@@ -13,8 +13,9 @@ with it, `geometry` tells what they mean to a machine's user. `evidence` project
 not in the model on what the fit leaves, and says how much a set of them explains; `faults` tries
 what users get wrong in a description. `residual` tests what is left for structure, and finds
 regions where a model fails. `search` finds sets of effects, `choice` takes the one that predicts
-best, `answer` turns it into a verdict with sizes and look-alikes. `files` reads and writes models
-and results. `drift` has laws of thermal drift from logs.
+best, `answer` turns it into a verdict with sizes and look-alikes. `task` evaluates visits to
+calibrated features for a user's measuring task. `files` reads and writes models and results.
+`drift` has laws of thermal drift from logs.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
 should know about a run is a record in `remarks`, its sentence in `report.words`; a
@@ -44,6 +45,7 @@ PARTS = (
     "search",
     "choice",
     "answer",
+    "task",
     "files",
     "drift",
 )

@@ -11,11 +11,14 @@ import numpy as np
 
 from artefact.body import Standard, write_standard
 from artefact.brief import Project
+from artefact.certify import like_task
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
 from cad_out.verify import export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
+from diagnosis.files import write_uncertainty
 from diagnosis.fit import fit_run
+from matstd.certify.budgets import virtual_budgets
 from matstd.from_project import (
     blank,
     dialect,
@@ -39,7 +42,7 @@ from sensitivity.population import drawn_errors
 from twin.compute import Progress
 from twin.files import errors_toml, write_run, write_whole
 from twin.frames import Array
-from twin.model import contribution
+from twin.model import Effect, contribution
 from twin.record import at_poses
 
 PROOF_POSES = 2000
@@ -65,6 +68,9 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
     placement = _placement(project, workspace, rng.placement, progress, poses)
+    # refused here rather than after programs and CAD, where no touch is like the user's task
+    proving = placement.criterion.reach.touches(placement.touches)
+    like_task(project.task, placement.standard, proving)
     plan = _plan(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
     progress("what can be told apart", 0, 1)
@@ -91,6 +97,13 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     first = machines[0]
     write_whole(folder / "errors.toml", errors_toml(first.errors))
     write_run(folder / "run.csv", first.campaign.run, "machine.toml")
+    progress("visits on the twin", 0, 1)
+    known_places = placement_options(project).criterion.calibration
+    twin, task = _twin(project, first.errors), project.task
+    budgets, visits = virtual_budgets(
+        project, placement.standard, known_places, paths, twin, rng.visits
+    )
+    write_uncertainty(folder / "uncertainty.json", task.name, budgets, task.tolerance)
     proofs = [m.proof for m in machines]
     found = write_identification(folder / "identification.json", first.fit, proofs)
     return Design(
@@ -104,6 +117,8 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         machines=tuple(machines),
         known=known,
         effective=found.effective,
+        budgets=budgets,
+        visits=visits,
     )
 
 
@@ -151,12 +166,7 @@ def _prove(
     rng_errors, rng_noise, rng_volume, rng_workspace = rng.spawn(4)
     population = project.population
     errors = drawn_errors(population, rng_errors)
-    machine = VirtualMachine(
-        project.chain,
-        lambda touches: contribution(errors, touches),
-        noise=project.noise,
-        dialect=dialect(project),
-    )
+    machine = _twin(project, errors)
     campaign = _held_back(
         simulate(programs, placement.standard, machine, rng_noise), placement.standard
     )
@@ -172,6 +182,16 @@ def _prove(
         fit=fit,
         proof=prove(fit, errors, project.setup, in_volume),
         in_workspace=prove(fit, errors, project.setup, in_workspace),
+    )
+
+
+def _twin(project: Project, errors: list[tuple[Effect, Array]]) -> VirtualMachine:
+    """The project's machine with some errors."""
+    return VirtualMachine(
+        project.chain,
+        lambda touches: contribution(errors, touches),
+        noise=project.noise,
+        dialect=dialect(project),
     )
 
 

@@ -17,6 +17,7 @@ class Streams(NamedTuple):
         proof: Machines that are probed and identified, their noise, poses that judge them.
         maps: Random machines that show what errors do to the length of the deviation.
         other_setups: Poses at which other ways to measure are weighed.
+        visits: What calibration leaves open of the standard, noise and clamping of every visit.
     """
 
     study: np.random.Generator
@@ -24,6 +25,7 @@ class Streams(NamedTuple):
     proof: np.random.Generator
     maps: np.random.Generator
     other_setups: np.random.Generator
+    visits: np.random.Generator
 
 
 def streams(seed: int) -> Streams:

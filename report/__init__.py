@@ -10,6 +10,7 @@ is a number in a result.
     words   sentences, for pages and for the console
     identifiability
             what touches can know, in words and in result files
+    task    uncertainty of a measuring task
     maps    sensitivities and volumetric error over a workspace or along a path
     plots   plans, proofs, residuals, effects
     scenes  pictures in three dimensions, rendered in a process of their own
@@ -48,6 +49,7 @@ PARTS = (
     "words",
     "geometry",
     "identifiability",
+    "task",
     "maps",
     "plots",
     "scenes",

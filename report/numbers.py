@@ -50,14 +50,14 @@ def digits(value: float | None, significant: int = 3) -> str:
     """A number with so many significant digits, without an exponent where it is readable.
 
     Example:
-        >>> digits(0.012345), digits(1.6e12)
-        ('0.0123', '1.60e+12')
+        >>> digits(0.012345), digits(9.996), digits(1.6e12)
+        ('0.0123', '10.0', '1.60e+12')
     """
     if value is None or not math.isfinite(value):
         return "–"
     if value == 0.0:
         return "0"
-    exponent = math.floor(math.log10(abs(value)))
+    exponent = int(f"{value:.{significant - 1}e}".partition("e")[2])  # of the rounded number
     if not -4 <= exponent <= 6:
         return f"{value:.{significant - 1}e}"
     return f"{value:.{max(0, significant - 1 - exponent)}f}"

@@ -1,5 +1,6 @@
 """What the pages and docstrings name exists: modules, names, files, commands."""
 
+import doctest
 import importlib
 import re
 from pathlib import Path
@@ -79,3 +80,12 @@ def test_the_index_of_the_interface_names_what_is_there() -> None:
             assert found[1] in importlib.import_module(chapter).__all__, f"{chapter}.{found[1]}"
     listed = [f"{r}.{p}" for r in ROOMS[:-1] for p in importlib.import_module(r).PARTS]
     assert parts == listed
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_examples_of_docstrings_say_what_they_give(room: str) -> None:
+    for file in TEXTS[room]:
+        if ">>>" in file.read_text(encoding="utf-8"):
+            name = ".".join(file.relative_to(ROOT).with_suffix("").parts)
+            done = doctest.testmod(importlib.import_module(name), optionflags=doctest.ELLIPSIS)
+            assert done.failed == 0, name

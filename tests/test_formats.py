@@ -14,6 +14,7 @@ from pydantic_core import PydanticUndefined
 
 from artefact.body.standard_file import read_standard
 from artefact.brief.project_file import read_project
+from artefact.brief.task_file import read_task
 from diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
 from diagnosis.files.model_file import read_model
 from probe_paths.control.log import read_log
@@ -86,6 +87,9 @@ def test_projects_standards_and_models_are_read(folder):
     project = read_project(folder / "project.toml")
     assert project.standard.touches == 300
     assert project.population.dependence is not None
+    task = read_task(folder / "task.toml")
+    assert task.tolerance == pytest.approx(20.0 * UM)
+    assert task.u_w == pytest.approx(np.hypot(0.5, 0.2) * UM)
     standard = read_standard(folder / "standard.toml")
     assert [patch.name for patch in standard.patches] == ["FF1"]
     saved = read_model(folder / "model.toml")
@@ -203,6 +207,7 @@ RESULTS = {
         "diagnosis/files/geometry_table.py",
         "diagnosis/files/fault_table.py",
     ],
+    "uncertainty.json": ["diagnosis/files/uncertainty_file.py"],
     "identification.json": ["report/identifiability/identification_file.py"],
     "identifiability.json": [
         "report/identifiability/identifiability_file.py",

@@ -238,7 +238,8 @@ def test_examples_and_benchmarks_enter_by_faces(folder: str) -> None:
 def test_folders_are_small() -> None:
     for folder in {f.parent for f in FILES}:
         count = len(list(folder.glob("*.py")))
-        assert count <= MAX_FILES, f"{folder}: {count} files"
+        is_list = folder == ROOT / "matstd" / "commands"  # a command a file, each by itself
+        assert count <= MAX_FILES or is_list, f"{folder}: {count} files"
 
 
 @pytest.mark.parametrize("room", ALLOWED)

@@ -1,6 +1,7 @@
 """What is wanted: the project file, checked against its machine before any work is done.
 
-In: `project.toml` and the machine file it names. Out: a `Project` in base units. A new key is a
+In: `project.toml` and the machine file it names, `task.toml`. Out: a `Project`, a `Task` in base
+units. A new key is a
 field of one of the tables, and a check beside it if it can contradict another.
 """
 
@@ -11,6 +12,7 @@ from artefact.brief.standard_tables import (
     FEWEST_PATCHES,
     StandardTable,
 )
+from artefact.brief.task_file import Task, read_task
 from artefact.brief.workshop_tables import BodyTable, probe_models
 
 __all__ = [
@@ -20,6 +22,8 @@ __all__ = [
     "BodyTable",
     "Project",
     "StandardTable",
+    "Task",
     "probe_models",
     "read_project",
+    "read_task",
 ]

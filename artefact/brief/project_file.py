@@ -15,6 +15,7 @@ from artefact.brief.standard_tables import (
     check_body,
     check_standard,
 )
+from artefact.brief.task_file import Task, read_task
 from artefact.brief.workshop_tables import (
     ProbeTable,
     WorkshopTable,
@@ -63,6 +64,7 @@ class SimulationTable(Table):
 
     noise_um: float = Field(default=1.0, gt=0.0)
     machines: int = Field(default=3, ge=1, le=50)
+    visits: int = Field(default=10, ge=2, le=50)
 
 
 class ProjectTable(Table):
@@ -72,6 +74,7 @@ class ProjectTable(Table):
     machine: str
     seed: int = Field(ge=0)
     control: str = "itnc530"
+    task: str | None = None
     probe: ProbeTable
     workshop: WorkshopTable = WorkshopTable()
     workspace: dict[str, object] = Field(default_factory=dict)
@@ -113,6 +116,8 @@ class Project:
         calibration: How well the features of the standard will be known.
         noise: Standard deviation of one simulated touch, mm.
         machines: Number of random machines of the proof.
+        visits: Number of virtual visits from which the uncertainty of the task is evaluated.
+        task: What the user measures; whatever is touched on the faces where he did not say.
     """
 
     path: Path
@@ -138,6 +143,8 @@ class Project:
     calibration: CalibrationTable
     noise: float
     machines: int
+    visits: int
+    task: Task
 
     @property
     def population(self) -> Population:
@@ -204,7 +211,26 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         calibration=table.calibration,
         noise=table.simulation.noise_um * UM,
         machines=table.simulation.machines,
+        visits=table.simulation.visits,
+        task=_task(table, workspace, path),
     )
+
+
+def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], path: Path) -> Task:
+    """The user's task, which must lie within his workspace and within the slopes of faces."""
+    if table.task is None:
+        return Task()
+    file = path.parent / table.task
+    task, steepest = read_task(file), table.limits.max_slope_deg
+    if task.slope[0] > steepest * DEG:
+        raise BadFile(file, "slope_deg", f"{task.slope[0] / DEG:g} and more",
+                      f"some within limits.max_slope_deg = {steepest:g} of {path}")  # fmt: skip
+    for letter, (low, high) in task.rotary.items():
+        key, (least, most) = f"poses.{letter}_deg", workspace.get(letter, (0.0, 0.0))
+        if low > most or high < least:
+            raise BadFile(file, key, f"{low / DEG:g} to {high / DEG:g}",
+                          f"some of workspace.{letter} of {path}")  # fmt: skip
+    return task
 
 
 def _table_radius(table: ProjectTable, path: Path) -> float:

@@ -176,7 +176,7 @@ def even_step(q: Array) -> float | None:
     """Distance of targets that stand evenly, mm; None where they do not.
 
     Example:
-        >>> even_step(np.array([0.0, 6.0, 12.001, 30.0, 6.002]))
+        >>> even_step(np.array([0.0, 6.0, 12.001, 24.0, 6.002]))
         6.0
         >>> even_step(np.array([0.0, 6.0, 13.0, 30.0])) is None
         True

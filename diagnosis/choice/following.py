@@ -20,7 +20,7 @@ from diagnosis.evidence import (
 from diagnosis.fit import Fit
 from diagnosis.regression import Memory
 from diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
-from diagnosis.residual import find_structure
+from diagnosis.residual import PatternTests, find_structure
 from diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
 from twin.model import Effect, columns
 from twin.thermal import LETTERS, ThermalField
@@ -61,17 +61,19 @@ def followed(
     search = Search(_pool(library, effects), None, progress)
     members = [Member(*_place(search.pool, s), s.effect, s.scale) for s in effects]
     chosen = search.evaluate(members)
-    left = find_structure(chosen.effects, progress)
+    smooth = PatternTests(chosen.effects.complement)
+    left = find_structure(chosen.effects, progress, smooth)
     if not left and plain.noise.factor > LOUDEST:
         left = list(final.left or final.nameless)
     shrunk = {s.effect.name: _chance(choice) for s in effects if _is_shrunk(s)}
-    nothing = find_structure(search.evaluate(()).effects, progress)
+    nothing = find_structure(search.evaluate(()).effects, progress, smooth)
     return task, SearchState(
         base=base,
         library=library,
         search=search,
         chosen=chosen,
         effects=effects,
+        smooth=smooth,
         at_start=tuple(nothing) or final.at_start,
         left=tuple(left),
         nameless=(),
@@ -134,8 +136,12 @@ def field_shares(fit: Fit, effect: ThermalField) -> FieldShares:
     return FieldShares(effect.axis, tuple(ranked[:LISTED]))
 
 
-def choice_remarks(choice: Choice) -> tuple[Remark, ...]:
-    """Every way of a choice with its plain error of blocks left out, and a limit that was met."""
+def choice_remarks(choice: Choice, found: Sequence[Effect]) -> tuple[Remark, ...]:
+    """Every way of a choice with its plain error of blocks left out, and a limit that was met.
+
+    Args:
+        found: What came of it with all rows in use.
+    """
     tried = tuple((rule.name, rule.error) for rule in choice.rules)
-    told = ChosenByPrediction(choice.best.name, choice.blocks, tried)
+    told = ChosenByPrediction(choice.best.name, choice.blocks, tried, is_empty=not found)
     return (told, SearchEnded(SETS)) if choice.is_ended else (told,)

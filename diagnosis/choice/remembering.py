@@ -21,8 +21,9 @@ FEWEST = 15.0
 """Independent observations that a run must hold for its memory to be known: the length of a memory
 is uncertain by about the root of two over their number, 37 % here."""
 
-LOUDEST = 3.0
-"""Noise over stated noise from which what wanders is no noise of the instrument."""
+LOUDEST = 2.0
+"""Noise over stated noise from which what wanders is no noise of the instrument: users misjudge
+theirs by less, and an error that follows the order of probing looks just like it."""
 
 TURNS = 3
 """Searches in which effects and memory settle beside one another."""

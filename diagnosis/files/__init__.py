@@ -13,6 +13,7 @@ from diagnosis.files.diagnosis_file import (
 )
 from diagnosis.files.model_file import SavedModel, check_machine, read_model
 from diagnosis.files.model_writer import write_model
+from diagnosis.files.uncertainty_file import write_uncertainty
 
 __all__ = [
     "SavedModel",
@@ -23,4 +24,5 @@ __all__ = [
     "write_diagnosis",
     "write_model",
     "write_residuals",
+    "write_uncertainty",
 ]

@@ -159,7 +159,13 @@ def check_machine(saved: SavedModel, chain: Chain, path: str | Path) -> None:
     found = saved.model.chain.difference(chain)
     if found is not None:
         key, here, there = found
-        raise BadFile(path, f"machine.{key}", here, f"{there}, as of the machine of the run")
+        way = (
+            "; of lists that import drafted a machine for each, give all of them the first one's "
+            "by --machine"
+            if key.endswith("range")
+            else ""
+        )
+        raise BadFile(path, f"machine.{key}", here, f"{there}, as of the machine of the run{way}")
 
 
 def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:

@@ -1,7 +1,7 @@
 """Parameters of fitted effects as a user reads them: names with units, sizes, uncertainties."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -9,6 +9,7 @@ from scipy.linalg import orth
 
 from diagnosis.fit.identification import Fit
 from diagnosis.regression import BoolArray
+from twin.effects import Overtones, PositionTable
 from twin.frames import Array
 from twin.model import Effect, Inner, columns, inner_values
 from twin.record import Touches
@@ -25,6 +26,9 @@ ALIKE = 1e-6
 
 SEEN = 0.1
 """Share of the largest lever below which a row says little of a curve, and noise would tell."""
+
+SINE = "sine_"
+"""Begins the amplitude of a sine of a period, before its number."""
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD), "s": ("ms", 1e-3)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
@@ -116,9 +120,11 @@ def reported(
     if getattr(effect, "is_shrunk", False):
         out.append(explained_rms(fit, effect, theta, covariance))
     elif getattr(effect, "is_curve", False):
-        out.append(peak_to_valley(fit, effect, theta, covariance))
+        out += curve_sizes(fit, effect)
     elif len(theta) > 1:
         out.append(size(effect, theta, covariance, _is_seen(fit, place)))
+    if isinstance(effect, Overtones):
+        out += _sines(effect, theta, covariance)
     for i, parameter in enumerate(effect.parameters):
         suffix, factor = file_unit(parameter.unit)
         out.append(
@@ -135,6 +141,14 @@ def reported(
     return tuple(out)
 
 
+def _sines(effect: Overtones, theta: Array, covariance: Array) -> Iterator[Reported]:
+    """Amplitude of every sine of a period, `sine_1` that of the whole one."""
+    for k in range(1, effect.order + 1):
+        own = np.arange(len(theta)) // 2 == k - 1
+        one = size(effect, theta, covariance, own)
+        yield replace(one, quantity=f"{SINE}{k}", role=Role.COEFFICIENT)
+
+
 def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
     """Deviation that an effect of many parameters explains, root mean square over the rows used.
 
@@ -148,19 +162,23 @@ def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> 
     return _told("rms", "mm", rms, slope, covariance)
 
 
-def peak_to_valley(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
-    """Largest less smallest value of a curve that an effect of many parameters is.
+def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
+    """Peak to valley of the curve that an effect of many parameters is, and its reversal.
 
     Over the rows used, in the unit of the component error that it is: an angle of a rotary axis.
-    Of a curve whose lowest terms are straight lines and parabolas, which stand in the model under
-    other names, it is what only the curve explains; of others (`is_told_whole`) the whole.
+    Of a component error it is the whole curve that the model has of it, but for the straight line,
+    which is a scale or where the standard stands: what is added where a parabola does not suffice
+    has no size of its own. Of others (`is_told_whole`) it is the effect's alone.
     """
     touches = fit.run.touches[fit.used]
-    C = columns([effect], touches)
-    curve, unit = _curve(effect, touches)
+    own = _of_same_curve(fit, effect)
+    every = np.concatenate([np.r_[fit.of_effect(e.name)] for e in own])
+    theta, covariance = fit.theta[every], fit.covariance[np.ix_(every, every)]
+    C = columns(own, touches)
+    curve, unit = _curve(own, touches)
     lever = np.linalg.norm(C, axis=1) / np.maximum(np.linalg.norm(curve, axis=1), 1e-300)
     if not getattr(effect, "is_told_whole", False):
-        others = [e for e in fit.effects if e.name != effect.name]
+        others = [e for e in fit.effects if e not in own]
         u = fit.u[fit.used][:, None]
         beside = columns(others, touches) / u
         beside /= np.maximum(np.linalg.norm(beside, axis=0), 1e-300)
@@ -172,18 +190,54 @@ def peak_to_valley(fit: Fit, effect: Effect, theta: Array, covariance: Array) ->
     seen = lever > SEEN * lever.max()
     values = np.where(seen, curve @ theta, np.nan)
     across = curve[int(np.nanargmax(values))] - curve[int(np.nanargmin(values))]
-    return _told("peak_to_valley", unit, float(across @ theta), across, covariance)
+    whole = _told("peak_to_valley", unit, float(across @ theta), across, covariance)
+    if isinstance(effect, PositionTable) and effect.by_direction:
+        return [whole, *_reversals(fit, effect)]
+    return [whole]
 
 
-def _curve(effect: Effect, touches: Touches) -> tuple[Array, str]:
-    """The one error that all terms of an effect are, per unit of every parameter, (N, P).
+def _of_same_curve(fit: Fit, effect: Effect) -> list[Effect]:
+    """An effect with what else the model holds of the same component error, straight lines not."""
+    symbol = getattr(effect, "symbol", None)
+    alike = [
+        e
+        for e in fit.model.effects
+        if symbol is not None
+        and e.kind == "geometric"
+        and getattr(e, "symbol", None) == symbol
+        and getattr(e, "shape", "") not in ("constant", "linear")
+        and e.name != effect.name
+    ]
+    return [effect, *alike]
+
+
+def _reversals(fit: Fit, effect: PositionTable) -> Iterator[Reported]:
+    """Reversal of a table by direction, on average over the readings used and at most.
+
+    The difference of both curves, forward less backward: of a positioning test that of ISO 230-2.
+    """
+    place = fit.of_effect(effect.name)
+    theta, covariance = fit.theta[place], fit.covariance[place, place]
+    touches = fit.run.touches[fit.used]
+    first = np.unique(np.round(touches.reading(effect.symbol.link), 4), return_index=True)[1]
+    reversal = effect.reversal(touches[first])
+    widest = reversal[int(np.argmax(np.abs(reversal @ theta)))]
+    for name, w in (("on_average", reversal.mean(axis=0)), ("at_most", widest)):
+        yield _told(f"reversal_{name}", effect.symbol.unit, float(w @ theta), w, covariance)
+
+
+def _curve(effects: Sequence[Effect], touches: Touches) -> tuple[Array, str]:
+    """The one error that all terms of some effects are, per unit of every parameter, (N, P).
 
     A joint whose line lies between the axes of the machine turns about a direction of its own.
     """
-    parameters = effect.parameters
-    A = np.zeros((6, len(touches), len(parameters)))
-    for term in effect.terms(touches):
-        A[term.where.component, :, term.parameter] += term.amount
+    blocks = []
+    for effect in effects:
+        A = np.zeros((6, len(touches), len(effect.parameters)))
+        for term in effect.terms(touches):
+            A[term.where.component, :, term.parameter] += term.amount
+        blocks.append(A)
+    A = np.concatenate(blocks, axis=2)
     U = np.linalg.svd(A.reshape(6, -1), full_matrices=False)[0]
     along = U[:, 0] * np.sign(U[np.argmax(np.abs(U[:, 0])), 0])
     return np.einsum("c,cnp->np", along, A), "rad" if np.any(along[3:]) else "mm"

@@ -133,11 +133,16 @@ class NoiseRemembers:
 
 @dataclass(frozen=True, slots=True)
 class ChosenByPrediction:
-    """Ways that were tried with their plain errors of blocks left out, mm, and the one chosen."""
+    """Ways that were tried with their plain errors of blocks left out, mm, and the one chosen.
+
+    Attributes:
+        is_empty: Whether no effect came of it with all rows in use.
+    """
 
     chosen: str
     blocks: int
     tried: tuple[tuple[str, float], ...]
+    is_empty: bool = False
 
 
 @dataclass(frozen=True, slots=True)

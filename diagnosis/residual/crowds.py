@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import gammainc
 
-from diagnosis.regression import BoolArray
+from diagnosis.regression import BoolArray, shots
 from diagnosis.residual.patterns import pairs, variables
 from twin.record import Touches
 
@@ -20,14 +20,17 @@ def crowds(touches: Touches, allowed: BoolArray, gross: BoolArray) -> dict[tuple
 
     Counted are the pairs of gross errors that are among each other's nearest touches; if every
     touch is as likely a gross error as every other, that number is nearly Poisson distributed with
-    the mean ``links g (g - 1) / (n (n - 1))``. Not corrected for the number of pairs.
+    the mean ``links g (g - 1) / (n (n - 1))``. Coordinates of one shot, which are left out
+    together, count once. Not corrected for the number of pairs.
 
     Args:
         allowed: Those that could have been found out, (N,).
         gross: Those that were, (N,).
     """
+    shot = shots(touches)
     rows = np.flatnonzero(allowed)
-    bad = gross[rows]
+    rows = rows[np.unique(shot[rows], return_index=True)[1]]
+    bad = np.isin(shot[rows], shot[gross])
     n, g = len(rows), int(bad.sum())
     known = variables(touches)
     out: dict[tuple[str, str], float] = {}

@@ -64,6 +64,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.folder import results_folder
     from matstd.from_project import dialect, feeds
     from matstd.workers import connected
+    from report.task import task_lines
     from report.words import design_lines, proof_line
 
     project, printed_by = read_project(args.project), asked_printer(args)
@@ -94,12 +95,13 @@ def run(args: argparse.Namespace) -> int:
             sheet = write_setup_page(folder / SHEET, made.plan, made.programs, first, words)
             print_report(sheet.parent, printed_by, sheet.stem)
     say_each(remarks)
-    verdict, *others = design_lines(made.placement)
+    verdict, *others = design_lines(made.placement, project.workspace)
     say(verdict, style="bold")
     say_each(others)
     dropped = dict.fromkeys(map(str, made.plan.refused))  # a pose is visited twice
     say_each(f"touch dropped: {refusal}" for refusal in dropped)
     say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
+    say_each(task_lines(made.budgets, project.task.tolerance, made.visits))
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0
 

@@ -181,9 +181,10 @@ def _row(step: Step) -> tuple[str, ...]:
     from report.words import values
     from twin.units import UM
 
+    first = enumerate(values(step)[:2])
     return (
         escape("\n".join(filter(None, effect_cell(step)))) if step.effect else "starting model",
-        ", ".join(value for _, value in values(step)[:2]),
+        ", ".join(f"{name} {value}" if i else value for i, (name, value) in first),
         f"{step.p_value:.0e}" if step.effect is not None else "",
         f"{step.fit.rms / UM:.3f}",
         f"{step.fit.test_rms / UM:.3f}",

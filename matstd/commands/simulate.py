@@ -51,9 +51,10 @@ def run(args: argparse.Namespace) -> int:
     from artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
-    from probe_paths.campaign import simulate
+    from probe_paths.campaign import SMALLEST_U, ball_changes, simulate
     from probe_paths.control import read_program, stated_probe
     from probe_paths.language import read_dialect
+    from report.words import ball_lines
     from twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
     from twin.units import UM
 
@@ -82,6 +83,9 @@ def run(args: argparse.Namespace) -> int:
     )
     say_each(f"planted: {text}" for text in args.add)
     say_assumed(run.touches.chain)
+    u = max(machine.noise, SMALLEST_U)
+    changes = ball_changes(campaign.parts, standard, machine.chain, u, dialect)
+    say_each(ball_lines(changes))
     say_each(run.remarks)
     return 0
 

@@ -2,9 +2,11 @@
 
 In: program files and a `VirtualMachine` (the machine as it really is), or the logs of a real one.
 Out: a `Run`. `simulate` checks every move for collisions before it runs the programs; `evaluate`
-never learns what the virtual machine knew. `orders` and `probing_time` say what a plan costs.
+never learns what the virtual machine knew. `visits` runs them again and again. `orders` and
+`probing_time` say what a plan costs.
 """
 
+from probe_paths.campaign.ball_change import BallChange, ball_changes, check_changes
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_points import foot_points
 from probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
@@ -13,18 +15,21 @@ from probe_paths.campaign.duration import probing_time
 from probe_paths.campaign.evaluation import ball_centres, evaluate
 from probe_paths.campaign.log_parts import checked_parts
 from probe_paths.campaign.order_study import Order, Ordering, orders
-from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate, simulate_search
+from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate, simulate_search, visits
 from probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
     "FIRST_MORNING",
     "SMALLEST_U",
+    "BallChange",
     "Campaign",
     "ContactSolver",
     "Order",
     "Ordering",
     "VirtualMachine",
     "ball_centres",
+    "ball_changes",
+    "check_changes",
     "check_moves",
     "checked_parts",
     "effects_over_record",
@@ -36,4 +41,5 @@ __all__ = [
     "setup_tolerance",
     "simulate",
     "simulate_search",
+    "visits",
 ]

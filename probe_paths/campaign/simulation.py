@@ -12,7 +12,7 @@ from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.virtual_run import VirtualRun, run_programs
-from probe_paths.control import ReadProgram, read_log, read_program
+from probe_paths.control import LogPart, ReadProgram, read_log, read_program
 from probe_paths.plan import Probe
 from twin.compute import Progress, silent
 from twin.record import Run
@@ -27,17 +27,23 @@ class Campaign:
 
     Attributes:
         runs: What each program did.
+        parts: Of their logs, as read back.
         begin: What the clock said at the run's time zero.
     """
 
     run: Run
     runs: tuple[VirtualRun, ...]
+    parts: tuple[LogPart, ...]
     begin: datetime
 
     @property
     def logs(self) -> Mapping[str, str]:
-        """Text of every log file by name."""
-        return {name: text for one in self.runs for name, text in one.log.items()}
+        """Text of every log file by name; a program that is run again appends to its log."""
+        texts: dict[str, str] = {}
+        for one in self.runs:
+            for name, text in one.log.items():
+                texts[name] = texts.get(name, "") + text
+        return texts
 
 
 def simulate_search(
@@ -67,27 +73,64 @@ def simulate(
     rng: np.random.Generator,
     probe: Probe | None = None,
     progress: Progress = silent,
+    calibrated: Standard | None = None,
 ) -> Campaign:
     """Run program files on the twin and evaluate the logs that they leave.
 
     Args:
         programs: Files, masks of `.H` files beside them, in the order in which they are run.
-        standard: The true one, which is also the calibrated one.
+        standard: The true one.
         machine: As it really is; the evaluation knows only its nominal chain.
         rng: For the noise of the trigger.
         probe: In the spindle; None takes the one that each program states.
         progress: Told what is going on.
+        calibrated: What is believed of the standard; None for the truth.
 
     Raises:
         BadFile: A program that the control, or a cautious operator, would not run.
         NotReachable: A touch without contact; the program stopped there.
         DesignError: A program made for another standard.
     """
-    texts = [read_program(path, machine.chain, probe, machine.dialect) for path in programs]
+    return visits(programs, standard, [machine], rng, probe, progress, calibrated)[0]
+
+
+def visits(
+    programs: Sequence[str | Path],
+    standard: Standard,
+    machines: Sequence[VirtualMachine],
+    rng: np.random.Generator,
+    probe: Probe | None = None,
+    progress: Progress = silent,
+    calibrated: Standard | None = None,
+) -> tuple[Campaign, ...]:
+    """Run program files on the twin several times, the texts read and their moves checked once.
+
+    Args:
+        machines: As they really are at every visit: with another noise, the standard clamped anew.
+
+    Other arguments and errors as of `simulate`.
+    """
+    chain, dialect = machines[0].chain, machines[0].dialect
+    believed = calibrated or standard
+    texts = [read_program(path, chain, probe, dialect) for path in programs]
     for done, text in enumerate(texts):
         progress("moves of the programs", done, len(texts))
-        check_moves(text, standard, machine.chain)
-    progress("touches on the twin", 0, 1)
+        check_moves(text, believed, chain)
+    out = []
+    for done, machine in enumerate(machines):
+        progress("touches on the twin", done, len(machines))
+        out.append(_campaign(texts, standard, machine, rng, believed))
+    return tuple(out)
+
+
+def _campaign(
+    texts: Sequence[ReadProgram],
+    standard: Standard,
+    machine: VirtualMachine,
+    rng: np.random.Generator,
+    believed: Standard,
+) -> Campaign:
+    """All programs on one machine, and what their logs tell."""
     runs = run_programs(texts, standard, machine, rng)
     runs[-1].check_done()
     parts = [
@@ -97,5 +140,6 @@ def simulate(
         for part in read_log(name, machine.chain.rotary_axes, text)
     ]
     u = max(machine.noise, SMALLEST_U)
-    run = evaluate(parts, standard, machine.chain, u, machine.dialect)
-    return Campaign(run, tuple(runs), min(part.begin for part in parts))
+    run = evaluate(parts, believed, machine.chain, u, machine.dialect)
+    begin = min(part.begin for part in parts if not part.is_ball)
+    return Campaign(run, tuple(runs), tuple(parts), begin)

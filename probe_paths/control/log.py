@@ -37,6 +37,9 @@ _VERSION = re.compile(r"MATSTD LOG \d+\Z")
 UNDATED = datetime(1900, 1, 1)
 """Begin of a part whose date cannot be read: no sensor record covers it."""
 
+BALL = "CAL"
+"""Last letters of the name of a program that measures a ball before and after the others."""
+
 Line = tuple[int, str]
 """Number in the file and text."""
 
@@ -83,6 +86,11 @@ class LogPart:
     time: Array
     is_complete: bool
     remarks: tuple[str, ...] = ()
+
+    @property
+    def is_ball(self) -> bool:
+        """Whether its touches are those on a ball that show whether the probe has changed."""
+        return self.program.endswith(f"_{BALL}")
 
 
 def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -> list[LogPart]:

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control import Clock, interpret, step_times
-from probe_paths.emit.writer import Feeds, Writer
+from probe_paths.control import BALL, Clock, interpret, step_times
+from probe_paths.emit.writer import Feeds, Special, Writer
 from probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
 from probe_paths.plan import TouchPlan
 from twin.files import write_whole
 from twin.record import IntArray
-from twin.units import MINUTE
+from twin.units import DEG, MINUTE
 
 DRY_RUN, SEARCH = "DRY", "LOC"
-"""Last letters of the names of these programs."""
+"""Last letters of the names of these programs; that on a ball has `BALL`."""
 
 SEARCH_FEED = 800.0
 """Of a search, mm/min: what is found needs 0.3 mm, and its touches are 100 mm long."""
@@ -125,7 +125,8 @@ def make_dry_run(
         feeds: Feeds.
         clock: For its duration.
     """
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), raised)
+    special = Special(DRY_RUN, raised=raised)
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), special)
     return ProgramSet(made.programs([list(range(len(plan.visits)))]), {})
 
 
@@ -146,7 +147,29 @@ def make_search(
         clock: For its duration.
     """
     feeds = replace(feeds or Feeds(), probing=SEARCH_FEED)
-    made = _Maker(plan, dialect or Dialect(), feeds, clock or Clock(), within=within)
+    mm, angle = within
+    stands = f"SEARCH FROM ABOVE, STANDS WITHIN {mm:.1f} MM AND {angle / DEG:.2f} DEG"
+    special = Special(SEARCH, (stands,))
+    made = _Maker(plan, dialect or Dialect(), feeds, clock or Clock(), special)
+    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
+
+
+def make_ball(
+    plan: TouchPlan,
+    dialect: Dialect | None = None,
+    feeds: Feeds | None = None,
+    clock: Clock | None = None,
+) -> ProgramSet:
+    """One program that measures a ball of the standard, before the others and after them.
+
+    Args:
+        plan: Of touches on one ball.
+        dialect: Words of the control.
+        feeds: Feeds.
+        clock: For its duration.
+    """
+    special = Special(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), special)
     return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
 
 
@@ -159,15 +182,14 @@ class _Maker:
         dialect: Dialect,
         feeds: Feeds,
         clock: Clock,
-        raised: float | None = None,
-        within: tuple[float, float] | None = None,
+        special: Special | None = None,
     ) -> None:
         self.plan, self.dialect, self.clock = plan, dialect, clock
         self.language = LANGUAGES[dialect.language]
         form, rotary = self.language.LOG, plan.chain.rotary_axes
         self.masks = shared_masks(form, dialect.log_decimals, rotary)
-        self.writer = Writer(plan, dialect, feeds, self.masks, raised, within)
-        self.only = DRY_RUN if raised is not None else SEARCH if within is not None else ""
+        self.writer = Writer(plan, dialect, feeds, self.masks, special)
+        self.only = special.ending if special else ""
 
     @property
     def printed_masks(self) -> dict[str, str]:

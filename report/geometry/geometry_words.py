@@ -110,13 +110,17 @@ def _line(row: GeometryRow) -> GeometryLine:
     notes = ["beyond what was expected"] if row.is_beyond_expected else []
     if row.has_changed and row.change is not None:
         notes.append(f"changed by {_value(row.change.value, row.change.u, factor, unit)}")
+    is_noted = bool(notes)
+    if row.change is not None and not row.has_changed:
+        difference = _value(row.change.value, row.change.u, factor, unit)
+        notes.append(f"no change beyond chance ({difference})")
     return GeometryLine(
         name=name,
         value=value_words(row),
         at_ends="" if row.unit == "mm" else _value(row.at_ends.value, row.at_ends.u, UM, "µm"),
         expected=expected,
         note="; ".join(notes),
-        is_noted=bool(notes),
+        is_noted=is_noted,
     )
 
 

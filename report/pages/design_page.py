@@ -22,6 +22,7 @@ from report.plots import (
 )
 from report.scenes import draw_standard
 from report.style import save
+from report.task import budget_rows, task_lines
 from report.words import (
     best_rival,
     comparison_remarks,
@@ -62,7 +63,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         "design.html",
         folder=folder,
         project=design.project,
-        verdict=verdict_of_design(design.placement),
+        verdict=verdict_of_design(design.placement, design.project.workspace),
         standard=design.placement.standard,
         plan=design.plan,
         programs=design.programs,
@@ -128,7 +129,7 @@ def _standard(design: Design) -> dict[str, Any]:
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
         "certificate": design.placement.certificate,
         "criterion": criterion_words(design.project.standard),
-        "identification": " ".join(design_lines(design.placement)[2:]),
+        "identification": " ".join(design_lines(design.placement, design.project.workspace)[2:]),
         "comparison": [_rival(r, design, on_machine) for r in design.placement.rivals],
         "rival": _rival(best, design, on_machine) if best is not None else None,
         "step_deviation": _at_most(faces),
@@ -196,7 +197,6 @@ def _patch(patch: FreeformPatch, design: Design) -> dict[str, Any]:
     return {
         "name": patch.name,
         "centre": f"{x:.0f}, {y:.0f}, {z:.0f}".replace("-", "−"),
-        "tilt": f"{np.arccos(patch.direction[2]) / DEG:.0f}",
         "radius": _radius(min_concave_radius(patch)),
         "slope": f"{max_slope(patch) / DEG:.0f}",
         "touches": int(np.sum(design.plan.feature == patch.name)),
@@ -214,6 +214,10 @@ def _proof(design: Design) -> dict[str, Any]:
         "proof_poses": len(design.machines[0].proof.before),
         "poses": len({v.pose for v in design.plan.visits}),
         "minutes": round(design.programs.duration / 60.0),
+        "task": design.project.task.name,
+        "budgets": budget_rows(design.budgets),
+        "first_budget": next(iter(design.budgets.values())),
+        "task_lines": task_lines(design.budgets, design.project.task.tolerance, design.visits),
     }
 
 

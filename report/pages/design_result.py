@@ -1,5 +1,6 @@
 """What a design run made: the record that its page shows."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from artefact.brief import Project
@@ -8,6 +9,7 @@ from artefact.place import Placement
 from cad_out.verify import Conformity
 from diagnosis.answer import Proof
 from diagnosis.fit import Fit
+from diagnosis.task import TaskUncertainty, Visits
 from probe_paths.campaign import Campaign
 from probe_paths.emit import ProgramSet
 from probe_paths.plan import TouchPlan
@@ -52,6 +54,8 @@ class Design:
         machines: Random machines, probed and identified.
         known: What the touches can and cannot tell apart.
         effective: Number of parameters that the first machine's data decide rather than the prior.
+        budgets: Uncertainty of the user's task on the first machine, by what corrects results.
+        visits: What they rest upon.
     """
 
     project: Project
@@ -64,3 +68,5 @@ class Design:
     machines: tuple[Proven, ...]
     known: IdentifiabilityReport
     effective: float
+    budgets: Mapping[str, TaskUncertainty]
+    visits: Visits

@@ -14,6 +14,7 @@ from report.pages.tables import write_tables
 from twin.files import write_whole
 from twin.versions import versions
 
+_MINUS = re.compile(r"(?<![^\s(,])-(?=\d)")
 _APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
 """Spaces between a number and its uncertainty or its unit."""
 
@@ -53,13 +54,15 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
 
 
 def unbroken(words: str) -> str:
-    """Words whose numbers stay on a line with their uncertainties and units.
+    """Words whose numbers stay on a line with their uncertainties and units, minus signs as such.
 
     Example:
+        >>> unbroken("X -3 to 5") == "X \u22123 to 5"
+        True
         >>> unbroken("lag 11.1 ± 0.5 min") == "lag 11.1\u00a0±\u00a00.5\u00a0min"
         True
     """
-    return _APART.sub("\u00a0", words)
+    return _APART.sub("\u00a0", _MINUS.sub("\u2212", words))
 
 
 def picture(path: str | Path) -> str:
@@ -83,7 +86,7 @@ def with_contents(body: str) -> Markup:
         body: HTML whose sections begin with `<h2>`.
 
     Example:
-        >>> print(with_contents("<p>Verdict.</p><h2>One</h2><h2>Two</h2><h2>Three</h2>")[:81])
+        >>> print(with_contents("<p>Verdict.</p><h2>One</h2><h2>Two</h2><h2>Three</h2>")[:78])
         <p>Verdict.</p><nav aria-label="Contents"><ol>
         <li><a href="#one">One</a></li>
     """

@@ -57,30 +57,31 @@ def _places(drawn: Figure, axes: Axes, reach: PlacesInReach, other: int, title: 
     never = share == 0.0
     axes.scatter(x[never], y[never], marker="x", color=RED, s=26, label="never reached")
     axes.set(
-        title=f"the blank {title}",
-        xlabel="x of the standard / mm",
-        ylabel=f"{'xyz'[other]} of the standard / mm",
+        xlabel="x of the standard in mm",
+        ylabel=f"{'xyz'[other]} of the standard in mm",
         aspect="equal",
     )
+    axes.set_title(f"the blank {title}", loc="left")
+    plain(axes)
     if never.any():
         axes.legend(loc="upper right", fontsize=8)
-    drawn.colorbar(shown, ax=axes, label="table poses that reach it / %")
+    drawn.colorbar(shown, ax=axes, label="table poses that reach it in %")
 
 
 def _poses(drawn: Figure, axes: Axes, reach: PlacesInReach, chain: Chain) -> None:
     """Share of the places that each table pose reaches."""
     names, share = chain.rotary_axes, 100.0 * reach.reached.mean(axis=0)
-    axes.set_title("table poses")
+    axes.set_title("table poses", loc="left")
+    plain(axes)
     if len(names) >= 2:
         a, b = (reach.poses[:, i] / DEG for i in (0, 1))
         shown = axes.scatter(a, b, c=share, cmap=_COLOURS, vmin=0.0, vmax=100.0, s=40)
-        axes.set(xlabel=f"{names[0]} / °", ylabel=f"{names[1]} / °")
-        drawn.colorbar(shown, ax=axes, label="places reached / %")
+        axes.set(xlabel=f"{names[0]} in °", ylabel=f"{names[1]} in °")
+        drawn.colorbar(shown, ax=axes, label="places reached in %")
     elif names:
         order = np.argsort(reach.poses[:, 0])
         axes.plot(reach.poses[order, 0] / DEG, share[order], ".-", color=BLUE)
-        axes.set(xlabel=f"{names[0]} / °", ylabel="places reached / %", ylim=(0.0, 105.0))
-        plain(axes)
+        axes.set(xlabel=f"{names[0]} in °", ylabel="places reached in %", ylim=(0.0, 105.0))
     else:
         axes.axis("off")
         axes.text(0.5, 0.5, f"no rotary axis: {share[0]:.0f} % of the places", ha="center")
@@ -89,15 +90,17 @@ def _poses(drawn: Figure, axes: Axes, reach: PlacesInReach, chain: Chain) -> Non
 def _limits(axes: Axes, reach: PlacesInReach) -> None:
     """Share of all touches, every place at every pose, that each limit bars."""
     barred = reach.barred()
-    axes.set_title("what bars touches")
+    axes.set_title("what bars touches", loc="left")
+    plain(axes, "x")
     if not barred:
         axes.axis("off")
         axes.text(0.5, 0.5, "every place is reached at every table pose", ha="center")
         return
     for row, (limit, share) in enumerate(barred):
         axes.barh(row, 100.0 * share, 0.4, color=BLUE)
-        axes.text(0.0, row - 0.25, f"{_words(limit)}: {100.0 * share:.0f} %", va="bottom")
-    axes.set(xlabel="share of all touches tried / %", xlim=(0.0, 100.0), yticks=[])
+        words = f"{_words(limit)}: {100.0 * share:.0f} %"
+        axes.text(0.0, row - 0.25, words, va="bottom", color=INK)
+    axes.set(xlabel="share of all touches tried in %", xlim=(0.0, 100.0), yticks=[])
     axes.set_ylim(max(len(barred), 3) - 0.5, -0.8)
 
 
@@ -131,10 +134,10 @@ def draw_room(faces: Sequence[FreeformPatch], wanted: int, blank: Blank) -> Figu
             axes.fill(outline[:, 0], outline[:, other], color=BLUE, alpha=0.5, lw=0.0)
         axes.plot([-a, a, a, -a, -a], [low, low, high, high, low], color=INK, lw=1.0)
         axes.set(
-            title=f"the blank {title}",
-            xlabel="x of the standard / mm",
-            ylabel=f"{'xyz'[other]} of the standard / mm",
+            xlabel="x of the standard in mm",
+            ylabel=f"{'xyz'[other]} of the standard in mm",
             aspect="equal",
         )
+        axes.set_title(f"the blank {title}", loc="left")
         plain(axes)
     return drawn

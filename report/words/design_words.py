@@ -4,6 +4,8 @@ The user's workspace comes first, because that is where parts are made; the prob
 that the ball reaches on the standard, comes second and is named as such.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from artefact.compare import Rival
@@ -12,7 +14,11 @@ from diagnosis.answer import Proof
 from diagnosis.fit import Fit
 from report.numbers import digits
 from report.words.artefact_words import identification_sentence, proof_sentence
-from twin.units import UM
+from twin.units import DEG, UM
+from twin.words import listed
+
+COVERED = 0.5
+"""Least share of the workspace of an axis that touches read, for nothing to be said."""
 
 EQUAL = 1.05
 """Ratio of two predicted errors up to which they are called equal: no user would notice it."""
@@ -24,8 +30,20 @@ def best_rival(placement: Placement) -> Rival | None:
     return min(others, key=lambda r: r.rms_user, default=None)
 
 
-def verdict_of_design(placement: Placement) -> str:
-    """What the standard leaves in the user's workspace, and how the best rival compares."""
+def verdict_of_design(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> str:
+    """What the standard leaves in the user's workspace, beside the best rival.
+
+    Said as well: axes of which the touches read only a small part.
+
+    Args:
+        placement: Standard, touches, rivals.
+        workspace: Smallest and largest reading by axis, mm or rad.
+    """
+    told = [_left_unknown(placement), _extrapolated(placement, workspace)]
+    return " ".join(filter(None, told))
+
+
+def _left_unknown(placement: Placement) -> str:
     own, rival = placement.own, best_rival(placement)
     text = (
         f"After probing the {own.name}, {_um(own.rms_user)} rms of the volumetric error stay "
@@ -50,7 +68,31 @@ def verdict_of_design(placement: Placement) -> str:
     )
 
 
-def design_lines(placement: Placement) -> list[str]:
+def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> str:
+    """Which axes the touches read over less than half of the workspace; empty for none.
+
+    Beyond its touches a model only carries on the shapes that were assumed for the errors.
+    """
+    if not workspace:
+        return ""
+    reach, parts = placement.criterion.reach, []
+    q = reach.readings(placement.requests)
+    for name, (low, high) in workspace.items():
+        link, read = reach.chain.link(name), q[:, reach.chain.axis_index(name)]
+        first, last = max(low, float(read.min())), min(high, float(read.max()))
+        if last - first < COVERED * (high - low):
+            unit, sign = (1.0, " mm") if link.kind == "linear" else (DEG, "°")
+            ends = [f"{round(v / unit) + 0.0:.0f}" for v in (read.min(), read.max(), low, high)]
+            parts.append(f"{name} {ends[0]} to {ends[1]}{sign} (workspace {ends[2]} to {ends[3]})")
+    if not parts:
+        return ""
+    return (
+        f"The touches read only {listed(parts)}: beyond, the model extrapolates, by the shapes "
+        "of errors that were assumed. A narrower workspace, or further set-ups, would tell more."
+    )
+
+
+def design_lines(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> list[str]:
     """The verdict, what is left in the probed volume, and what faces cost or gain over spheres."""
     own = placement.own
     others = [r for r in placement.rivals if r is not own and r.body is not None]
@@ -59,7 +101,7 @@ def design_lines(placement: Placement) -> list[str]:
         rival = min(others, key=lambda r: r.rms)
         line += f", the best other artefact there, {rival.name}, {_um(rival.rms)}"
     told = [identification_sentence(placement), proof_sentence(placement)]
-    return [verdict_of_design(placement), line, *filter(None, told)]
+    return [verdict_of_design(placement, workspace), line, *filter(None, told)]
 
 
 def proof_line(number: int, in_workspace: Proof, in_volume: Proof, fit: Fit) -> str:

@@ -8,6 +8,9 @@ from diagnosis.fit import MistakenUnit, UnitMistake
 from report.numbers import unit_words, with_uncertainty
 from twin.units import UM
 
+NONE_CERTAIN = ", none of which stands with all rows in use"
+"""Behind a way of choosing of which nothing came."""
+
 LISTED = 20
 """Gross errors whose lines are told."""
 
@@ -34,9 +37,10 @@ def _noise_remembers(r: noticed.NoiseRemembers) -> str:
 
 def _chosen(r: noticed.ChosenByPrediction) -> str:
     tried = "; ".join(f"{name} {error / UM:.2f} µm" for name, error in r.tried)
+    none = NONE_CERTAIN if r.is_empty and r.chosen != "nothing" else ""
     return (
-        f"chosen by prediction: {r.chosen}. Plain error of {r.blocks} blocks left out in turn, the "
-        f"choice made anew without each: {tried}"
+        f"chosen by prediction: {r.chosen}{none}. Plain error of {r.blocks} blocks left out in "
+        f"turn, the choice made anew without each: {tried}"
     )
 
 

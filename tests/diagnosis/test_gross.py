@@ -8,6 +8,7 @@ from made_up import arm_poses
 
 from diagnosis.fit.identification import fit_run
 from diagnosis.regression.gross import find_gross, shots
+from diagnosis.residual.crowds import crowds
 from twin.library.ordinary import ordinary_model
 from twin.units import UM
 
@@ -91,3 +92,14 @@ def test_a_shot_is_one_place_at_one_time_seen_along_several_directions() -> None
     assert shots(repeated).tolist() == list(range(len(repeated)))
     touched = replace(seen, radius=np.ones(len(seen)))
     assert shots(touched).tolist() == list(range(len(seen)))
+
+
+def test_coordinates_of_two_shots_are_no_crowd() -> None:
+    """Two reflectors seen wrongly are six rows beside one another, and two accidents."""
+    seen = arm_poses()
+    seen = replace(seen, time=10.0 * seen.pose)
+    bad = np.isin(seen.pose, [3, 9])
+    every = np.ones(len(seen), dtype=bool)
+    assert crowds(seen, every, bad) == {}
+    alone = replace(seen, radius=np.ones(len(seen)))  # touches are shots of their own
+    assert min(crowds(alone, every, bad).values()) < 1e-3

@@ -89,6 +89,23 @@ def test_a_table_is_named_where_no_law_does_the_same(name) -> None:
     assert result.fit.test_rms < 1.2 * NOISE
     sizes = [r for s in result.steps[1:] for r in s.reported if r.name == "rms_um"]
     assert all(r.u < 0.1 * r.value for r in sizes)
+    for step in result.steps[1:]:
+        check_sizes(name, {r.quantity: r for r in step.reported})
+
+
+def check_sizes(name, told) -> None:
+    """What a curve is told to be is what was put in: over the targets, line and other laws off."""
+    curve, reversal, laws = AXES[name]
+    x = np.linspace(0.0, L, 2001)
+    if "peak_to_valley" in told and "periodic(EXX)" not in laws:
+        turned = reversal(x) if "reversal_at_most" in told else 0.0 * x
+        mean = curve(x) - np.polyval(np.polyfit(x, curve(x), 1), x)
+        both = np.concatenate([mean + 0.5 * turned, mean - 0.5 * turned])
+        assert told["peak_to_valley"].value == pytest.approx(np.ptp(both), rel=0.1, abs=0.4)
+    if "reversal_at_most" in told:
+        mean, most = told["reversal_on_average"], told["reversal_at_most"]
+        assert mean.value == pytest.approx(reversal(x).mean(), abs=4.0 * mean.u)
+        assert most.value == pytest.approx(reversal(x).max(), abs=4.0 * most.u)
 
 
 @pytest.mark.parametrize("name", ["pitch", "reversal", "quartic"])

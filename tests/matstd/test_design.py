@@ -48,6 +48,7 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
         ("touches = 480", f"touches = {touches}"),
         ("poses = 30 ", f"poses = {poses} "),
         ("machines = 3", f"machines = {machines}"),
+        ("# visits = 10", "visits = 3"),
     ):
         assert old in text
         text = text.replace(old, new)
@@ -83,6 +84,7 @@ def test_every_file_is_there(made: Path) -> None:
         "standard.stl",
         "run.csv",
         "identification.json",
+        "uncertainty.json",
         "identifiability.json",
         "report.html",
         "setup/setup.html",

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from report.words.design_words import best_rival, design_lines, verdict_of_design
+from twin.machine import Chain
 from twin.units import UM
 
 
@@ -40,7 +41,7 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
 )
 def test_the_verdict_is_on_the_workspace(own: float, spheres: float, said: str) -> None:
     made = placement(own, spheres)
-    words = verdict_of_design(made)
+    words = verdict_of_design(made, {})
     assert words.startswith(f"After probing the standard A, {own:.2f} µm rms")
     assert "in your workspace" in words
     assert said in words
@@ -51,11 +52,11 @@ def test_scatter_that_nobody_can_build_is_no_rival() -> None:
     alone = placement(1.0, 2.0)
     alone.rivals = (alone.own, alone.rivals[-1])
     assert best_rival(alone) is None
-    assert verdict_of_design(alone).endswith("in your workspace (predicted).")
+    assert verdict_of_design(alone, {}).endswith("in your workspace (predicted).")
 
 
 def test_the_probed_volume_comes_second_and_by_name() -> None:
-    first, second, _, proof = design_lines(placement(1.0, 2.0))
+    first, second, _, proof = design_lines(placement(1.0, 2.0), {})
     assert "160 touches on the 2 freeform faces" in proof
     assert "power of 95 % on average" in proof
     assert "for 1 of 2 effects" in proof
@@ -65,7 +66,28 @@ def test_the_probed_volume_comes_second_and_by_name() -> None:
 
 
 def test_faces_are_weighed_against_spheres_by_what_they_cost_or_gain() -> None:
-    gain, cost = (design_lines(placement(own, 1.0))[2] for own in (0.5, 1.32))
+    gain, cost = (design_lines(placement(own, 1.0), {})[2] for own in (0.5, 1.32))
     assert "the freeform faces gain 50 % over the user's workspace" in gain
     assert "the freeform faces cost 32 % over the user's workspace" in cost
     assert "leaves 1.32 µm rms, four spheres placed by the same optimiser 1.00 µm" in cost
+
+
+def test_a_workspace_beyond_the_touches_is_told_by_axis(chain: Chain) -> None:
+    made = placement(1.0, 2.0)
+    read = np.zeros((2, len(chain.axes)))
+    read[:, [chain.axis_index(axis) for axis in "XYB"]] = [
+        [-100.0, -80.0, 0.0],
+        [90.0, 120.0, np.pi / 18.0],
+    ]
+    made.requests = ()
+    made.criterion = SimpleNamespace(
+        reach=SimpleNamespace(chain=chain, readings=lambda _requests: read)
+    )
+    asked = {"X": (-400.0, 400.0), "Y": (-100.0, 100.0), "B": (-np.pi / 2.0, 0.0)}
+    words = verdict_of_design(made, asked)
+    assert (
+        "The touches read only X -100 to 90 mm (workspace -400 to 400) and "
+        "B 0 to 10° (workspace -90 to 0): beyond, the model extrapolates" in words
+    )
+    inside = {"X": (-100.0, 100.0), "Y": (-80.0, 80.0)}
+    assert verdict_of_design(made, inside) == verdict_of_design(made, {})

@@ -106,6 +106,19 @@ class PositionTable:
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis."""
         where = touches.chain.twist_of(self.symbol)
+        mean = self._curves(touches)
+        half = 0.5 * touches.last_move(self.symbol.link)
+        turned = [half, *(half * c for c in mean)] if self.by_direction else []
+        return tuple(Term(i, where, amount) for i, amount in enumerate([*mean, *turned]))
+
+    def reversal(self, touches: Touches) -> Array:
+        """Forward less backward at the reading of every touch, per unit of every parameter."""
+        mean = self._curves(touches)
+        still = [np.zeros(len(touches))] * len(mean)
+        return np.stack([*still, np.ones(len(touches)), *mean], axis=1)
+
+    def _curves(self, touches: Touches) -> list[Array]:
+        """Every c_k at the readings of some touches, (N,) each."""
         low, high = touches.chain.link(self.symbol.link).range
         share = (touches.reading(self.symbol.link) - low) / (high - low)
         of = {"sin": np.sin, "cos": np.cos}
@@ -113,10 +126,7 @@ class PositionTable:
         w = 1.0 / (1.0 + (np.pi * k * self.length) ** 2)
         w /= np.linalg.norm(w)
         waves = zip(w, self._waves, strict=True)
-        mean = [float(wk) * of[f](k * np.pi * share) for wk, (f, k) in waves]
-        half = 0.5 * touches.last_move(self.symbol.link)
-        turned: list[Array] = [half, *(half * c for c in mean)] if self.by_direction else []
-        return tuple(Term(i, where, amount) for i, amount in enumerate([*mean, *turned]))
+        return [float(wk) * of[f](k * np.pi * share) for wk, (f, k) in waves]
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The correlation length."""

@@ -1,0 +1,87 @@
+"""Task file (TOML, format "task/1"): what somebody measures on a machine, and how well he must."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from twin.errors import BadFile
+from twin.files import Table, check_format, checked, parse_toml, read_text
+from twin.units import DEG, UM
+
+Range = Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
+class WorkpieceTable(Table):
+    """`[workpiece]`: how workpieces differ from the calibrated standard."""
+
+    form_um: float = Field(default=0.0, ge=0.0)
+    length_mm: float = Field(default=0.0, ge=0.0)
+    warmer: float = Field(default=0.0, alias="warmer_K", ge=0.0)
+    expansion_u: float = Field(default=1e-6, alias="expansion_u_1_K", ge=0.0, lt=1e-3)
+
+
+class TaskTable(Table):
+    """The whole file."""
+
+    format: str
+    name: str
+    tolerance_um: float | None = Field(default=None, gt=0.0)
+    slope_deg: Range = Field(default=[0.0, 180.0])
+    curvature_1_m: Range = Field(default=[0.0, 1e6])
+    poses: dict[str, Range] = Field(default_factory=dict)
+    workpiece: WorkpieceTable = WorkpieceTable()
+
+
+@dataclass(frozen=True)
+class Task:
+    """Surfaces that somebody measures, at which table poses, within which tolerance.
+
+    Attributes:
+        name: Of the task.
+        slope: Smallest and largest angle of a normal to the workpiece's z, rad.
+        curvature: Smallest and largest of the larger principal curvature, whatever its sign, 1/mm.
+        rotary: Smallest and largest reading of rotary axes by letter, rad; others are free.
+        tolerance: Width of the zone of the profile, even about the surface, mm; None for none.
+        u_w: Standard uncertainty that the workpieces add, mm.
+    """
+
+    name: str = "every touch on the freeform faces"
+    slope: tuple[float, float] = (0.0, np.pi)
+    curvature: tuple[float, float] = (0.0, np.inf)
+    rotary: dict[str, tuple[float, float]] = field(default_factory=dict)
+    tolerance: float | None = None
+    u_w: float = 0.0
+
+
+def read_task(path: str | Path) -> Task:
+    """Read a task.
+
+    Raises:
+        BadFile: Unreadable, no TOML, another format, a key unknown or out of range.
+    """
+    data = parse_toml(read_text(path), path)
+    check_format(data, "task/1", path)
+    file = checked(TaskTable, data, path)
+    ranges = {"slope_deg": file.slope_deg, "curvature_1_m": file.curvature_1_m}
+    for key, (low, high) in (ranges | {f"poses.{k}": v for k, v in file.poses.items()}).items():
+        if low > high or (low < 0.0 and not key.startswith("poses")):
+            raise BadFile(path, key, [low, high], "smallest and largest, in this order")
+    rotary = {}
+    for key, (low, high) in file.poses.items():
+        letter, _, unit = key.partition("_")
+        if letter not in ("A", "B", "C") or unit != "deg":
+            raise BadFile(path, f"poses.{key}", key, "rotary axes: A_deg, B_deg or C_deg")
+        rotary[letter] = (low * DEG, high * DEG)
+    piece = file.workpiece
+    expands = piece.length_mm * piece.warmer * piece.expansion_u
+    return Task(
+        name=file.name,
+        slope=(file.slope_deg[0] * DEG, file.slope_deg[1] * DEG),
+        curvature=(file.curvature_1_m[0] * 1e-3, file.curvature_1_m[1] * 1e-3),
+        rotary=rotary,
+        tolerance=None if file.tolerance_um is None else file.tolerance_um * UM,
+        u_w=float(np.hypot(piece.form_um * UM, expands)),
+    )

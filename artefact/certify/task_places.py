@@ -1,0 +1,80 @@
+"""Which touches on a standard are like a measuring task: slopes, curvatures, table poses."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from artefact.body import Standard
+from artefact.brief import Task
+from twin.errors import DesignError
+from twin.frames import Array
+from twin.record import Touches
+from twin.units import DEG
+
+Mask = NDArray[np.bool_]
+
+_EDGE = 1e-6  # rad and 1/mm: a range includes its ends, whatever rounding did
+
+
+def on_faces(standard: Standard, touches: Touches) -> Mask:
+    """Touches on freeform faces, (N,).
+
+    Raises:
+        DesignError: A feature that the standard has not.
+    """
+    unknown = sorted(set(touches.feature.tolist()) - set(standard.features))
+    if unknown:
+        raise DesignError(
+            f"feature '{unknown[0]}' is none of standard '{standard.name}', which has "
+            f"{', '.join(standard.features)}"
+        )
+    return np.isin(touches.feature, [patch.name for patch in standard.patches])
+
+
+def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
+    """Touches on freeform faces that are like those of a task, (N,).
+
+    Raises:
+        DesignError: There is none; says which range is not met, and what there is.
+    """
+    chain = touches.chain
+    for letter in task.rotary:
+        if letter not in chain.rotary_axes:
+            raise DesignError(
+                f"task '{task.name}': poses.{letter}_deg, expected rotary axes of {chain.name}: "
+                f"{', '.join(chain.rotary_axes) or 'none'}"
+            )
+    face = on_faces(standard, touches)
+    asked = [
+        ("slope_deg", DEG, np.arccos(np.clip(touches.normal[:, 2], -1.0, 1.0)), task.slope),
+        ("curvature_1_m", 1e-3, curvature(standard, touches), task.curvature),
+    ]
+    for letter, limits in task.rotary.items():
+        readings = touches.q[:, chain.axis_index(letter)]
+        asked.append((f"poses.{letter}_deg", DEG, readings, limits))
+    like, told = face.copy(), []
+    for key, unit, values, (low, high) in asked:
+        met = (values >= low - _EDGE) & (values <= high + _EDGE)
+        like &= met
+        there = values[face] / unit
+        if len(there):
+            told.append(
+                f"{key} {int((met & face).sum())} (they have {there.min():.3g} to "
+                f"{there.max():.3g})"
+            )
+    if not like.any():
+        raise DesignError(
+            f"task '{task.name}': none of {int(face.sum())} touches on freeform faces is like it; "
+            f"within its ranges are: {', '.join(told) or 'none'}"
+        )
+    return like
+
+
+def curvature(standard: Standard, touches: Touches) -> Array:
+    """Larger principal curvature at every touch on a freeform face, 0 elsewhere, (N,), 1/mm."""
+    out = np.zeros(len(touches))
+    for patch in standard.patches:
+        rows = np.flatnonzero(touches.feature == patch.name)
+        uv = patch.project(touches.point[rows])
+        there = np.all(np.isfinite(uv), axis=1)
+        out[rows[there]] = np.abs(patch.curvature(uv[there])).max(axis=1)
+    return out

@@ -1,0 +1,22 @@
+"""What measurements of calibrated features say of a user's measuring task (ISO 15530-3).
+
+In: runs of a standard on different days (`Visits`), a model or none, which touches are like the
+task, and how well the features are calibrated. Out: a `TaskUncertainty`, the budget with its
+expanded uncertainty, and what it leaves of a tolerance (`Guarded`).
+"""
+
+from diagnosis.task.decision import CONFORMITY, Guarded, guarded
+from diagnosis.task.uncertainty import LEVEL, TaskUncertainty, task_uncertainty
+from diagnosis.task.visits import MIN_PLACES, Visits, visits_of
+
+__all__ = [
+    "CONFORMITY",
+    "LEVEL",
+    "MIN_PLACES",
+    "Guarded",
+    "TaskUncertainty",
+    "Visits",
+    "guarded",
+    "task_uncertainty",
+    "visits_of",
+]

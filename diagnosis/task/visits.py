@@ -1,0 +1,155 @@
+"""Repeated visits to the same places on calibrated features, seen from where the standard stands.
+
+Datum features place the standard in every visit, as a workpiece is placed by its own; what is
+measured on the others is the deviation of a surface, as a user would measure it. A model takes off
+what it predicts first.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.fit import Prior, fit_run
+from diagnosis.regression import BoolArray
+from twin.effects import setup_errors
+from twin.errors import NotEnoughData
+from twin.frames import Array
+from twin.model import Model, columns
+from twin.record import Labels, Run, Touches
+from twin.units import DEG
+
+MIN_PLACES = 8
+"""Places below which nothing is said of a task: their spread has too few degrees of freedom."""
+
+_BESIDE = 1.0  # mm on the surface between visits to one place: touches stand several apart
+_TURNED = 6.0 * DEG  # between rotary readings of such visits: a standard may be clamped 5 aside
+
+
+@dataclass(frozen=True, eq=False)
+class Visits:
+    """Deviations of J places in n visits.
+
+    Attributes:
+        deviation: Measured beyond what a model predicts, the standard placed by its datum
+            features, (n, J), mm.
+        face: Feature of every place, (J,).
+        pose: Table pose of every place, (J,).
+        shared: Deviation per standard uncertainty of everything that the calibration leaves
+            unknown, the datum features included, (J, Q), mm.
+        lost: Places that not every visit has.
+        gross: Places left out because a visit met something else there.
+    """
+
+    deviation: Array
+    face: Labels
+    pose: np.ndarray
+    shared: Array
+    lost: int = 0
+    gross: int = 0
+
+    def __len__(self) -> int:
+        return len(self.deviation)
+
+
+def visits_of(
+    runs: Sequence[Run],
+    is_task: Sequence[BoolArray],
+    is_datum: Sequence[BoolArray],
+    calibration: Array,
+    model: Model | None = None,
+    estimates: Prior | None = None,
+) -> Visits:
+    """Pair the places of several runs of one standard.
+
+    Args:
+        runs: One a visit.
+        is_task: Touches like those of the task, of every run, (N,).
+        is_datum: Touches that place the standard, (N,); all others take no part.
+        calibration: Columns (N, Q) of the first run per standard uncertainty of the features'
+            places, mm.
+        model: What is known of the machine; None for nothing.
+        estimates: Of its parameters.
+
+    Raises:
+        NotEnoughData: One visit, no datum, or too few places that all of them have.
+    """
+    if len(runs) < 2:
+        raise NotEnoughData("one visit, expected at least 2: one says nothing of repeatability")
+    seen = [
+        _placed(run, task, datum, model, estimates)
+        for run, task, datum in zip(runs, is_task, is_datum, strict=True)
+    ]
+    first = runs[0].touches
+    rows = _apart(first, np.flatnonzero(is_task[0]))
+    found = [rows] + [
+        _same_places(first, rows, run.touches, np.flatnonzero(task))
+        for run, task in zip(runs[1:], is_task[1:], strict=True)
+    ]
+    at = np.stack(found)
+    there = np.all(at >= 0, axis=0)
+    deviation = np.stack([d[0][r] for d, r in zip(seen, at, strict=True)])
+    far = np.any(np.stack([d[1][r] for d, r in zip(seen, at, strict=True)]), axis=0) & there
+    kept = there & ~far
+    if kept.sum() < MIN_PLACES:
+        raise NotEnoughData(
+            f"{int(kept.sum())} places on freeform faces that every visit has and that are like "
+            f"the task, expected at least {MIN_PLACES}"
+        )
+    mine = rows[kept]
+    return Visits(
+        deviation=deviation[:, kept],
+        face=first.feature[mine],
+        pose=first.pose[mine],
+        shared=_placed_columns(runs[0], is_datum[0], calibration)[mine],
+        lost=int((~there).sum()),
+        gross=int(far.sum()),
+    )
+
+
+def _placed(
+    run: Run,
+    is_task: BoolArray,
+    is_datum: BoolArray,
+    model: Model | None,
+    estimates: Prior | None,
+) -> tuple[Array, BoolArray]:
+    """Deviations seen from the datum features, (N,), mm, and which of them are gross errors."""
+    if not is_datum.any():
+        raise NotEnoughData("no touch on a ball or the datum plane places the standard")
+    used = is_task | is_datum
+    split = np.where(is_task[used], "test", "train")
+    model = model or Model(run.touches.chain, ())
+    mean = np.zeros(0) if estimates is None else estimates.mean
+    known = Prior(mean, np.zeros((len(mean), len(mean))))
+    fit = fit_run(replace(run[used], split=split), model, known)
+    deviation, far = np.full(len(run), np.nan), np.zeros(len(run), dtype=np.bool_)
+    deviation[used], far[used] = fit.residual, fit.gross_test_rows
+    return deviation, far
+
+
+def _placed_columns(run: Run, is_datum: BoolArray, calibration: Array) -> Array:
+    """What calibration does to deviations that are seen from the datum features, (N, Q), mm."""
+    S = columns(setup_errors(run.touches), run.touches)
+    placed = np.linalg.lstsq(S[is_datum], calibration[is_datum], rcond=1e-9)[0]
+    return np.asarray(calibration - S @ placed)
+
+
+def _apart(touches: Touches, rows: np.ndarray) -> np.ndarray:
+    """The first touch of every place; places that are revisited count once."""
+    again = _same_places(touches, rows, touches, rows)
+    return np.unique(again[again >= 0])
+
+
+def _same_places(first: Touches, rows: np.ndarray, other: Touches, among: np.ndarray) -> np.ndarray:
+    """Row of the touch at the same place of the standard for every row, the first such; else -1."""
+    rotary = [first.chain.axis_index(a) for a in first.chain.rotary_axes]
+    out = np.full(len(rows), -1)
+    for k, row in enumerate(rows):
+        same = among[other.feature[among] == first.feature[row]]
+        off = np.linalg.norm(other.point[same] - first.point[row], axis=1)
+        turn = np.abs(other.q[same][:, rotary] - first.q[row, rotary]).max(axis=1, initial=0.0)
+        near = (off < _BESIDE) & (turn < _TURNED)
+        if near.any():
+            out[k] = same[near][np.argmin((off + turn / _TURNED)[near].round(3))]
+    return out

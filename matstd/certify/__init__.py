@@ -1,0 +1,1 @@
+"""What the commands on calibrated standards share: rooms strung together, nothing computed."""

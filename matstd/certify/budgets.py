@@ -1,0 +1,94 @@
+"""Budgets of a measuring task from runs of a standard: artefact and diagnosis strung together."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from artefact.body import Standard
+from artefact.brief import Project, Task
+from artefact.certify import like_task, misplaced, on_faces
+from artefact.reach import Requests
+from artefact.worth import Calibration
+from diagnosis.fit import Prior, fit_run
+from diagnosis.task import TaskUncertainty, Visits, task_uncertainty, visits_of
+from probe_paths.campaign import VirtualMachine, visits
+from twin.errors import DesignError
+from twin.frames import pose, rotation
+from twin.model import Model
+from twin.record import Run
+from twin.units import UM, URAD
+
+PLAIN = "as measured"
+"""Results that no model corrects."""
+
+CLAMPED = (50.0 * UM, 200.0 * URAD)
+"""How far from where it is believed a standard stands in a virtual visit, mm and rad: less than
+the room between a touch and the edge of its face."""
+
+
+def budgets(
+    runs: Sequence[Run],
+    standard: Standard,
+    known: Calibration,
+    task: Task,
+    models: Mapping[str, tuple[Model, Prior] | None],
+) -> tuple[dict[str, TaskUncertainty], Visits]:
+    """Budgets of a task without and with models, and the visits that the last rests upon.
+
+    Args:
+        runs: Visits to one standard.
+        standard: As calibrated.
+        known: How well.
+        task: What is measured.
+        models: What results are corrected with, by name; None for nothing.
+
+    Raises:
+        DesignError: A run of another standard, or no touch like the task.
+        NotEnoughData: Too few visits or places.
+    """
+    for run in runs[1:]:
+        if differs := run.touches.chain.difference(runs[0].touches.chain):
+            key, ours, theirs = differs
+            raise DesignError(
+                f"machines of two visits: {key} is {ours} and {theirs}, expected one machine"
+            )
+    faces = [on_faces(standard, run.touches) for run in runs]
+    wanted = [like_task(task, standard, run.touches) for run in runs]
+    first = runs[0].touches
+    rotary = first.q[:, [first.chain.axis_index(a) for a in first.chain.rotary_axes]]
+    columns = known.columns(standard, Requests(first.feature, first.point, first.normal, rotary))
+    out = {}
+    for name, model in models.items():
+        what, estimates = (None, None) if model is None else model
+        seen = visits_of(runs, wanted, [~f for f in faces], columns, what, estimates)
+        out[name] = task_uncertainty(seen, task.u_w)
+    return out, seen
+
+
+def virtual_budgets(
+    project: Project,
+    standard: Standard,
+    known: Calibration,
+    programs: Sequence[Path],
+    machine: VirtualMachine,
+    rng: np.random.Generator,
+) -> tuple[dict[str, TaskUncertainty], Visits]:
+    """Budgets of the project's task from visits on the twin, before and after identification.
+
+    The true standard is beside its calibration as much as that allows, and clamped anew for every
+    visit. The model is identified from the balls of the first.
+    """
+    true = misplaced(standard, known, rng)
+    stands = [
+        replace(machine, setup_error=pose(rotation(rng.normal(0.0, b, 3)), rng.normal(0.0, a, 3)))
+        for a, b in [CLAMPED] * project.visits
+    ]
+    runs = [c.run for c in visits(programs, true, stands, rng, calibrated=standard)]
+    held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")
+    fit = fit_run(replace(runs[0], split=held_back), project.population.expected())
+    count = len(fit.model.parameters)
+    learnt = fit.model, Prior(fit.theta[:count], np.zeros((count, count)))
+    models = {PLAIN: None, "with the identified model": learnt}
+    return budgets(runs, standard, known, project.task, models)

@@ -1,0 +1,85 @@
+"""`matstd uncertainty`: of a user's measuring task, from visits to calibrated faces."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from matstd.options import add_output
+
+if TYPE_CHECKING:
+    from diagnosis.fit import Prior
+    from twin.model import Model
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "run_files", metavar="RUN.csv", nargs="+", help="visits to one standard, two or more"
+    )
+    parser.add_argument(
+        "--standard", metavar="STANDARD.toml", required=True, help="what was measured"
+    )
+    parser.add_argument(
+        "--task",
+        metavar="TASK.toml",
+        help="what is to be measured on workpieces; without it whatever was touched on the faces",
+    )
+    parser.add_argument(
+        "--model", metavar="MODEL.toml", help="of an earlier run, with which results are corrected"
+    )
+    add_output(parser, "OUT.json")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Evaluate; the result is written whole or not at all."""
+    from artefact.body import read_standard
+    from artefact.brief import Task, read_task
+    from artefact.worth import Calibration
+    from diagnosis.files import check_machine, read_model, write_uncertainty
+    from matstd.certify.budgets import PLAIN, budgets
+    from matstd.console import say, say_each
+    from matstd.inputs import is_learnt_from
+    from report.task import task_lines
+    from twin.files import read_run, refuse_to_overwrite
+
+    refuse_to_overwrite(args.output, args.force)
+    task = read_task(args.task) if args.task else Task()
+    standard = read_standard(args.standard)
+    runs = [read_run(path) for path in args.run_files]
+    check_visits(args.run_files, [one.fingerprint for one in runs])
+    models: dict[str, tuple[Model, Prior] | None] = {PLAIN: None}
+    remarks = [
+        f"{p}: {r}" for p, one in zip(args.run_files, runs, strict=True) for r in one.remarks
+    ]
+    if args.model:
+        saved = read_model(args.model)
+        for one in runs:
+            check_machine(saved, one.touches.chain, args.model)
+        models[f"with {args.model}"] = saved.model, saved.estimates
+        remarks += [
+            f"{args.model} has learnt from {path}: a visit proves more where it had no part in it"
+            for path, one in zip(args.run_files, runs, strict=True)
+            if is_learnt_from(saved, one)
+        ]
+    found, visits = budgets(runs, standard, Calibration(), task, models)
+    write_uncertainty(args.output, task.name, found, task.tolerance)
+    first = next(iter(found.values()))
+    say(
+        f"{args.output}: {task.name}: {first.places} places on {first.faces} faces at "
+        f"{first.poses} table poses in {first.visits} visits"
+    )
+    say_each([*task_lines(found, task.tolerance, visits), *remarks])
+    return 0
+
+
+def check_visits(files: list[str], prints: list[str]) -> None:
+    """Refuse one measurement that is given twice; raises DesignError."""
+    from twin.errors import DesignError
+
+    for k, print_ in enumerate(prints):
+        if print_ in prints[:k]:
+            raise DesignError(
+                f"{files[k]}: the same measurements as {files[prints.index(print_)]}, expected "
+                "every visit once"
+            )

@@ -1,0 +1,158 @@
+"""`matstd uncertainty` on the golden standard, of which one face stands 5 µm too high."""
+
+import importlib.util
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.body.standard import Standard
+from artefact.body.standard_file import write_standard
+from artefact.brief.task_file import Task
+from artefact.certify.task_places import curvature, like_task
+from matstd.cli import main
+from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.simulation import visits
+from twin.errors import DesignError
+from twin.files.run_file import read_run
+from twin.files.run_writer import write_run
+from twin.frames import pose, rotation
+from twin.units import DEG, UM
+
+MACHINE = Path(__file__).parents[2] / "tests" / "golden" / "make_programs.py"
+HIGH = 5.0
+"""How much too high FF1 stands along its own z, µm."""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three visits, the standard clamped anew for each, on a machine without errors."""
+    spec = importlib.util.spec_from_file_location("golden_programs", MACHINE)
+    golden = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(golden)
+    folder = tmp_path_factory.mktemp("visits")
+    small: Standard = golden.standard()
+    write_standard(folder / "standard.toml", small)
+    low = small.patches[0]
+    up = low.T_artefact_patch @ pose(np.eye(3), np.array([0.0, 0.0, HIGH * UM]))
+    true = replace(small, patches=(replace(low, T_artefact_patch=up), *small.patches[1:]))
+    rng = np.random.default_rng(4)
+    chain = golden.machine()
+    stands = [
+        VirtualMachine(
+            chain,
+            noise=0.2 * UM,
+            setup_error=pose(rotation(rng.normal(0.0, 2e-4, 3)), rng.normal(0.0, 0.05, 3)),
+        )
+        for _ in range(3)
+    ]
+    programs = golden.programs().write(folder / "programs")
+    (folder / "machine.toml").write_text(chain_text(chain))
+    for k, made in enumerate(visits(programs, true, stands, rng, calibrated=small)):
+        write_run(folder / f"v{k}.csv", made.run, "machine.toml")
+    return folder
+
+
+def chain_text(chain) -> str:
+    """The machine as its file."""
+    lines = [f'format = "machine/1"\nname = "{chain.name}"\nchain = "{chain.notation}"']
+    for letter in chain.programmed_axes:
+        link = chain.link(letter)
+        unit = 1.0 if link.kind == "linear" else DEG
+        lines.append(f"[axis.{letter}]\nrange = {[v / unit for v in link.range]}")
+        lines.append(f"point = {[float(v) for v in link.point]}")
+    return "\n".join([*lines, "[workpiece]\norigin = [0.0, 0.0, -500.0]"]) + "\n"
+
+
+def call(place: Path, *more: str, runs: int = 3) -> int:
+    files = [str(place / f"v{k}.csv") for k in range(runs)]
+    out = ["-o", str(place / "u.json"), "--force"]
+    return main(["uncertainty", *files, "--standard", str(place / "standard.toml"), *more, *out])
+
+
+def test_the_high_face_is_told(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(place) == 0
+    (found,) = json.loads((place / "u.json").read_text())["budgets"]
+    run = read_run(place / "v0.csv")
+    rows = run.touches.feature == "FF1"
+    felt = HIGH * float(run.touches.normal[rows, 2].mean())  # FF1 lies upright
+    mean = {face["feature"]: face["mean_um"] for face in found["by_face"]}
+    assert mean["FF1"] == pytest.approx(felt, abs=0.4)
+    assert mean["FF2"] == pytest.approx(0.0, abs=0.4)
+    # noise of 0.2 µm and what the datum balls' noise adds to it
+    assert 0.15 < found["u_p_um"] < 0.45
+    assert found["visits"] == 3
+    assert found["places"] == int(np.isin(run.touches.feature, ["FF1", "FF2"]).sum())
+    said = capsys.readouterr().out
+    assert "ISO 15530-3 asks for 10" in said
+    assert "u_w is 0" in said
+
+
+def test_a_task_chooses_places(place: Path) -> None:
+    run = read_run(place / "v0.csv")
+    from artefact.body.standard_file import read_standard
+
+    standard = read_standard(place / "standard.toml")
+    t = run.touches
+    faces = np.isin(t.feature, ["FF1", "FF2"])
+    slope = np.arccos(t.normal[:, 2])
+    half = float(np.median(slope[faces]))
+    like = like_task(Task(slope=(0.0, half)), standard, t)
+    assert (like == (faces & (slope <= half))).all()
+    b = t.q[:, t.chain.axis_index("B")]
+    like = like_task(Task(rotary={"B": (-40 * DEG, -20 * DEG)}), standard, t)
+    assert (like == (faces & (np.abs(b + 30 * DEG) < 1e-6))).all()
+    # the curvature of a face at a touch, by differences of its normals
+    row = int(np.flatnonzero(t.feature == "FF1")[0])
+    patch = standard.features["FF1"]
+    uv = patch.project(t.point[[row]])
+    step = 1e-4
+    S = [(patch.normal(uv + d) - patch.normal(uv - d))[0] for d in step * np.eye(2)]
+    P = [(patch.point(uv + d) - patch.point(uv - d))[0] for d in step * np.eye(2)]
+    shape = np.linalg.lstsq(np.array(P).T, np.array(S).T, rcond=None)[0]
+    assert curvature(standard, t)[row] == pytest.approx(
+        np.abs(np.linalg.eigvals(shape)).max(), rel=1e-4
+    )
+
+
+@pytest.mark.parametrize(
+    ("task", "told"),
+    [
+        ("slope_deg = [80.0, 85.0]", "none of"),
+        ("slope_deg = [40.0, 10.0]", "smallest and largest"),
+        ("[poses]\nZ_deg = [0.0, 1.0]", "rotary axes"),
+        ("[poses]\nA_deg = [0.0, 1.0]", "expected rotary axes of trunnion: C, B"),
+        ("tolerance_um = -3.0", "greater than 0"),
+        ("sloop_deg = [0.0, 1.0]", "slope_deg"),
+    ],
+)
+def test_a_task_that_says_nothing(
+    place: Path, capsys: pytest.CaptureFixture[str], task: str, told: str
+) -> None:
+    (place / "task.toml").write_text(f'format = "task/1"\nname = "t"\n{task}\n')
+    assert call(place, "--task", str(place / "task.toml")) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+
+
+def test_too_little_and_the_same_twice(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(place, runs=1) == 2
+    assert "expected at least 2" in capsys.readouterr().err
+    file, out = str(place / "v0.csv"), str(place / "u2.json")
+    standard = str(place / "standard.toml")
+    code = main(["uncertainty", file, file, "--standard", standard, "-o", out])
+    assert code == 2
+    assert "every visit once" in capsys.readouterr().err
+    assert not (place / "u2.json").exists()
+
+
+def test_a_run_of_another_standard(place: Path) -> None:
+    run = read_run(place / "v0.csv")
+    from artefact.body.standard_file import read_standard
+
+    other = replace(run.touches, feature=np.full(len(run), "PAD9"))
+    with pytest.raises(DesignError, match="PAD9"):
+        like_task(Task(), read_standard(place / "standard.toml"), other)
