@@ -19,6 +19,7 @@ COMMANDS = {
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
     "thermal": "laws of a thermal drift from logs of temperatures, and predictions with them",
+    "calibrate": "a standard as a coordinate measuring machine finds it; the program for the CMM",
     "uncertainty": "of a measuring task, from visits to the calibrated faces (ISO 15530-3)",
     "compensate": "the identified model goes back to the control: tables, or a part program",
     "contributions": "what every error adds along a program or at poses",

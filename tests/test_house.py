@@ -60,6 +60,8 @@ EXCUSED = {
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
     "artefact/reach/touchable.py": "reason that a refusal counts",
+    "artefact/certify/cmm_points_file.py": "remarks of a reader on single lines, like its refusals",
+    "artefact/certify/dmis.py": "comments in a program that is written",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
     "diagnosis/drift/log_file.py": "remarks of a reader on a log, like its refusals",
     "compensation/tables/iso_csv.py": "comment in the head of a file that is written",
