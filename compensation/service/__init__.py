@@ -5,12 +5,12 @@
 server.
 """
 
-from compensation.service.error_tables import CLOSE, ErrorTable, error_tables
 from compensation.service.history import History
 from compensation.service.opcua_server import NAMESPACE, serve
 from compensation.service.output import Output, OutputLimits, Quality, Sent
 from compensation.service.point_correction import PointCorrection
 from compensation.service.service import Answer, Service
+from compensation.service.tabulated import CLOSE, ErrorTable, error_tables
 
 __all__ = [
     "CLOSE",

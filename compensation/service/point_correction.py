@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from compensation.field import Datum, MachineErrors
-from compensation.service.error_tables import CLOSE, ErrorTable, error_tables
 from compensation.service.history import History
+from compensation.service.tabulated import CLOSE, ErrorTable, error_tables
 from twin.errors import DesignError, OutsideTravel
 from twin.frames import Array, rotation
 from twin.machine import Chain, Link

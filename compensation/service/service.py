@@ -129,7 +129,14 @@ class Service:
     def tick(self, now: float) -> Answer:
         """What a control reads at this moment."""
         k0, k1, p0 = self._linear
-        return Answer(self._sequence, self._output.step(now), k0, k1, p0, self._refused)
+        return Answer(
+            sequence=self._sequence,
+            sent=self._output.step(now),
+            k0=k0,
+            k1=k1,
+            p0=p0,
+            refused=self._refused,
+        )
 
     def uncertainty(self, readings: Sequence[float]) -> Point:
         """Standard uncertainty of the tool point that the model leaves there, x, y, z, mm.

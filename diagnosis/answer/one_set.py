@@ -156,5 +156,8 @@ def without(state: SearchState, name: str) -> SearchState:
     chosen = state.search.evaluate(state.chosen.members[i] for i in kept)
     effects = tuple(state.effects[i] for i in kept)
     return replace(
-        state, chosen=chosen, effects=effects, left=tuple(find_structure(chosen.effects))
+        state,
+        chosen=chosen,
+        effects=effects,
+        left=tuple(find_structure(chosen.effects, smooth=state.smooth)),
     )

@@ -20,7 +20,7 @@ from diagnosis.evidence import (
 from diagnosis.fit import Fit
 from diagnosis.regression import Memory
 from diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
-from diagnosis.residual import find_structure
+from diagnosis.residual import PatternTests, find_structure
 from diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
 from twin.model import Effect, columns
 from twin.thermal import LETTERS, ThermalField
@@ -61,17 +61,19 @@ def followed(
     search = Search(_pool(library, effects), None, progress)
     members = [Member(*_place(search.pool, s), s.effect, s.scale) for s in effects]
     chosen = search.evaluate(members)
-    left = find_structure(chosen.effects, progress)
+    smooth = PatternTests(chosen.effects.complement)
+    left = find_structure(chosen.effects, progress, smooth)
     if not left and plain.noise.factor > LOUDEST:
         left = list(final.left or final.nameless)
     shrunk = {s.effect.name: _chance(choice) for s in effects if _is_shrunk(s)}
-    nothing = find_structure(search.evaluate(()).effects, progress)
+    nothing = find_structure(search.evaluate(()).effects, progress, smooth)
     return task, SearchState(
         base=base,
         library=library,
         search=search,
         chosen=chosen,
         effects=effects,
+        smooth=smooth,
         at_start=tuple(nothing) or final.at_start,
         left=tuple(left),
         nameless=(),

@@ -24,7 +24,6 @@ from diagnosis.evidence.evidence import (
     addition,
     f_probability,
     log_evidence,
-    reduced,
     score_all,
     screen,
 )
@@ -46,7 +45,6 @@ __all__ = [
     "period_of",
     "projected",
     "quiet",
-    "reduced",
     "scanned_grids",
     "score_all",
     "screen",

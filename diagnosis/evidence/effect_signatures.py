@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from diagnosis.fit import Fit
 from diagnosis.regression import PRIOR_DOF, BoolArray, Whitener
 from twin.frames import Array
-from twin.model import Effect, Tunable, columns
+from twin.model import Effect, columns, is_tunable
 from twin.record import Touches
 
 IntArray = NDArray[np.int64]
@@ -154,7 +154,7 @@ def projected(complement: ResidualSpace, sized: Sequence[ScaledEffect]) -> Array
 
 def tuned_variants(effect: Effect, touches: Touches) -> list[Effect]:
     """The effect at every point of the grid of its inner parameters."""
-    if not isinstance(effect, Tunable):
+    if not is_tunable(effect):
         return [effect]
     grids = [np.asarray(inner.grid, dtype=float) for inner in effect.inner(touches)]
     points = list(product(*grids))

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.special import betainc
 
-from diagnosis.evidence.effect_signatures import IntArray, ResidualSpace, Signatures
+from diagnosis.evidence.effect_signatures import ResidualSpace, Signatures
 from diagnosis.regression import PRIOR_DOF, LeftOut, left_out
 from twin.frames import Array
 from twin.model import Effect
@@ -148,34 +148,6 @@ class EffectSet:
         """
         left = self.held_out
         return float(log_evidence(self.complement, left.squared, left.log_det))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Reduced:
-    """Features freed of the model and of the effects, by inner products alone.
-
-    Attributes:
-        gram: With each other, (K, K).
-        along: With the residual, (K,).
-    """
-
-    gram: Array
-    along: Array
-
-
-def reduced(effects: EffectSet, F: Array, rows: IntArray) -> Reduced:
-    """Inner products of whitened features, with the model and the effects removed.
-
-    Args:
-        effects: Model and effects in it.
-        F: Features at some of the touches in use, zero at the others, (R, K).
-        rows: Which of the touches in use, (R,).
-    """
-    complement = effects.complement
-    B = complement.Q[rows].T @ F
-    E = effects.lower_solve(effects.A[rows].T @ F)
-    gram = F.T @ F - B.T @ B - E.T @ E
-    return Reduced(gram, F.T @ complement.residual[rows] - E.T @ effects.along)
 
 
 def log_evidence(

@@ -17,7 +17,7 @@ from diagnosis.evidence.effect_signatures import (
     tuned_variants,
 )
 from twin.frames import Array
-from twin.model import Effect, Inner, Tunable, columns
+from twin.model import Effect, Inner, Tunable, columns, is_tunable
 
 KEPT = 300
 """Periods of a long scan that get a signature."""
@@ -39,7 +39,7 @@ ENDLESS = 1e9
 
 def period_of(effect: Effect, complement: ResidualSpace) -> Inner | None:
     """The inner parameter of an effect that repeats over the reading of an axis, if that is all."""
-    inner = effect.inner(complement.touches) if isinstance(effect, Tunable) else ()
+    inner = effect.inner(complement.touches) if is_tunable(effect) else ()
     return inner[0] if len(inner) == 1 and inner[0].over else None
 
 

@@ -138,7 +138,7 @@ def description_faults(before: Fit, progress: Progress = quiet) -> tuple[Descrip
     trials = []
     for i, suspect in enumerate(suspects(few, is_absurd)):
         moved = _moved_setups(run.touches.setups, suspect.run.touches)
-        trials.append(_trial(i, suspect, moved))
+        trials.append(_trial(i, suspect, moved, right))
         progress(0.5, "mistakes in the description")
     trials = sorted(trials, key=lambda t: -t.evidence)
     close = [t for t in trials if t.evidence > max(right + NAMED, trials[0].evidence - CLASS)]
@@ -198,19 +198,21 @@ def _moved_setups(stated: Sequence[Setup], touches: Touches) -> float:
     return cost
 
 
-def _trial(index: int, suspect: Suspect, moved: float) -> _Trial:
+def _trial(index: int, suspect: Suspect, moved: float, right: float) -> _Trial:
     """Numbers of a suspect, found and moved exactly in turns, and its evidence at the end.
 
     Args:
         index: The how manyth it is.
         suspect: On some of the touches.
         moved: Log odds against where it puts the set-ups.
+        right: Evidence for the description as it is: a suspect that gains nothing in its first turn
+            is far from being named, and has no further one.
     """
     total = np.zeros(sum(len(e.parameters) for e in suspect.free))
     at = suspect
     for remaining in reversed(range(STEPS)):
         evidence, theta, u = _evidence(at.run, at.free, total)
-        if not suspect.free or not remaining:
+        if not suspect.free or not remaining or evidence - moved < right:
             break
         total = total + theta
         at = corrected(suspect, total)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.frames import Array
-from twin.model import Effect, Inner, Model, Parameter, Term, Tunable, columns
+from twin.model import Effect, Inner, Model, Parameter, Term, Tunable, columns, is_tunable
 from twin.record import Touches
 
 STEP = 0.02
@@ -80,7 +80,7 @@ def spacing(inner: Inner, value: float) -> float:
 
 def continuous_inner(effect: Effect, touches: Touches) -> list[tuple[int, Inner, float]]:
     """Index, description and present value of the inner parameters that can be refined."""
-    if not isinstance(effect, Tunable):
+    if not is_tunable(effect):
         return []
     inner = effect.inner(touches)
     values = list(effect.tuning.values())

@@ -8,6 +8,7 @@ A new test is a module beside `waves` and `crowds`, called by `structure`.
 from diagnosis.residual.failing_regions import Condition, Region, Side, regions
 from diagnosis.residual.mean_displacements import has_poses, pose_vectors
 from diagnosis.residual.partial_residuals import SEES, Drawn, Driver, Partial, Seen, partial
+from diagnosis.residual.pattern_tests import PatternTests
 from diagnosis.residual.patterns import directions, groups, variables
 from diagnosis.residual.ranked_variables import RankedVariable, binned, rank_variables, standardised
 from diagnosis.residual.structure import Shape, Structure, find_structure
@@ -18,6 +19,7 @@ __all__ = [
     "Drawn",
     "Driver",
     "Partial",
+    "PatternTests",
     "RankedVariable",
     "Region",
     "Seen",

@@ -39,14 +39,28 @@ class Pattern:
     Attributes:
         variables: Columns of the run file that it varies with.
         direction: Along what it acts: "normal", or a direction of the machine.
-        features: Deviation along the normal of every feature, (N, K), mm per mm.
+        shapes: Functions of the variables, (N, K); all directions share them.
+        part: Deviation along the normal per unit along the direction, (N,), mm per mm.
         spectra: Expected share of the variance in each feature, one row a roughness, (L, K).
     """
 
     variables: tuple[str, ...]
     direction: str
-    features: Array
+    shapes: Array
+    part: Array
     spectra: Array
+
+    def whitened(self, complement: ResidualSpace, rows: IntArray) -> Array:
+        """Deviation along the normal by every function over the noise, (R, K).
+
+        Args:
+            complement: Says which touches are in use, and their noise.
+            rows: Which of the touches in use, (R,).
+        """
+        if complement.whitener is not None:
+            return complement.whitener(self.shapes * self.part[:, None])[rows]
+        used = np.flatnonzero(complement.used)[rows]
+        return np.asarray(self.shapes[used] * (self.part[used] / complement.u[rows])[:, None])
 
 
 def variables(touches: Touches) -> dict[str, Array]:
@@ -133,37 +147,28 @@ def pairs(touches: Touches, known: Mapping[str, Array]) -> list[tuple[str, str]]
 
 def patterns(touches: Touches) -> Iterator[Pattern]:
     """Every smooth pattern and every grouping that a run can show."""
-    known, along = variables(touches), directions(touches)
+    along = directions(touches)
+    for names, shapes, spectra in _shapes(touches):
+        for direction, part in along.items():
+            yield Pattern(
+                variables=names, direction=direction, shapes=shapes, part=part, spectra=spectra
+            )
+
+
+def _shapes(touches: Touches) -> Iterator[tuple[tuple[str, ...], Array, Array]]:
+    """Variables, functions (N, K) and spectra (L, K) of the same, whatever the direction."""
+    known = variables(touches)
     for name, values in known.items():
-        F = half_waves(values, ORDER_ALONE)[:, 1:]
-        for direction, part in along.items():
-            yield Pattern((name,), direction, F * part[:, None], alone_spectra(ORDER_ALONE))
+        yield (name,), half_waves(values, ORDER_ALONE)[:, 1:], alone_spectra(ORDER_ALONE)
     for first, second in pairs(touches, known):
-        F, spectra = paired((known[first], known[second]))
-        for direction, part in along.items():
-            yield Pattern((first, second), direction, F * part[:, None], spectra)
+        yield (first, second), *paired((known[first], known[second]))
     for name, label in groups(touches).items():
         F = (label[:, None] == np.arange(label.max() + 1)).astype(float)
         F = F[:, F.any(axis=0)]
-        spectra = np.full((1, F.shape[1]), 1.0 / F.shape[1])
-        for direction, part in along.items():
-            yield Pattern((name,), direction, F * part[:, None], spectra)
+        yield (name,), F, np.full((1, F.shape[1]), 1.0 / F.shape[1])
 
 
 def thinned(complement: ResidualSpace) -> IntArray:
     """Touches in use that are looked at, by number: all, or an even choice of a long run."""
     n = len(complement.u)
     return np.unique(np.linspace(0, n - 1, min(n, FULL_BELOW)).astype(np.int64))
-
-
-def whitened(complement: ResidualSpace, features: Array, rows: IntArray) -> Array:
-    """Features over the noise, (R, K), for some of the touches in use.
-
-    Args:
-        complement: Says which touches are in use, and their noise.
-        features: Of all touches of the run, (all, K), mm per mm.
-        rows: Which of the touches in use, (R,).
-    """
-    if complement.whitener is not None:
-        return complement.whitener(features)[rows]
-    return np.asarray(features[np.flatnonzero(complement.used)[rows]] / complement.u[rows, None])

@@ -6,7 +6,6 @@ agree without any shape; gross errors that lie together. The probability of each
 the number of all, so that white noise is said to have structure once in a thousand runs.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -14,11 +13,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import ndtr
 
-from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet, reduced
+from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from diagnosis.regression import PRIOR_DOF
 from diagnosis.residual.crowds import crowds
-from diagnosis.residual.patterns import Pattern, patterns, thinned, whitened
-from diagnosis.residual.quadratic import ratio_probability
+from diagnosis.residual.pattern_tests import PatternTests, TestedPattern
 from diagnosis.residual.waves import Wave, best_wave
 from twin.frames import Array
 from twin.record import IntArray, Touches
@@ -33,9 +31,6 @@ goes, and a residual of real parts is never quite it."""
 MATERIAL = 0.01
 """Share of the squared residual that a pattern must hold to count: in ten thousand rows less is
 beyond chance too, but whoever knew it would predict no more than half a per cent better."""
-
-SIZES = np.geomspace(0.3, 3e4, 11) ** 2
-"""Variances of a pattern over the noise variance of one touch that are tried for its evidence."""
 
 FAR = 1e4
 """Distance (mm) by which different features are held apart in the search for neighbours."""
@@ -77,116 +72,57 @@ class Structure:
 
 
 def find_structure(
-    effects: EffectSet, progress: Progress = quiet, most: int = 12
+    effects: EffectSet,
+    progress: Progress = quiet,
+    smooth: PatternTests | None = None,
+    most: int = 12,
 ) -> list[Structure]:
     """Everything material that a residual varies with beyond chance, the most certain first.
 
-    The statistic of a smooth pattern is the squared correlation of its features with the residual,
-    weighted by the spectrum (the score of a random function of that roughness); its distribution in
-    white noise after the projection is exact. A wave in time is an F test, scanned over periods;
-    two tests of neighbours (in time, on the standard) ask no shape at all; gross errors that lie
-    together are no accidents.
+    A smooth pattern has the score test of `PatternTests`; a wave in time is an F test, scanned over
+    periods; two tests of neighbours (in time, on the standard) ask no shape at all; gross errors
+    that lie together are no accidents.
 
     Args:
         effects: Model and effects in it.
         progress: Told after every pattern.
+        smooth: Patterns freed of the same model, where other effects are looked at as well.
         most: Columns are returned for so many of the most certain.
     """
     complement = effects.complement
-    touches = complement.touches
     if effects.objective <= 0.0:  # a run without any deviation at all
         return []
-    rows = thinned(complement)
-    known = list(patterns(touches))
-    tested = [_tested(effects, pattern, rows) for pattern in known]
+    smooth = smooth or PatternTests(complement)
+    tested = smooth.of(effects)
     progress(0.6, "structure left")
-    wave = best_wave(effects, touches, rows)
+    wave = best_wave(effects, complement.touches, smooth.rows)
     neighbours = [*_neighbours(effects), *_crowds(complement)]
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
-    found = [_as_structure(p, t, count) for p, t in zip(known, tested, strict=True)]
-    found += [
-        _wave_structure(effects, wave, count, rows),
+    chance = CHANCE if complement.whitener is None else ROUGHLY
+    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < chance}
+    found = [
+        *beyond,
+        _wave_structure(effects, wave, count, smooth.rows),
         *(_corrected(n, count) for n in neighbours),
     ]
-    chance = CHANCE if complement.whitener is None else ROUGHLY
     counts = (f for f in found if f.p_value < chance and f.share > MATERIAL)
     found = sorted(counts, key=lambda f: f.p_value)
     progress(1.0, "structure left")
-    return [_with_columns(effects, known, f, rows) for f in found[:most]] + found[most:]
+    first = [replace(f, columns=beyond[f].columns()) if f in beyond else f for f in found[:most]]
+    return [*first, *found[most:]]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Tested:
-    """Probabilities (L,) and log evidences (L,) of a pattern's roughnesses, with the best size, and
-    the share of the squared residual that each holds so (L,).
-    """  # noqa: D205
-
-    p: Array
-    evidence: Array
-    size: Array
-    share: Array
-
-
-def _tested(effects: EffectSet, pattern: Pattern, rows: IntArray) -> _Tested:
-    """Score tests of one pattern at every roughness."""
-    inner = reduced(effects, whitened(effects.complement, pattern.features, rows), rows)
-    root = np.sqrt(pattern.spectra)[:, :, None]  # (L, K, 1)
-    S = root * inner.gram * np.swapaxes(root, 1, 2)
-    values, vectors = np.linalg.eigh(S)
-    values = np.maximum(values, 0.0)
-    along = np.einsum("lkj,lk->lj", vectors, root[:, :, 0] * inner.along) ** 2
-    objective = effects.objective
-    p = ratio_probability(along.sum(axis=1) / objective, values, effects.dof)
-    sizes = SIZES / max(float(np.mean(np.trace(S, axis1=1, axis2=2))), 1e-300)
-    gained = _evidence(effects, values, along, sizes)
-    best = np.argmax(gained, axis=0)
-    scaled = sizes[best][:, None]
-    by_chance = values * objective / max(effects.dof, 1.0)
-    fall = (scaled * (along - by_chance) / (1.0 + scaled * values)).sum(axis=1)
-    whole = fall * (len(effects.complement.u) / len(rows)) / objective
-    return _Tested(p, gained[best, np.arange(len(p))], sizes[best], whole)
-
-
-def _evidence(effects: EffectSet, values: Array, along: Array, sizes: Array) -> Array:
-    """Log evidence of every size (T,) and roughness (L,) against no pattern, (T, L)."""
-    scaled = sizes[:, None, None]
-    fall = (scaled * along / (1.0 + scaled * values)).sum(axis=2)
-    charge = np.log1p(scaled * values).sum(axis=2)
-    n = effects.complement.count + PRIOR_DOF
-    stated = effects.complement.stated
-    left = np.maximum(effects.objective - fall, 1e-9) + stated
-    return np.asarray(-0.5 * n * np.log(left / (effects.objective + stated)) - 0.5 * charge)
-
-
-def _as_structure(pattern: Pattern, tested: _Tested, count: int) -> Structure:
+def _as_structure(tested: TestedPattern, count: int) -> Structure:
     """Best roughness of a pattern, its probability corrected for all tests."""
-    best = int(np.argmin(tested.p))
-    p = min(1.0, float(tested.p[best]) * count)
     return Structure(
         shape=Shape.SMOOTH,
-        variables=pattern.variables,
-        direction=pattern.direction,
-        p_value=p,
-        share=float(tested.share.max()),
-        evidence=float(tested.evidence.max()),
+        variables=tested.pattern.variables,
+        direction=tested.pattern.direction,
+        p_value=min(1.0, float(tested.p.min()) * count),
+        share=tested.share,
+        evidence=tested.evidence,
         columns=None,
     )
-
-
-def _with_columns(
-    effects: EffectSet, known: Iterable[Pattern], found: Structure, rows: IntArray
-) -> Structure:
-    """A structure with its projected, scaled columns, ready to stand in a model as a nuisance."""
-    for pattern in known if found.shape is Shape.SMOOTH else ():
-        if (pattern.variables, pattern.direction) == (found.variables, found.direction):
-            tested = _tested(effects, pattern, rows)
-            best = int(np.argmax(tested.evidence))
-            scale = np.sqrt(pattern.spectra[best] * tested.size[best])
-            every = np.arange(len(effects.complement.u))
-            F = whitened(effects.complement, pattern.features, every) * scale
-            C = effects.complement.project(F)
-            return replace(found, columns=C)
-    return found
 
 
 def _corrected(found: Structure, count: int) -> Structure:

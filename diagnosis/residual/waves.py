@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.evidence import EffectSet, f_probability, reduced
+from diagnosis.evidence import EffectSet, f_probability
 from diagnosis.residual.patterns import directions
 from twin.frames import Array
 from twin.record import IntArray, Touches
@@ -156,12 +156,17 @@ def _wave(time: Array, frequency: Array, weight: Array) -> Array:
 
 
 def _drops(effects: EffectSet, F: Array, rows: IntArray) -> Array:
-    """Fall of the objective by each pair of columns (i, K + i), (K,)."""
-    inner = reduced(effects, F, rows)
-    S, g = inner.gram, inner.along
-    count = F.shape[1] // 2
-    i = np.arange(count)
-    a, b, c = S[i, i], S[i, count + i], S[count + i, count + i]
+    """Fall of the objective by each pair of columns (i, K + i), model and effects removed, (K,)."""
+    complement = effects.complement
+    B = complement.Q[rows].T @ F
+    E = effects.lower_solve(effects.A[rows].T @ F)
+    x, y = np.split(F.T @ complement.residual[rows] - E.T @ effects.along, 2)
+    halves = [np.split(M, 2, axis=1) for M in (F, B, E)]
+
+    def inner(first: int, second: int) -> Array:
+        whole, model, added = (np.einsum("nk,nk->k", h[first], h[second]) for h in halves)
+        return np.asarray(whole - model - added)
+
+    a, b, c = inner(0, 0), inner(0, 1), inner(1, 1)
     det = np.maximum(a * c - b * b, 1e-9 * a * c + 1e-300)
-    x, y = g[i], g[count + i]
     return np.asarray((c * x * x - 2.0 * b * x * y + a * y * y) / det)

@@ -23,6 +23,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "pole, which a calibrated sphere shows (gauge)",
     )
     parser.add_argument(
+        "--probe-limit-um",
+        type=float,
+        default=10.0,
+        help="what the ball of OUT/setup/..._CAL may have moved, or the effective radius of the "
+        "probe have changed, between two of its logs, µm; beyond it nothing is evaluated (10)",
+    )
+    parser.add_argument(
         "--sensors",
         metavar="SENSORS.csv",
         help="temperatures by the clock of the control: columns clock (2031-05-06T07:08:09) and "
@@ -39,20 +46,32 @@ def run(args: argparse.Namespace) -> int:
 
     from artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
-    from probe_paths.campaign import evaluate
+    from probe_paths.campaign import ball_changes, check_changes, evaluate, read_heights
     from probe_paths.control import read_log
     from probe_paths.language import Dialect
+    from report.words import ball_lines
     from twin.errors import DesignError
     from twin.files import read_machine, read_sensors, refuse_to_overwrite, write_run
     from twin.units import UM
 
     if not 1e-3 <= args.u_um <= 1000.0:
         raise DesignError(f"--u-um {args.u_um:g}: expected an uncertainty from 0.001 to 1000 µm")
+    if not 0.0 < args.probe_limit_um < np.inf:
+        raise DesignError(f"--probe-limit-um {args.probe_limit_um:g}: expected more than 0 µm")
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.machine)
     standard = read_standard(args.standard)
     parts = [part for path in args.logs for part in read_log(path, chain.rotary_axes)]
-    measured = evaluate(parts, standard, chain, args.u_um * UM, Dialect(result_height=args.z))
+    dialect, u, limit = Dialect(result_height=args.z), args.u_um * UM, args.probe_limit_um * UM
+    changes = ball_changes(parts, standard, chain, u, dialect)
+    heights = [read_heights(part, standard, chain) for part in parts if part.is_first]
+    told = ball_lines(changes, limit, heights)
+    if not any(part.is_measuring for part in parts) and told:
+        say("no run file: the logs hold no measurements")
+        say_each(told)
+        return 0
+    check_changes(changes, limit)
+    measured = evaluate(parts, standard, chain, u, dialect)
     if args.sensors:
         measured = read_sensors(args.sensors).joined(measured, min(part.begin for part in parts))
     write_run(args.output, measured, seen_from(Path(args.output).parent, args.machine))
@@ -62,6 +81,9 @@ def run(args: argparse.Namespace) -> int:
         f"poses, deviations {rms:.3f} µm rms after the set-up was fitted"
     )
     say_assumed(chain)
+    say_each(told)
+    if not changes and any(part.is_ball for part in parts):
+        say_each(["the ball was measured once: whether the probe has changed is not known"])
     say_each(measured.remarks)
     say_each(
         f"{part.path}: {part.program} stopped after {len(part.number)} touches"

@@ -51,9 +51,10 @@ def run(args: argparse.Namespace) -> int:
     from artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
-    from probe_paths.campaign import simulate
+    from probe_paths.campaign import SMALLEST_U, ball_changes, simulate
     from probe_paths.control import read_program, stated_probe
     from probe_paths.language import read_dialect
+    from report.words import ball_lines
     from twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
     from twin.units import UM
 
@@ -66,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
     machine = virtual_machine(args, args.machine, for_errors, dialect, record)
     probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
     first = read_program(args.programs[0], machine.chain, probe, dialect)
-    if first.is_search:
+    if first.is_search or first.is_first:
         return _search(args, first, standard, machine, for_noise)
     with stages() as show:
         campaign = simulate(args.programs, standard, machine, for_noise, probe, show)
@@ -82,6 +83,9 @@ def run(args: argparse.Namespace) -> int:
     )
     say_each(f"planted: {text}" for text in args.add)
     say_assumed(run.touches.chain)
+    u = max(machine.noise, SMALLEST_U)
+    changes = ball_changes(campaign.parts, standard, machine.chain, u, dialect)
+    say_each(ball_lines(changes))
     say_each(run.remarks)
     return 0
 
@@ -93,7 +97,7 @@ def _search(
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> int:
-    """Write the log of a search, which measures nothing and leaves no run file."""
+    """Write the log of a program that measures nothing and leaves no run file."""
     from matstd.console import say
     from probe_paths.campaign import simulate_search
     from twin.errors import DesignError
@@ -101,12 +105,13 @@ def _search(
 
     if not args.logs or len(args.programs) > 1:
         raise DesignError(
-            f"{program.path}: a search for the standard leaves a log and no run file: run it "
-            "alone, with --logs FOLDER"
+            f"{program.path}: a search for the standard and a commissioning program leave a log "
+            "and no run file: run it alone, with --logs FOLDER"
         )
+    reader = "replan" if program.is_search else "evaluate"
     for name, text in simulate_search(program, standard, machine, rng).log.items():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
-        say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd replan reads it")
+        say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd {reader} reads it")
     return 0
 
 

@@ -12,7 +12,7 @@ from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.virtual_run import VirtualRun, run_programs
-from probe_paths.control import ReadProgram, read_log, read_program
+from probe_paths.control import LogPart, ReadProgram, read_log, read_program
 from probe_paths.plan import Probe
 from twin.compute import Progress, silent
 from twin.record import Run
@@ -27,17 +27,23 @@ class Campaign:
 
     Attributes:
         runs: What each program did.
+        parts: Of their logs, as read back.
         begin: What the clock said at the run's time zero.
     """
 
     run: Run
     runs: tuple[VirtualRun, ...]
+    parts: tuple[LogPart, ...]
     begin: datetime
 
     @property
     def logs(self) -> Mapping[str, str]:
-        """Text of every log file by name."""
-        return {name: text for one in self.runs for name, text in one.log.items()}
+        """Text of every log file by name; a program that is run again appends to its log."""
+        texts: dict[str, str] = {}
+        for one in self.runs:
+            for name, text in one.log.items():
+                texts[name] = texts.get(name, "") + text
+        return texts
 
 
 def simulate_search(
@@ -46,7 +52,7 @@ def simulate_search(
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> VirtualRun:
-    """What a search for the standard does on the twin, with the log that it leaves.
+    """What a search or a commissioning program does on the twin, with the log that it leaves.
 
     Raises:
         BadFile: A touch that meets nothing, or a tool that comes too near to something, where the
@@ -135,4 +141,5 @@ def _campaign(
     ]
     u = max(machine.noise, SMALLEST_U)
     run = evaluate(parts, believed, machine.chain, u, machine.dialect)
-    return Campaign(run, tuple(runs), min(part.begin for part in parts))
+    begin = min(part.begin for part in parts if part.is_measuring)
+    return Campaign(run, tuple(runs), tuple(parts), begin)

@@ -8,7 +8,9 @@ from probe_paths.emit.program import (
     SEARCH,
     Program,
     ProgramSet,
+    make_ball,
     make_dry_run,
+    make_first,
     make_programs,
     make_search,
 )
@@ -19,7 +21,9 @@ __all__ = [
     "Feeds",
     "Program",
     "ProgramSet",
+    "make_ball",
     "make_dry_run",
+    "make_first",
     "make_programs",
     "make_search",
 ]

@@ -58,6 +58,24 @@ class Feeds:
     minutes_per_file: float = np.inf
 
 
+@dataclass(frozen=True)
+class Special:
+    """What a program beside those that measure is for.
+
+    Attributes:
+        ending: Last letters of its name.
+        remarks: That its head has of it.
+        raised: By how much a dry run is raised, which goes where the programs go and touches
+            nothing, mm; None for a program that touches.
+        is_first: It is written by `first`: one touch in the air and one on a ball.
+    """
+
+    ending: str
+    remarks: tuple[str, ...] = ()
+    raised: float | None = None
+    is_first: bool = False
+
+
 class Writer:
     """Writes the text of one plan's programs.
 
@@ -66,10 +84,7 @@ class Writer:
         dialect: Of the control.
         feeds: Feeds.
         masks: By file name.
-        raised: By how much a dry run is raised, which goes where the program goes and touches
-            nothing, mm; None for the program itself.
-        within: How far beside its place the standard may stand in a search from above, mm and rad;
-            None for any other program.
+        special: What they are for; None where they measure.
     """
 
     def __init__(
@@ -78,11 +93,11 @@ class Writer:
         dialect: Dialect,
         feeds: Feeds,
         masks: Mapping[str, str],
-        raised: float | None = None,
-        within: tuple[float, float] | None = None,
+        special: Special | None = None,
     ) -> None:
         self.plan, self.dialect, self.feeds, self.masks = plan, dialect, feeds, masks
-        self.raised, self.within = raised, within
+        self.special = special
+        self.raised = special.raised if special else None
         self.language = LANGUAGES[dialect.language]
         self.frame = ProgramFrame(plan.chain, plan.probe)
         self.rotary = plan.chain.rotary_axes
@@ -136,23 +151,12 @@ class Writer:
                 if self.raised is None
                 else f"DRY RUN, RAISED BY {self.raised:+.1f} MM, NO TOUCH"
             ),
-            *self._spread(),
+            *(k.comment(text) for text in (self.special.remarks if self.special else ())),
             k.comment(
                 f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT"
             ),
             k.comment(f"TOOL {self.dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN"),
             k.comment("TABLE MUST BE FREE TO TURN WITH Z RETRACTED"),
-        ]
-
-    def _spread(self) -> list[str]:
-        """What a search says of itself."""
-        if self.within is None:
-            return []
-        mm, angle = self.within
-        return [
-            self.language.comment(
-                f"SEARCH FROM ABOVE, STANDS WITHIN {mm:.1f} MM AND {angle / DEG:.2f} DEG"
-            )
         ]
 
     def _stock(self) -> list[str]:

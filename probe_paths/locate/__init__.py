@@ -3,7 +3,7 @@
 In: a standard that stands roughly where it is believed to. Out: a plan of long touches from above
 (`plan_search`), from the log of its program the place with its uncertainty (`find_standard`), and
 the touches of earlier programs, planned again there (`planned_again`). `companions` are the
-programs that are run before those of a plan.
+programs that are run beside those of a plan.
 """
 
 from probe_paths.locate.again import planned_again

@@ -1,10 +1,11 @@
-"""The programs that are run before those of a plan: a dry run, and a search for the standard."""
+"""Programs beside those of a plan: a dry run, a search for the standard, one ball, one touch."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from probe_paths.emit import Feeds, ProgramSet, make_dry_run, make_search
+from probe_paths.emit import Feeds, ProgramSet, make_ball, make_dry_run, make_first, make_search
 from probe_paths.language import Dialect
+from probe_paths.locate.ball_plan import plan_ball
 from probe_paths.locate.search_plan import Spread, plan_search
 from probe_paths.plan import TouchPlan
 from twin.errors import NotReachable
@@ -25,22 +26,28 @@ class Companions:
     Attributes:
         dry_run: Where the programs go, higher, without a touch.
         raised: By how much, mm.
+        spread: Within which a search finds the standard.
         search: For the standard; None where there can be none.
-        spread: Within which it is found.
         no_search: Why there is no search.
+        ball: Touches on one ball, before the programs and after them; None where there can be none.
+        no_ball: Why there is none.
+        first: One touch that a control is tried with; None where there is none.
     """
 
     dry_run: ProgramSet
     raised: float
-    search: ProgramSet | None
     spread: Spread
+    search: ProgramSet | None = None
     no_search: str = ""
+    ball: ProgramSet | None = None
+    no_ball: str = ""
+    first: ProgramSet | None = None
 
     def write(self, folder: Path) -> None:
         """Write programs and masks into a folder."""
-        self.dry_run.write(folder)
-        if self.search is not None:
-            self.search.write(folder)
+        for programs in (self.dry_run, self.search, self.ball, self.first):
+            if programs is not None:
+                programs.write(folder)
 
 
 def companions(
@@ -50,7 +57,7 @@ def companions(
     raised: float = RAISED,
     spread: Spread | None = None,
 ) -> Companions:
-    """Dry run and search of a plan.
+    """Dry run, search, ball and commissioning program of a plan.
 
     Args:
         plan: Of the programs.
@@ -60,7 +67,16 @@ def companions(
         spread: Within which the search finds the standard; None for the widest of `SPREADS` for
             which there is a search.
     """
-    dry_run = make_dry_run(plan, raised, dialect, feeds)
+    made = Companions(
+        dry_run=make_dry_run(plan, raised, dialect, feeds), raised=raised, spread=SPREADS[-1]
+    )
+    try:
+        ball = plan_ball(plan)
+        made = replace(made, ball=make_ball(ball, dialect, feeds))
+        if dialect.language == "klartext":
+            made = replace(made, first=make_first(ball, dialect, feeds))
+    except NotReachable as error:
+        made = replace(made, no_ball=str(error))
     for chosen in SPREADS if spread is None else (spread,):
         try:
             search = plan_search(
@@ -73,8 +89,8 @@ def companions(
                 plan.options.retract,
             )
         except NotReachable as error:
-            why = str(error)
+            made = replace(made, spread=chosen, no_search=str(error))
             continue
-        made = make_search(search, (chosen.distance, chosen.angle), dialect, feeds)
-        return Companions(dry_run=dry_run, raised=raised, search=made, spread=chosen)
-    return Companions(dry_run=dry_run, raised=raised, search=None, spread=chosen, no_search=why)
+        programs = make_search(search, (chosen.distance, chosen.angle), dialect, feeds)
+        return replace(made, search=programs, spread=chosen, no_search="")
+    return made

@@ -19,7 +19,7 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.probe_words import located_lines
+from report.words.probe_words import ball_lines, located_lines
 from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (
     dominant_words,
@@ -30,6 +30,7 @@ from report.words.sensitivity_words import (
 )
 
 __all__ = [
+    "ball_lines",
     "best_rival",
     "comparison_remarks",
     "comparison_sentence",

@@ -1,11 +1,55 @@
-"""Words of where a standard stands."""
+"""Words of where a standard stands, and of what a ball tells of the probe."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from probe_paths.campaign import BallChange
 from probe_paths.locate import Found
 from twin.frames import fixed_xyz_angles, inverse
 from twin.record import Setup
-from twin.units import DEG
+from twin.units import DEG, UM
+
+
+def ball_lines(
+    changes: Sequence[BallChange],
+    limit: float | None = None,
+    heights: Sequence[Mapping[str, float]] = (),
+) -> list[str]:
+    """What the same ball tells of the time between two looks at it, in words.
+
+    Args:
+        changes: In the order of time.
+        limit: Beyond which measurements are refused, mm; None where they are not.
+        heights: What touches of commissioning programs tell of Z, by its meanings, mm.
+    """
+    lines = []
+    for beside in heights:
+        best = min(beside, key=lambda meaning: abs(beside[meaning]))
+        others = ", ".join(f"{abs(v):.3f} mm as {k}" for k, v in beside.items() if k != best)
+        lines.append(
+            f"commissioning touch: Z of the control is that of {best} (--z {best}): the ball is "
+            f"{abs(beside[best]):.3f} mm beside its place, {others}"
+        )
+    within = "" if limit is None else f" (limit {limit / UM:g} µm)"
+    for change in changes:
+        moved = ", ".join(
+            f"{letter} {value / UM:+.1f} ± {u / UM:.1f}"
+            for letter, value, u in zip("xyz", change.centre, change.u, strict=False)
+        )
+        verdict = "" if change.is_seen else ": no change beyond its uncertainty"
+        lines.append(
+            f"ball {change.ball}, {change.before:%H:%M} to {change.after:%H:%M} "
+            f"({change.hours:.2f} h, {change.touches} touches): moved by {moved} µm, effective "
+            f"radius of the probe {change.radius / UM:+.1f} ± {change.u[3] / UM:.1f} µm"
+            f"{within}{verdict}"
+        )
+        if change.is_odd:
+            lines.append(
+                f"its touches scatter by {change.scatter / UM:.1f} µm, far more than stated: dirt "
+                "on the ball, or a loose stylus"
+            )
+    return lines
 
 
 def located_lines(believed: Setup, stands: Setup, found: Found | None = None) -> list[str]:

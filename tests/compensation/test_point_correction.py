@@ -9,8 +9,8 @@ from bench import LENGTH, oracle_tip
 from compensation.field.inverse import correction
 from compensation.field.machine_errors import MachineErrors
 from compensation.field.over_workspace import workspace
-from compensation.service.error_tables import error_tables
 from compensation.service.point_correction import PointCorrection
+from compensation.service.tabulated import error_tables
 from twin.errors import DesignError, OutsideTravel
 from twin.files.machine_file import read_machine
 from twin.library.catalogue import parse_effect

@@ -248,11 +248,11 @@ def test_ways_of_a_choice_are_told_with_the_limit_that_was_met() -> None:
     nothing = ChoiceRule("nothing", (), np.array([3.0, 4.0]) * UM, np.array([10, 30]))
     way = ChoiceRule("single effects", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
     choice = Choice((nothing, way), way, 2, None, is_ended=True)
-    told, ended = choice_remarks(choice)
+    told, ended = choice_remarks(choice, [])
     plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
     assert [error / UM for _, error in told.tried] == pytest.approx([plain, 1.0])
     assert ended == SearchEnded(SETS)
-    assert len(choice_remarks(replace(choice, is_ended=False))) == 1
+    assert len(choice_remarks(replace(choice, is_ended=False), [])) == 1
     table = choice_table(choice)
     assert (table["chosen"], table["blocks"]) == ("single effects", 2)
     assert [w["held_out_um"] for w in table["ways"]] == pytest.approx([plain, 1.0], rel=1e-5)

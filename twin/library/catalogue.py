@@ -34,7 +34,7 @@ from twin.effects import (
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.library.trial import users_fault
 from twin.machine import Chain
-from twin.model import Effect, Kind, Title, Titled, Tunable, columns
+from twin.model import Effect, Kind, Title, Titled, columns, is_tunable
 from twin.record import Touches
 from twin.thermal import (
     column_bending,
@@ -158,7 +158,7 @@ def _parse_again(whole: str, number: str, text: str, chain: Chain) -> Effect:
     effect = parse_effect(whole, chain)
     if not number.isdecimal() or int(number) < 2:
         raise UnknownEffect(f"effect '{text}': expected a number from 2 after {MARK}")
-    if not isinstance(effect, Tunable) or not effect.tuning:
+    if not is_tunable(effect) or not effect.tuning:
         raise UnknownEffect(
             f"effect '{text}': {effect.kind} has no inner parameter, so a second one is the first"
         )
@@ -211,7 +211,7 @@ def proposals(touches: Touches, only: Sequence[str] | None = None) -> list[Effec
 
 def is_visible(effect: Effect, touches: Touches) -> bool:
     """Whether an effect of its expected size changes any deviation beyond rounding."""
-    if isinstance(effect, Tunable):
+    if is_tunable(effect):
         effect = effect.tuned(
             *(inner.grid[len(inner.grid) // 2] for inner in effect.inner(touches))
         )

@@ -17,6 +17,7 @@ from twin.model.effect import (
     Tunable,
     contribution,
     inner_values,
+    is_tunable,
 )
 from twin.model.kind import (
     Kind,
@@ -52,6 +53,7 @@ __all__ = [
     "component_symbol",
     "contribution",
     "inner_values",
+    "is_tunable",
     "moved_components",
     "moving_axes",
     "refusal",

@@ -5,6 +5,8 @@ only, so the equation is integrated exactly for a drive that is straight between
 constant, for the spindle speed), over whatever times the touches were made at.
 """
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 
 from twin.errors import UnknownEffect
@@ -25,6 +27,14 @@ OWN = "V_"
 
 PER_KELVIN = 0.2
 """Usual size of an error per kelvin, over that at 10 000 rpm or after a step of an own column."""
+
+
+MOST_KNOWN = 64
+"""Responses that are kept of one record: of one drive with every time constant of a grid."""
+
+_KNOWN: WeakKeyDictionary[Touches, dict[tuple[str, float, float], Array]] = WeakKeyDictionary()
+"""What follows a drive, by drive, time constant and step: every component error of every axis asks
+for the same, and without this a search spent a tenth of its time here."""
 
 
 def drives(touches: Touches) -> list[str]:
@@ -81,13 +91,25 @@ def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 
     """
     if is_speed(drive) and touches.spindle_rpm is None:
         raise UnknownEffect(f"'{effect}': the spindle speed of these touches is unknown")
+    known = _KNOWN.setdefault(touches, {})
+    key = (drive, tau, step)
+    if key not in known:
+        if len(known) >= MOST_KNOWN:
+            known.clear()
+        known[key] = _driven(touches, drive, tau, step)
+        known[key].flags.writeable = False
+    return known[key]
+
+
+def _driven(touches: Touches, drive: str, tau: float, step: float) -> Array:
+    """The same, worked out."""
     if is_speed(drive):
         record = np.asarray(touches.spindle_rpm) / SPEED_UNIT
     elif is_own(drive):
         record = own_column(touches, drive.removeprefix(OWN)) / step
     else:
         record = sensor_record(touches, drive) - T_REF
-    return lagged(touches, record, tau, is_speed(drive)) if tau > 0.0 else record
+    return lagged(touches, record, tau, is_speed(drive)) if tau > 0.0 else record.copy()
 
 
 def own_column(touches: Touches, name: str) -> Array:

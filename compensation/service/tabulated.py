@@ -135,7 +135,10 @@ def error_tables(errors: MachineErrors, length: float, close: float = CLOSE) -> 
     for (axes, turns, is_driven), terms in groups.items():
         for signs in product((-1, 0, 1), repeat=len(turns)):
             way = dict(zip(turns, signs, strict=True))
-            table = ErrorTable(errors, terms, length, axes, way, is_driven).refined(close)
+            table = ErrorTable(
+                errors=errors, terms=terms, length=length, axes=axes, turns=way, is_driven=is_driven
+            )
+            table = table.refined(close)
             if table.rows.any() or is_driven:
                 out.append(table)
     return out

@@ -1,0 +1,208 @@
+"""Whether the probe is still what it was: the same touches on one ball, before and after.
+
+The same touch is compared with itself, so that what the machine does wrong there drops out:
+
+    gap_after - gap_before = n . c + r
+
+with c how far the ball has moved and r by how much the effective radius of the probe has grown,
+four numbers of eight touches, by least squares. Not separated: the ball, the table and the spindle
+may all have moved by c.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import pairwise
+from typing import get_args, get_type_hints
+
+import numpy as np
+
+from artefact.body import Standard
+from probe_paths.campaign.evaluation import ball_centres
+from probe_paths.control import LogPart
+from probe_paths.language import Dialect
+from twin.errors import BadFile, DesignError
+from twin.frames import Array, apply, inverse
+from twin.machine import Chain
+from twin.units import HOUR, UM
+
+EXPANDED = 2.0
+"""Of a change in standard uncertainties, below which it is none."""
+
+_UNKNOWNS = 4
+_ODD = 3.0  # times the stated noise in what the four numbers leave over
+
+
+@dataclass(frozen=True, eq=False)
+class BallChange:
+    """What a ball tells of the time between two looks at it.
+
+    Attributes:
+        ball: Its name.
+        before: When it was measured first.
+        after: And again.
+        touches: How many are compared.
+        centre: By how much its centre has moved, table frame, (3,), mm.
+        radius: By how much the effective radius of the probe has grown, mm.
+        u: Standard uncertainties of the four, (4,), mm.
+        scatter: What four numbers do not explain, rms of one touch, mm; of a ball moved and a
+            radius changed alone it is the noise of a touch.
+        is_odd: It is far beyond the uncertainty that was stated for a touch.
+    """
+
+    ball: str
+    before: datetime
+    after: datetime
+    touches: int
+    centre: Array
+    radius: float
+    u: Array
+    scatter: float
+    is_odd: bool
+
+    @property
+    def size(self) -> float:
+        """The larger of both changes, mm."""
+        return max(float(np.linalg.norm(self.centre)), abs(self.radius))
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether anything has changed by more than its expanded uncertainty."""
+        return bool(np.any(np.abs([*self.centre, self.radius]) > EXPANDED * self.u))
+
+    @property
+    def hours(self) -> float:
+        """Between the two."""
+        return (self.after - self.before).total_seconds() / HOUR
+
+
+def ball_changes(
+    parts: Sequence[LogPart],
+    standard: Standard,
+    chain: Chain,
+    u: float,
+    dialect: Dialect | None = None,
+) -> list[BallChange]:
+    """Changes from each measurement of a ball to the next one of the same program.
+
+    Args:
+        parts: Of all logs; those of other programs are left alone.
+        standard: As calibrated.
+        u: Standard uncertainty of one touch, mm; a larger scatter counts instead.
+        dialect: Of the control.
+
+    Raises:
+        BadFile: A ball that the standard does not have.
+    """
+    looks = sorted((p for p in parts if p.is_ball), key=lambda p: (p.program, p.begin))
+    return [
+        _change(one, other, standard, chain, u, dialect)
+        for one, other in pairwise(looks)
+        if one.program == other.program and one.begin < other.begin
+    ]
+
+
+def _change(
+    one: LogPart,
+    other: LogPart,
+    standard: Standard,
+    chain: Chain,
+    u: float,
+    dialect: Dialect | None,
+) -> BallChange:
+    _, rows, again = np.intersect1d(one.number, other.number, return_indices=True)
+    found = set(one.feature[rows].tolist()) | set(other.feature[again].tolist())
+    names = list(standard.features)
+    balls = {sphere.name: sphere for sphere in standard.spheres}
+    name = names[min(found) - 1] if len(found) == 1 and 0 < min(found) <= len(names) else ""
+    if len(rows) < _UNKNOWNS + 1 or name not in balls:
+        raise BadFile(
+            other.path,
+            f"program {other.program} at {other.begin}",
+            f"{len(rows)} touches in common with {one.begin} on features {sorted(found)}",
+            f"{_UNKNOWNS + 1} at least, on one ball of {standard.name}",
+        )
+    before, after = ball_centres(one, chain, dialect)[rows], ball_centres(other, chain, dialect)
+    around = one.heading.setup.T_table_artefact
+    middle = _middle(before, apply(around, balls[name].centre[None])[0])
+    way = before - middle
+    normal = way / np.linalg.norm(way, axis=1, keepdims=True)
+    grown = np.linalg.norm(after[again] - middle, axis=1) - np.linalg.norm(way, axis=1)
+    A = np.column_stack([normal, np.ones(len(rows))])
+    solved, _, rank, _ = np.linalg.lstsq(A, grown, rcond=1e-3)
+    if rank < _UNKNOWNS:
+        raise BadFile(
+            other.path,
+            f"program {other.program} at {other.begin}",
+            f"{len(rows)} touches on one side of {name}",
+            "touches all round it",
+        )
+    left = grown - A @ solved
+    scatter = float(np.sqrt(left @ left / (len(rows) - _UNKNOWNS) / 2.0))
+    inverse = np.linalg.inv(A.T @ A)
+    return BallChange(
+        ball=name,
+        before=one.begin,
+        after=other.begin,
+        touches=len(rows),
+        centre=solved[:3],
+        radius=float(solved[3]),
+        u=np.sqrt(2.0 * np.diag(inverse)) * max(u, scatter),
+        scatter=scatter,
+        is_odd=scatter > _ODD * u,
+    )
+
+
+def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, float]:
+    """How far the ball of a commissioning touch is beside the surface it met, mm.
+
+    One touch from above settles what Z a control returns: by the wrong meaning the ball is the
+    whole length of the probe beside.
+
+    Args:
+        part: Of its log.
+        standard: As calibrated.
+
+    Returns:
+        By each meaning that Z can have, as `Dialect.result_height` names them.
+    """
+    ball = list(standard.features.values())[int(part.feature[0]) - 1]
+    beside = {}
+    for meaning in get_args(get_type_hints(Dialect)["result_height"]):
+        believed = inverse(part.heading.setup.T_table_artefact)
+        centre = apply(believed, ball_centres(part, chain, Dialect(result_height=meaning)))
+        foot = ball.project(centre)
+        gap = np.einsum("ni,ni->n", ball.normal(foot), centre - ball.point(foot)) - part.radius
+        beside[meaning] = float(gap[0])
+    return beside
+
+
+def _middle(balls: Array, middle: Array) -> Array:
+    """Centre of the sphere on which ball centres lie, (3,), from one that is near."""
+    radius = 0.0
+    for _ in range(5):
+        way = balls - middle
+        far = np.linalg.norm(way, axis=1)
+        A = np.column_stack([way / far[:, None], np.ones(len(balls))])
+        step = np.linalg.lstsq(A, far - radius, rcond=1e-3)[0]
+        middle, radius = middle + step[:3], radius + float(step[3])
+    return middle
+
+
+def check_changes(changes: Sequence[BallChange], limit: float) -> None:
+    """Refuse measurements between which the probe has changed.
+
+    Args:
+        changes: Of one ball.
+        limit: That the ball may have moved, or the radius have changed, mm.
+
+    Raises:
+        DesignError: A change beyond the limit that is no noise.
+    """
+    for change in changes:
+        if change.is_seen and change.size > limit:
+            raise DesignError(
+                f"ball {change.ball} between {change.before} and {change.after}: it has moved or "
+                f"the probe has changed by {change.size / UM:.1f} µm, expected {limit / UM:g} µm "
+                "at most: measure anew, or state a larger limit"
+            )

@@ -1,0 +1,72 @@
+"""Touches on one ball of the standard, by which the probe is compared with itself."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from artefact.body import DatumSphere
+from artefact.reach import Requests
+from probe_paths.plan import TouchPlan, home_readings, plan_touches, readings_at
+from twin.errors import NotReachable
+from twin.frames import Array
+from twin.machine import table_to_tool
+from twin.units import DEG
+
+_TILTS = (75.0 * DEG, 60.0 * DEG, 45.0 * DEG)
+"""Of the ring from the tool axis, rad, the steepest first: 75 degrees tell radius from height five
+times as well as 45, and leave a stem the room of its own thickness."""
+
+_RING = 6
+
+
+def plan_ball(plan: TouchPlan) -> TouchPlan:
+    """Plan of a pole and a ring of six touches on a ball, all at one table pose.
+
+    The ball is the first of the standard, and the pose the first, that let the probe have all of
+    them: rotary axes at home, then the poses of the plan.
+
+    Args:
+        plan: Of the programs that the ball is measured before and after.
+
+    Raises:
+        NotReachable: No ball can be touched all round at any pose.
+    """
+    home = home_readings(plan.chain)
+    poses = np.unique([visit.rotary for visit in plan.visits], axis=0)
+    steps = np.abs(poses - home).max(axis=1, initial=0.0)
+    poses = np.concatenate([home[None], poses[np.argsort(steps, kind="stable")]])
+    why = "it has no ball"
+    for tilt in _TILTS:
+        for rotary in poses:
+            for ball in plan.standard.spheres:
+                # the first touch of every visit is that of an anchor: on the same ball
+                options = replace(
+                    plan.options, anchor=ball.name, tolerated=0, shortest_visit=2 * _RING
+                )
+                wanted = _ring(plan, ball, rotary, tilt)
+                try:
+                    made = plan_touches(
+                        plan.standard, plan.chain, plan.probe, plan.setup, wanted, options
+                    )
+                except NotReachable as error:
+                    why = str(error)
+                    continue
+                if set(made.feature.tolist()) == {ball.name}:
+                    return made
+    raise NotReachable(f"no ball of {plan.standard.name} can be touched all round; the last: {why}")
+
+
+def _ring(plan: TouchPlan, ball: DatumSphere, rotary: Array, tilt: float) -> Requests:
+    """The pole under the tool and a ring round it."""
+    angle = np.arange(_RING) * 2.0 * np.pi / _RING
+    sin, cos = np.sin(tilt), np.cos(tilt)
+    ring = np.stack([sin * np.cos(angle), sin * np.sin(angle), np.full(_RING, cos)], axis=-1)
+    R_table_tool = table_to_tool(plan.chain, readings_at(plan.chain, rotary[None]))[0, :3, :3]
+    normal = np.concatenate([[[0.0, 0.0, 1.0]], ring]) @ R_table_tool.T
+    normal = normal @ plan.setup.T_table_artefact[:3, :3]
+    return Requests(
+        np.full(len(normal), ball.name),
+        ball.centre + ball.radius * normal,
+        normal,
+        np.repeat(rotary[None], len(normal), axis=0),
+    )
