@@ -46,17 +46,17 @@ def evaluate(
     deviation. Then ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 
     Args:
-        parts: Of one or several logs; touches on a ball that only compare the probe with itself
-            (`ball_changes`) are left aside.
+        parts: Of one or several logs; those that measure nothing (`LogPart.is_measuring`) are left
+            aside.
         standard: As calibrated.
-        u: Standard uncertainty of one touch, mm.
+        u: Standard uncertainty of one touch, mm; that of the calibrated surface comes to it.
 
     Raises:
         BadFile: Many touches far from the features they are said to be on; logs of two probes, of
             another standard or serial number, or two versions of one log.
         NotEnoughData: No touch at all.
     """
-    measured = [part for part in parts if not part.is_ball]
+    measured = [part for part in parts if part.is_measuring]
     parts, remarks = checked_parts(distinct_parts(measured), standard)
     if not sum(len(part.number) for part in parts):
         raise NotEnoughData("the logs hold no touch")
@@ -70,9 +70,17 @@ def evaluate(
         good, far = _near(parts, gap, ABSURD)
         if not far:
             break
-    run = Run(touches, computed_deviation(touches), np.full(len(gap), u), remarks=tuple(remarks))
+    u_touch = _uncertainty(standard, touches.feature, u)
+    run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
+
+
+def _uncertainty(standard: Standard, feature: Labels, u: float) -> Array:
+    """Of every touch, with what calibration leaves open of the surface at a point, (N,), mm."""
+    known = {} if standard.known is None else standard.known.features
+    form = np.array([known[name].u_form if name in known else 0.0 for name in feature.tolist()])
+    return np.asarray(np.hypot(u, form))
 
 
 def _placed(
