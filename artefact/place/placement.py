@@ -187,11 +187,10 @@ def design_standard(
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", 4, 6)
     bases = _bases(criterion.plain, rivals, places, all_poses, options)
-    found = _identifying(criterion, bodies, bases, options)
-    found = _rearranged(criterion, bodies, places, found, all_poses, choice)
+    first = _identifying(criterion, bodies, bases, options)
+    found = _rearranged(criterion, bodies, places, first, all_poses, choice)
     standard, tried, chosen = found.standard, found.tried, found.chosen
-    requests = tried[chosen]
-    here = criterion.on(replace(standard, patches=()))
+    requests, here = tried[chosen], criterion.on(replace(standard, patches=()))
     proof, powers = _proving(criterion.on(standard), found, choice.proof, library, rng)
     standard = _with_shares(criterion, standard, proof)
     progress("placement", 5, 6)
