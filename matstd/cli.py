@@ -18,6 +18,7 @@ COMMANDS = {
     "import": "tables of instruments, CMMs and spreadsheets made a run file",
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
+    "calibrate": "a standard as a coordinate measuring machine finds it; the program for the CMM",
     "uncertainty": "of a measuring task, from visits to the calibrated faces (ISO 15530-3)",
     "compensate": "the identified model goes back to the control: tables, or a part program",
     "contributions": "what every error adds along a program or at poses",

@@ -60,6 +60,8 @@ EXCUSED = {
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
     "artefact/reach/touchable.py": "reason that a refusal counts",
+    "artefact/certify/cmm_points_file.py": "remarks of a reader on single lines, like its refusals",
+    "artefact/certify/dmis.py": "comments in a program that is written",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
     "compensation/tables/iso_csv.py": "comment in the head of a file that is written",
     "diagnosis/fit/unit_mistakes.py": "refusal, and the same where it is only suspected",

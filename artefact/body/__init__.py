@@ -8,6 +8,7 @@ numbers. A new kind of face implements `Surface`; a new limit is one more yield 
 from artefact.body.datum import DatumSphere, MountingHole, outline_distance
 from artefact.body.first_contact import contact
 from artefact.body.freeform import OVERHANG, ErrorShare, FreeformPatch, graph_patch
+from artefact.body.known import Known, KnownFeature
 from artefact.body.limits import (
     Limits,
     check,
@@ -15,26 +16,26 @@ from artefact.body.limits import (
     max_slope,
     min_concave_radius,
 )
-from artefact.body.patch import Meeting, Surface, rows, unit
+from artefact.body.patch import Meeting, rows, unit
 from artefact.body.solids import Plate
-from artefact.body.standard import STEEL, Base, Core, Material, Standard
+from artefact.body.standard import Base, Core, Material, Standard
 from artefact.body.standard_file import read_standard, write_standard
 
 __all__ = [
     "OVERHANG",
-    "STEEL",
     "Base",
     "Core",
     "DatumSphere",
     "ErrorShare",
     "FreeformPatch",
+    "Known",
+    "KnownFeature",
     "Limits",
     "Material",
     "Meeting",
     "MountingHole",
     "Plate",
     "Standard",
-    "Surface",
     "check",
     "constraints",
     "contact",

@@ -1,5 +1,6 @@
 """The whole standard: one body with freeform patches, datum spheres, datum plane and holes."""
 
+import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from artefact.body.datum import DatumPlane, DatumSphere, MountingHole
 from artefact.body.freeform import FreeformPatch
+from artefact.body.known import Known
 from artefact.body.patch import Surface
 from artefact.body.solids import Ball, Body, Column, Cone, Plate, column
 from twin.errors import ShapeMismatch
@@ -25,12 +27,12 @@ class Material:
         expansion: Coefficient of linear thermal expansion, 1/K.
     """
 
-    name: str
-    density: float
-    expansion: float
+    name: str = "X40Cr14 (1.2083), hardened"
+    density: float = 7.8e-6
+    expansion: float = 10.5e-6
 
 
-STEEL = Material(name="X40Cr14 (1.2083), hardened", density=7.8e-6, expansion=10.5e-6)
+STEEL = Material()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +84,7 @@ class Standard:
         spheres: Datum spheres.
         holes: Mounting holes.
         blank_height: Of the blank above the seat, mm; its outline is that of the base.
+        known: Its calibration; None for a standard as designed.
     """
 
     name: str
@@ -93,6 +96,7 @@ class Standard:
     spheres: tuple[DatumSphere, ...]
     holes: tuple[MountingHole, ...]
     blank_height: float
+    known: Known | None = None
 
     def __post_init__(self) -> None:
         names = [DATUM_PLANE, "BASE", "CORE"]
@@ -102,6 +106,18 @@ class Standard:
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise ShapeMismatch(f"standard '{self.name}': two features are named {twice[0]}")
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Short digest of the surfaces as they are: what was calibrated must have that of these."""
+        digest = hashlib.sha256(f"{self.name} {self.serial}".encode())
+        for patch in self.patches:
+            numbers = patch.T_artefact_patch, patch.knots_u, patch.knots_v, patch.heights
+            for values in (*numbers, np.array(patch.half_size)):
+                digest.update(np.ascontiguousarray(values).tobytes())
+        for sphere in self.spheres:
+            digest.update(np.array([*sphere.centre, sphere.radius]).tobytes())
+        return digest.hexdigest()[:16]
 
     @property
     def plane(self) -> DatumPlane:

@@ -8,9 +8,11 @@ from pydantic import Field
 
 from artefact.body.datum import DatumSphere, MountingHole
 from artefact.body.freeform import ErrorShare, FreeformPatch
+from artefact.body.known import Known, KnownFeature
 from artefact.body.standard import Base, Core, Material, Standard
 from twin.errors import BadFile, ShapeMismatch
 from twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
+from twin.units import UM, URAD
 
 FORMAT = "standard/1"
 
@@ -77,6 +79,19 @@ class _Hole(Table):
     bore_depth_mm: Positive
 
 
+class _KnownFeature(Table):
+    points: Annotated[int, Field(ge=1)]
+    u_um: Annotated[float, Field(ge=0.0)]
+    u_urad: Annotated[float, Field(ge=0.0)] = 0.0
+    u_form_um: Annotated[float, Field(ge=0.0)] = 0.0
+
+
+class _Known(Table):
+    source: str
+    nominal: str
+    feature: dict[str, _KnownFeature]
+
+
 class _File(Table):
     format: str
     name: str
@@ -88,6 +103,7 @@ class _File(Table):
     patch: Annotated[list[_Patch], Field(min_length=1)]
     sphere: list[_Sphere] = Field(default_factory=list)
     hole: list[_Hole] = Field(default_factory=list)
+    calibration: _Known | None = None
 
 
 def read_standard(path: str | Path) -> Standard:
@@ -131,9 +147,28 @@ def _standard(path: Path, file: _File) -> Standard:
             spheres=tuple(_sphere(path, i, sphere) for i, sphere in enumerate(file.sphere)),
             holes=tuple(_hole(path, i, hole) for i, hole in enumerate(file.hole)),
             blank_height=file.blank_height_mm,
+            known=_known(path, file),
         )
     except ShapeMismatch as error:
         raise BadFile(path, "names", str(error), "every feature with a name of its own") from error
+
+
+def _known(path: Path, file: _File) -> Known | None:
+    """The calibration, of features that there are."""
+    if file.calibration is None:
+        return None
+    names = [patch.name for patch in file.patch] + [sphere.name for sphere in file.sphere]
+    for name in file.calibration.feature:
+        if name not in names:
+            raise BadFile(path, f"calibration.feature.{name}", name, f"one of {', '.join(names)}")
+    return Known(
+        source=file.calibration.source,
+        nominal=file.calibration.nominal,
+        features={
+            name: KnownFeature(f.points, f.u_um * UM, f.u_urad * URAD, f.u_form_um * UM)
+            for name, f in file.calibration.feature.items()
+        },
+    )
 
 
 def _base(path: Path, base: _Base) -> Base:
@@ -233,7 +268,25 @@ def _table(standard: Standard) -> dict[str, Any]:
     table["patch"] = [_patch_table(patch) for patch in standard.patches]
     table["sphere"] = [_sphere_table(sphere) for sphere in standard.spheres]
     table["hole"] = [_hole_table(hole) for hole in standard.holes]
+    if standard.known is not None:
+        table["calibration"] = _known_table(standard.known)
     return table
+
+
+def _known_table(known: Known) -> dict[str, Any]:
+    return {
+        "source": known.source,
+        "nominal": known.nominal,
+        "feature": {
+            name: {
+                "points": f.points,
+                "u_um": round(f.u / UM, 4),
+                "u_urad": round(f.u_tilt / URAD, 3),
+                "u_form_um": round(f.u_form / UM, 4),
+            }
+            for name, f in known.features.items()
+        },
+    }
 
 
 def _patch_table(patch: FreeformPatch) -> dict[str, Any]:

@@ -1,10 +1,26 @@
 """What a calibration makes of a standard, and which of its touches are like a user's task.
 
-In: a `Standard` with touches on it. Out: the touches that prove a task, and standards that differ
-from their calibration as much as it allows.
+In: a `Standard`; points that a coordinate measuring machine took on it, touches of a run, a task.
+Out: the standard as it is, with its uncertainties (`calibrated`); the program that takes the
+points (`dmis_program`); the touches that prove a task; standards that differ from their calibration
+as much as it allows.
 """
 
+from artefact.certify.calibration_fit import Calibrated, calibrated, fitted_ball
+from artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
+from artefact.certify.dmis import dmis_program
 from artefact.certify.task_places import curvature, like_task, on_faces
 from artefact.certify.true_places import misplaced
 
-__all__ = ["curvature", "like_task", "misplaced", "on_faces"]
+__all__ = [
+    "Calibrated",
+    "CmmPoints",
+    "calibrated",
+    "curvature",
+    "dmis_program",
+    "fitted_ball",
+    "like_task",
+    "misplaced",
+    "on_faces",
+    "read_cmm_points",
+]

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from artefact.body import (
-    STEEL,
     Base,
     Core,
     DatumSphere,
@@ -118,7 +117,7 @@ class Blank:
 
     base: Base = field(default_factory=Base)
     fittings: Fittings = field(default_factory=Fittings)
-    material: Material = STEEL
+    material: Material = field(default_factory=Material)
     height: float = 220.0
     limits: Limits = field(default_factory=Limits)
 

@@ -43,20 +43,33 @@ class Calibration:
         if min(self.patch, self.patch_tilt, self.ball) < 0.0:
             raise DesignError(f"calibration {self}, expected uncertainties from zero up")
 
+    @staticmethod
+    def _of(body: Standard, name: str, assumed: tuple[float, float]) -> tuple[float, float]:
+        """Uncertainty of place and rotations of a feature: as calibrated, else as assumed."""
+        if body.known is None or name not in body.known.features:
+            return assumed
+        feature = body.known.features[name]
+        return feature.u, feature.u_tilt
+
     def columns(self, body: Standard, wanted: Requests) -> Array:
         """Deviation along the normals per standard uncertainty of every feature's place, (N, Q).
 
-        Six columns a patch, three a sphere; none where the calibration is exact.
+        What the body itself was calibrated to goes before what is assumed here. Six columns a
+        patch, three a sphere; none where the calibration is exact.
 
         Args:
             body: What is touched; touches on other features have zeros.
             wanted: The touches.
         """
         out = []
-        for patch in body.patches if max(self.patch, self.patch_tilt) > 0.0 else ():
-            mine = (wanted.feature == patch.name)[:, None] * wanted.normal
-            arm = wanted.point - patch.T_artefact_patch[:3, 3]
-            out += [self.patch * mine, self.patch_tilt * np.cross(arm, mine)]
-        for sphere in body.spheres if self.ball > 0.0 else ():
-            out.append(self.ball * (wanted.feature == sphere.name)[:, None] * wanted.normal)
+        for patch in body.patches:
+            place, tilt = self._of(body, patch.name, (self.patch, self.patch_tilt))
+            if max(place, tilt) > 0.0:
+                mine = (wanted.feature == patch.name)[:, None] * wanted.normal
+                arm = wanted.point - patch.T_artefact_patch[:3, 3]
+                out += [place * mine, tilt * np.cross(arm, mine)]
+        for sphere in body.spheres:
+            place, _ = self._of(body, sphere.name, (self.ball, 0.0))
+            if place > 0.0:
+                out.append(place * (wanted.feature == sphere.name)[:, None] * wanted.normal)
         return np.concatenate(out, axis=1) if out else np.zeros((len(wanted), 0))

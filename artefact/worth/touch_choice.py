@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import DatumSphere, FreeformPatch, Standard, Surface
+from artefact.body import DatumSphere, FreeformPatch, Standard
 from artefact.reach import Mask, ProbeReach, Requests, joined
 from artefact.worth.touch_criterion import Criterion
 from information.selection import (
@@ -116,7 +116,7 @@ def sphere_grid(count: int) -> Array:
     return np.stack([(i * np.pi * (3.0 - np.sqrt(5.0))) % (2.0 * np.pi), np.arcsin(sine)], axis=-1)
 
 
-def each_at(surface: Surface, uv: Array, poses: Array) -> Requests:
+def each_at(surface: FreeformPatch | DatumSphere, uv: Array, poses: Array) -> Requests:
     """Touches at parameters of a surface, each at every pose."""
     n, k = len(uv), len(poses)
     return Requests(

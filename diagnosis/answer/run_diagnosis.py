@@ -60,6 +60,10 @@ from twin.thermal import ThermalField
 PERIODS_PLANNED = 8
 """Periods that look alike, the longest ones, that a plan of touches tells apart."""
 
+COVERED = 0.7
+"""Residual over stated uncertainty below which a pattern in it is told, but nothing is missing: who
+stated so much allowed for it. Scatter of a run of a hundred touches does not reach so low."""
+
 DEPENDENCES = 2
 """Patterns, one after the other, of which `depends_on` tells."""
 
@@ -153,7 +157,7 @@ def _result(
     progress(0.5, "what cannot be told apart")
     tested, steps = _told(task, added, final)
     final, classes, gross = tested.state, tested.classes, final.base.gross
-    unexplained = bool(final.nameless or final.left)
+    unexplained = bool(final.nameless or final.left) and not _is_covered(steps[-1].fit)
     verdict = (
         Verdict.UNEXPLAINED
         if unexplained
@@ -185,6 +189,11 @@ def _result(
         faults=description_faults(steps[0].fit, progress),
         remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
     )
+
+
+def _is_covered(fit: Fit) -> bool:
+    """Whether all that is left, patterns and all, is well within what is stated of a touch."""
+    return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < COVERED
 
 
 def _told(

@@ -5,7 +5,7 @@ set aside, the size of the noise, and errors of poses that were left out. `estim
 combinations the run determines; `reported` gives parameters as a user reads them.
 """
 
-from diagnosis.fit.describe import Reported, Role, file_unit, inner_unit, reported
+from diagnosis.fit.describe import SINE, Reported, Role, file_unit, inner_unit, reported
 from diagnosis.fit.estimability import Estimable, estimable
 from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run, prior_for
 from diagnosis.fit.inner import continuous_inner, shifted, spacing
@@ -16,6 +16,7 @@ from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 __all__ = [
     "MIN_POSES",
     "MIN_TOUCHES",
+    "SINE",
     "Estimable",
     "Fit",
     "Learnt",

@@ -1,7 +1,7 @@
 """Parameters of fitted effects as a user reads them: names with units, sizes, uncertainties."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -9,7 +9,7 @@ from scipy.linalg import orth
 
 from diagnosis.fit.identification import Fit
 from diagnosis.regression import BoolArray
-from twin.effects import PositionTable
+from twin.effects import Overtones, PositionTable
 from twin.frames import Array
 from twin.model import Effect, Inner, columns, inner_values
 from twin.record import Touches
@@ -26,6 +26,9 @@ ALIKE = 1e-6
 
 SEEN = 0.1
 """Share of the largest lever below which a row says little of a curve, and noise would tell."""
+
+SINE = "sine_"
+"""Begins the amplitude of a sine of a period, before its number."""
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD), "s": ("ms", 1e-3)}
 _TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
@@ -120,6 +123,8 @@ def reported(
         out += curve_sizes(fit, effect)
     elif len(theta) > 1:
         out.append(size(effect, theta, covariance, _is_seen(fit, place)))
+    if isinstance(effect, Overtones):
+        out += _sines(effect, theta, covariance)
     for i, parameter in enumerate(effect.parameters):
         suffix, factor = file_unit(parameter.unit)
         out.append(
@@ -134,6 +139,14 @@ def reported(
             )
         )
     return tuple(out)
+
+
+def _sines(effect: Overtones, theta: Array, covariance: Array) -> Iterator[Reported]:
+    """Amplitude of every sine of a period, `sine_1` that of the whole one."""
+    for k in range(1, effect.order + 1):
+        own = np.arange(len(theta)) // 2 == k - 1
+        one = size(effect, theta, covariance, own)
+        yield replace(one, quantity=f"{SINE}{k}", role=Role.COEFFICIENT)
 
 
 def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:

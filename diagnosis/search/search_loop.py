@@ -33,10 +33,12 @@ from diagnosis.evidence import (
 from diagnosis.fit import Fit
 from diagnosis.residual import PatternTests, Structure, find_structure
 from diagnosis.search.edges import unexplained_near_slip, without
+from diagnosis.search.overtones import with_overtones
 from diagnosis.search.refine import refined_set
 from diagnosis.search.screened import best_set, scaled
 from diagnosis.search.screening import Library
 from diagnosis.search.selection import Budget, EffectSubset, Search
+from diagnosis.search.taken_back import foretold
 from diagnosis.search.task import DiagnosisTask
 from twin.effects import Again, again
 from twin.frames import Array
@@ -52,6 +54,9 @@ and the model then imitates half of everything."""
 
 PERIODS = 4
 """Most periods of one component error of one axis."""
+
+MISJUDGED = 1.5
+"""Noise that is left over the stated one from which further periods are looked for."""
 
 NAMELESS = 3
 """Most patterns without a name that are put beside the effects of an unexplained run."""
@@ -184,11 +189,12 @@ def _with_further_periods(
     offered = [*candidates, *(s.effect for s in start if s.effect.name not in names)]
     state = _until_gross_errors_stay(task, added, offered, progress, start)
     for number in range(2, PERIODS + 1):
+        state, offered = _as_one_period(task, added, offered, progress, state)
         before = {s.effect.name for s in state.effects}
         repeat = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
         first = [e for e in repeat if not isinstance(e, Again)]
         further = [a for e in first if (a := again(e, number)) is not None]
-        if not further or not (state.left or state.nameless):
+        if not further or not _is_open(state):
             break
         offered += further
         other = _until_gross_errors_stay(task, added, offered, progress, start)
@@ -196,6 +202,38 @@ def _with_further_periods(
             break
         state = other
     return state
+
+
+def _is_open(state: SearchState) -> bool:
+    """Whether something is left: a pattern, or noise beyond what any user misjudges.
+
+    No smooth pattern follows a wave that is short beside the travel.
+    """
+    chosen = state.chosen.effects
+    noise = state.base.noise.factor * float(np.sqrt(chosen.objective / max(chosen.dof, 1.0)))
+    return bool(state.left or state.nameless) or noise > MISJUDGED
+
+
+def _as_one_period(
+    task: DiagnosisTask,
+    added: Sequence[ScaledEffect],
+    offered: list[Effect],
+    progress: Progress,
+    state: SearchState,
+) -> tuple[SearchState, list[Effect]]:
+    """Waves that are whole fractions of one period searched as one, where that predicts better."""
+    start = with_overtones(state.library.complement, state.effects)
+    if start is None:
+        return state, offered
+    kept = {s.effect.name for s in start} - {start[-1].effect.name}
+    gone = {s.effect.name for s in state.effects} - kept
+    others = [e for e in offered if e.name not in gone or not isinstance(e, Again)]
+    others.append(start[-1].effect)
+    other = _until_gross_errors_stay(task, added, others, progress, start)
+    is_taken = start[-1].effect.name in {s.effect.name for s in other.effects}
+    if is_taken and _held_out(other) < _held_out(state):
+        return other, others
+    return state, offered
 
 
 def _until_gross_errors_stay(
@@ -228,7 +266,7 @@ def _until_gross_errors_stay(
         library = Library.of(ResidualSpace.of(base), candidates, progress)
         search, chosen = best_set(library, found, budget, progress)
         effects = refined_set(library.complement, scaled(chosen))
-        whole = task.fit((*added, *effects))
+        whole = foretold(task, (*added, *effects), base.gross)
         further = unexplained_near_slip(touches, whole.gross, effects) & ~tried & (remaining > 1)
         is_same = np.array_equal(whole.gross.rows, base.gross.rows) and not further.any()
         if (is_same and not _is_quieter(whole, base)) or not remaining:

@@ -49,7 +49,7 @@ def evaluate(
         parts: Of one or several logs; touches on a ball that only compare the probe with itself
             (`ball_changes`) are left aside.
         standard: As calibrated.
-        u: Standard uncertainty of one touch, mm.
+        u: Standard uncertainty of one touch, mm; that of the calibrated surface comes to it.
 
     Raises:
         BadFile: Many touches far from the features they are said to be on; logs of two probes, of
@@ -70,9 +70,17 @@ def evaluate(
         good, far = _near(parts, gap, ABSURD)
         if not far:
             break
-    run = Run(touches, computed_deviation(touches), np.full(len(gap), u), remarks=tuple(remarks))
+    u_touch = _uncertainty(standard, touches.feature, u)
+    run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
+
+
+def _uncertainty(standard: Standard, feature: Labels, u: float) -> Array:
+    """Of every touch, with what calibration leaves open of the surface at a point, (N,), mm."""
+    known = {} if standard.known is None else standard.known.features
+    form = np.array([known[name].u_form if name in known else 0.0 for name in feature.tolist()])
+    return np.asarray(np.hypot(u, form))
 
 
 def _placed(

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from diagnosis.answer import Comparison, Detectable, Diagnosis, Step, Verdict
-from diagnosis.fit import Fit, Reported, Role
+from diagnosis.fit import SINE, Fit, Reported, Role
 from diagnosis.residual import Condition, Shape, Side, Structure
 from report.effects import class_words, words_of_name
 from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
@@ -82,13 +82,26 @@ def values(step: Step) -> list[tuple[str, str]]:
 
 def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
     """The same of the numbers themselves, as a model file keeps them."""
+    sines = [r for r in reported if r.quantity.startswith(SINE)]
     told = sorted(reported, key=lambda r: _ORDER.index(r.role))
     is_curve = any(r.quantity == "peak_to_valley" for r in told)
-    if is_curve or len(told) > ALL_TOLD:
+    if is_curve or sines or len(told) > ALL_TOLD:
         told = [r for r in told if r.role is not Role.COEFFICIENT]
     if is_curve:  # how smooth it was taken to be is in the files
         told = [r for r in told if r.quantity != "length"]
-    return [named_value(r) for r in told if (r.quantity, r.value) != ("step", 1.0)]
+    out = [named_value(r) for r in told if (r.quantity, r.value) != ("step", 1.0)]
+    return [*out, *([_sine_words(sines)] if sines else [])]
+
+
+def _sine_words(sines: Sequence[Reported]) -> tuple[str, str]:
+    """Amplitudes of the sines of one period in one clause, their uncertainty behind them."""
+    u = max(r.u or 0.0 for r in sines)
+    each = ", ".join(with_uncertainty(r.value, u, "").split(" ± ")[0] for r in sines)
+    least = digits(u, 2)
+    return (
+        f"in sines of 1/1 to 1/{len(sines)} of it",
+        f"{each} (± {least}) {unit_words(sines[0].unit)}",
+    )
 
 
 def sizes(step: Step, most: int) -> str:
@@ -232,6 +245,18 @@ def _them(steps: Sequence[Step]) -> str:
     return "it" if len(steps) == 1 else "them"
 
 
+def _covered(diagnosis: Diagnosis) -> str:
+    """A pattern that the stated noise covers, as a sentence; empty where there is none."""
+    if not diagnosis.left:
+        return ""
+    found = max(diagnosis.left, key=lambda s: s.share)
+    size = stated_noise(diagnosis.run) * diagnosis.fit.noise.factor * math.sqrt(min(found.share, 1))
+    return (
+        f" Of what is left, which the stated noise covers, {microns(size)} are none: "
+        f"{structure_clause(found)}."
+    )
+
+
 def verdict_sentence(diagnosis: Diagnosis) -> str:
     """The verdict in one plain sentence, with numbers and standard uncertainties."""
     most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
@@ -243,7 +268,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         what = "one effect" if len(found) == 1 else f"{len(found)} effects"
         return (
             f"The model lacks {what}: {'; '.join(found)}.{also} With {_them(steps)} "
-            f"{_fall(diagnosis)}; the noise is {noise_words(diagnosis.fit)}."
+            f"{_fall(diagnosis)}; the noise is {noise_words(diagnosis.fit)}.{_covered(diagnosis)}"
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
         words = "; ".join(
@@ -260,7 +285,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     return (
         f"Nothing{' more' if named else ''} is missing that this run could have shown: the error "
         f"of held-out touches is {microns(diagnosis.fit.test_rms)}, and the noise is "
-        f"{noise_words(diagnosis.fit)}.{also}{fall}"
+        f"{noise_words(diagnosis.fit)}.{also}{fall}{_covered(diagnosis)}"
     )
 
 

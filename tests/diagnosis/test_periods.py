@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import run_of
 
 from diagnosis.answer import Verdict, diagnose
 from diagnosis.answer.alike import even_step
@@ -14,32 +15,9 @@ from diagnosis.fit.describe import Role
 from report.words.diagnosis_words import scanned_sentence
 from twin.effects.periodic import scanned_periods
 from twin.frames import Array
-from twin.machine import Axis, make_chain
 from twin.model import Tunable
-from twin.record import Run, Touches
-from twin.record.touches import Setup
+from twin.record import Run
 from twin.units import UM
-
-LINE = make_chain("one axis", "[w f X t]", {"X": Axis((0.0, 400.0))})
-
-
-def run_of(x: Array, deviation: Array, u: float = 0.5 * UM, cycle: Array | None = None) -> Run:
-    """Readings of an instrument along X, a row each."""
-    n = len(x)
-    touches = Touches(
-        chain=LINE,
-        q=x[:, None],
-        length=np.zeros(n),
-        radius=np.zeros(n),
-        point=np.column_stack([x, np.zeros(n), np.zeros(n)]),
-        normal=np.tile([1.0, 0.0, 0.0], (n, 1)),
-        setups=(Setup("a"),),
-        setup=np.zeros(n, dtype=np.int64),
-        time=np.zeros(n),
-        approach=np.ones((n, 1)),
-        pose=np.zeros(n, dtype=np.int64) if cycle is None else cycle,
-    )
-    return Run(touches=touches, deviation=deviation, u=np.full(n, u))
 
 
 def positioning(targets: Array, period: float, amplitude: float, seed: int = 0) -> Run:

@@ -7,13 +7,14 @@ the search and the reports know it from then on.
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
 from twin.effects.once_more import MARK, Again, Change, again
-from twin.effects.periodic import usual_distance
+from twin.effects.periodic import MOST_OVERTONES, Overtones, Periodic, usual_distance
 from twin.effects.position_table import PositionTable
 from twin.effects.probe import ProbeRadius, normal_in_tool
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, SetupError, setup_errors
 
 __all__ = [
     "MARK",
+    "MOST_OVERTONES",
     "SHIFT_SD",
     "TURN_SD",
     "Again",
@@ -21,6 +22,8 @@ __all__ = [
     "ComponentError",
     "HigherOrder",
     "LocationError",
+    "Overtones",
+    "Periodic",
     "PositionTable",
     "ProbeRadius",
     "SetupError",

@@ -16,6 +16,7 @@ from twin.model import (
     check_count,
     component_symbol,
     moving_axes,
+    refusal,
 )
 from twin.record import Touches
 from twin.units import UM, URAD
@@ -28,6 +29,8 @@ FRACTIONS = 4
 of the encoder on the screw."""
 OVERSAMPLING = 4.0
 """Scanned frequencies per resolvable one; the nearest keeps 97 % of a sine between two of them."""
+MOST_OVERTONES = 12
+"""Sines of one period beyond which its shape is a saw of steps."""
 HIGHEST_HARMONIC = 12
 """A period of 30 degrees, which 26 distinct readings of the axis can tell from its neighbours."""
 
@@ -93,6 +96,52 @@ class Periodic(_Repeating):
     def tuning(self) -> Mapping[str, float]:
         """The period, mm."""
         return {"period": self.period}
+
+
+@dataclass(frozen=True)
+class Overtones(Periodic):
+    """A periodic error of any shape: a sine of period p with those of its whole fractions.
+
+    ``E = sum_k s_k sin(2 pi k q/p) + c_k cos(2 pi k q/p)``, k = 1 .. order. An encoder's lines, a
+    worn thread or a stepping motor repeat exactly, but hardly ever as one sine. The k-th is
+    expected to be smaller by ``k^1.5``.
+
+    Attributes:
+        order: The highest k.
+        near: Period around which p is looked for, mm; None for every one that can be seen.
+    """
+
+    order: int = 2
+    near: float | None = None
+
+    @property
+    def name(self) -> str:
+        """`periodic(EXX,6)`."""
+        return f"periodic({self.symbol.name},{self.order})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Sine and cosine of every k, by rising k."""
+        sd = 20 * URAD if self.symbol.is_angular else 3 * UM
+        unit, orders = self.symbol.unit, range(1, self.order + 1)
+        return tuple(
+            Parameter(f"{word}{k}", unit, sd / k**1.5) for k in orders for word in ("sin", "cos")
+        )
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Twists of the axis."""
+        where = touches.chain.twist_of(self.symbol)
+        turn = 2.0 * np.pi / self.period * touches.reading(self.symbol.link)
+        waves = [f(k * turn) for k in range(1, self.order + 1) for f in (np.sin, np.cos)]
+        return tuple(Term(i, where, wave) for i, wave in enumerate(waves))
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """The period, as of one sine; beside a known one only the nearest."""
+        (whole,) = super().inner(touches)
+        if self.near is None:
+            return (whole,)
+        at = int(np.clip(np.searchsorted(whole.grid, self.near), 2, len(whole.grid) - 2))
+        return (whole._replace(grid=whole.grid[at - 2 : at + 2]),)
 
 
 @dataclass(frozen=True)
@@ -170,10 +219,17 @@ def usual_distance(q: Array) -> float:
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Periodic | Harmonic:
-    """From the component error."""
-    check_count(KIND.usage, arguments, 1, 1)
+    """From the component error, and of a linear axis how many whole fractions of the period."""
+    check_count(KIND.usage, arguments, 1, 2)
     symbol = component_symbol(chain, arguments[0])
-    return Periodic(symbol) if chain.link(symbol.link).kind == "linear" else Harmonic(symbol)
+    is_linear = chain.link(symbol.link).kind == "linear"
+    if arguments[1:]:
+        order = int(arguments[1]) if arguments[1].isdecimal() else 0
+        if not is_linear or not 2 <= order <= MOST_OVERTONES:
+            what = f"nothing, or of a linear axis 2 to {MOST_OVERTONES}"
+            raise refusal(KIND.usage, arguments, f"{what} behind the component error")
+        return Overtones(symbol, order=order)
+    return Periodic(symbol) if is_linear else Harmonic(symbol)
 
 
 def propose(touches: Touches) -> Iterable[Periodic | Harmonic]:
@@ -190,7 +246,7 @@ def propose(touches: Touches) -> Iterable[Periodic | Harmonic]:
 
 KIND = Kind(
     word="periodic",
-    arguments="symbol",
+    arguments="symbol[,sines of one period]",
     title="screw pitch and other periodic errors",
     synonyms="pitch error, ball screw, lead error, cyclic error, encoder, interpolation "
     "error, graduation, wobble",
@@ -201,6 +257,6 @@ KIND = Kind(
     source="ISO 230-2 and the makers' data of feed axes; ISO 230-7 (axes of rotation)",
     make=make,
     propose=propose,
-    classes=(Periodic, Harmonic),
+    classes=(Periodic, Overtones, Harmonic),
     about="Error that repeats: pitch of a screw or scale, higher harmonics of a rotary axis.",
 )

@@ -18,7 +18,7 @@ from twin.foreign.positioning import (
     read_positioning,
 )
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
-from twin.foreign.sheet import ANGLES, MM, Sheet, read_sheet
+from twin.foreign.sheet import ANGLES, MM, Sheet, read_sheet, unit_of_column
 
 __all__ = [
     "ANGLES",
@@ -42,4 +42,5 @@ __all__ = [
     "read_positioning",
     "read_sheet",
     "tracker_run",
+    "unit_of_column",
 ]

@@ -1,0 +1,219 @@
+"""From points of a coordinate measuring machine to the standard as it is.
+
+Balls are fitted with centre and radius. Their centres say where the CMM had the standard: the
+points are taken to the frame of the design by the rigid motion that brings them there best. Every
+face then gets a smooth correction of its control heights,
+
+    d = n . (p - foot point) = B c + noise,    c penalised by the bending of the correction,
+
+with the weight of the penalty by generalised cross-validation; planes are never penalised, so the
+place and the tilts of a face are free. What is left over says how large the noise is, and with it
+the covariance of c how well the surface is known between the points.
+
+Reference:
+    Wahba, Spline Models for Observational Data, 4 (generalised cross-validation).
+    JCGM 100:2008, F.2.4.5 (errors that the points of one feature share are stated, not found).
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from artefact.body import FreeformPatch, Known, KnownFeature, Standard
+from artefact.certify.cmm_points_file import CmmPoints
+from artefact.certify.face_correction import corrected_face
+from twin.errors import BadFile, NotEnoughData
+from twin.frames import Array, apply
+from twin.record import rigid_motion
+from twin.units import UM
+
+MIN_BALL, MIN_FACE = 6, 20
+"""Fewest points on a ball (four determine it) and on a face (six move it, the rest bend it)."""
+
+MIN_BALLS = 3
+"""Balls that say where the CMM had the standard."""
+
+_ASTRAY = 0.5  # mm from its feature: a point of another feature, or a slip
+_UNITS = {"µm": 1e3, "m": 1e-3, "inches": 1.0 / 25.4, "cm": 0.1}
+_LIKE = 0.01  # relative difference of distances that no made part has, but other units do
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """A calibrated standard and what its calibration found.
+
+    Attributes:
+        standard: As it is.
+        moved: Of every feature its largest deviation from the design, mm.
+        left: Root mean square that the fitted feature leaves of its points, mm.
+        remarks: What was not used, or is out of the ordinary.
+    """
+
+    standard: Standard
+    moved: dict[str, float]
+    left: dict[str, float]
+    remarks: tuple[str, ...]
+
+
+def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: float) -> Calibrated:
+    """The standard as a CMM found it.
+
+    Args:
+        nominal: As designed.
+        cmm: Its points.
+        u_point: Standard uncertainty of one point by what points do not share, mm.
+        u_feature: Of the place of a feature by what its points share: scales and squareness of the
+            CMM, qualification of its stylus, mm.
+
+    Raises:
+        BadFile: Points in other units, or far from every feature.
+        NotEnoughData: Too few points on a feature, or too few balls.
+    """
+    balls = _balls(nominal, cmm, u_point)
+    T_artefact_cmm = _alignment(nominal, cmm, {n: b[0] for n, b in balls.items()})
+    point = apply(T_artefact_cmm, cmm.point)
+    known, moved, left, spheres, patches = {}, {}, {}, [], []
+    for sphere in nominal.spheres:
+        if sphere.name not in balls:
+            spheres.append(sphere)
+            continue
+        centre, radius, u, rms, count = balls[sphere.name]
+        centre = apply(T_artefact_cmm, centre[None])[0]
+        spheres.append(replace(sphere, centre=centre, radius=radius))
+        known[sphere.name] = KnownFeature(count, float(np.hypot(u, u_feature)), 0.0, 0.0)
+        moved[sphere.name] = float(np.linalg.norm(centre - sphere.centre))
+        left[sphere.name] = rms
+    for patch in nominal.patches:
+        rows = np.flatnonzero(cmm.feature == patch.name)
+        if not len(rows):
+            patches.append(patch)
+            continue
+        _check_face(patch, cmm, rows, point)
+        found = corrected_face(patch, point[rows], u_point)
+        patches.append(found.patch)
+        known[patch.name] = KnownFeature(len(rows), u_feature, found.u_tilt, found.u_form)
+        moved[patch.name], left[patch.name] = found.moved, found.left
+    standard = replace(
+        nominal,
+        patches=tuple(patches),
+        spheres=tuple(spheres),
+        known=Known(cmm.path.name, nominal.fingerprint, known),
+    )
+    return Calibrated(standard, moved, left, (*cmm.remarks, *_remarks(nominal, cmm, known)))
+
+
+def _remarks(nominal: Standard, cmm: CmmPoints, known: dict[str, KnownFeature]) -> list[str]:
+    """Features that nobody measured, and points that are of no use."""
+    names = [s.name for s in nominal.spheres] + [p.name for p in nominal.patches]
+    missing = [name for name in names if name not in known]
+    out = []
+    if missing:
+        out.append(f"no points on {', '.join(missing)}: as designed, as uncertain as is assumed")
+    plane = int(np.sum(cmm.feature == nominal.plane.name))
+    if plane:
+        out.append(f"{plane} points on {nominal.plane.name} align nothing: balls say where it is")
+    return out
+
+
+Ball = tuple[Array, float, float, float, int]
+"""Centre, radius, standard uncertainty of a coordinate of the centre, rms left, points."""
+
+
+def _balls(nominal: Standard, cmm: CmmPoints, u_point: float) -> dict[str, Ball]:
+    """Every measured ball in the frame of the CMM."""
+    out: dict[str, Ball] = {}
+    for sphere in nominal.spheres:
+        rows = np.flatnonzero(cmm.feature == sphere.name)
+        if not len(rows):
+            continue
+        whole = rows[np.isfinite(cmm.diameter[rows])]
+        if len(whole):
+            radius = 0.5 * float(cmm.diameter[whole].mean())
+            centre = cmm.point[whole].mean(axis=0)
+            out[sphere.name] = centre, radius, u_point / np.sqrt(len(whole)), 0.0, len(whole)
+        elif len(rows) < MIN_BALL:
+            raise NotEnoughData(
+                f"{cmm.path}: {sphere.name} has {len(rows)} points, expected at least {MIN_BALL}"
+            )
+        else:
+            out[sphere.name] = fitted_ball(cmm.point[rows], u_point)
+    if len(out) < MIN_BALLS:
+        raise NotEnoughData(
+            f"{cmm.path}: points on {len(out)} balls, expected at least {MIN_BALLS}: they say "
+            "where the standard stood"
+        )
+    _check_size(nominal, cmm, out)
+    return out
+
+
+def fitted_ball(points: Array, u_point: float) -> Ball:
+    """Least-squares sphere: by the linear form first, then Gauss and Newton on the distances."""
+    A = np.column_stack([2.0 * points, np.ones(len(points))])
+    solved = np.linalg.lstsq(A, (points**2).sum(axis=1), rcond=None)[0]
+    centre = solved[:3]
+    radius = float(np.sqrt(max(solved[3] + centre @ centre, 1e-12)))
+    for _ in range(20):
+        away = points - centre
+        length = np.linalg.norm(away, axis=1)
+        J = np.column_stack([away / length[:, None], np.ones(len(points))])
+        step = np.linalg.lstsq(J, length - radius, rcond=None)[0]
+        centre, radius = centre + step[:3], radius + float(step[3])
+        if np.abs(step).max() < 1e-9:
+            break
+    left = np.linalg.norm(points - centre, axis=1) - radius
+    noise = max(u_point, float(np.sqrt(left @ left / max(len(points) - 4, 1))))
+    covariance = np.linalg.pinv(J.T @ J)[:3, :3] * noise**2
+    u = float(np.sqrt(np.trace(covariance) / 3.0))
+    return centre, radius, u, float(np.sqrt(np.mean(left**2))), len(points)
+
+
+def _check_size(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> None:
+    """Distances between balls say whether the points are in mm, and of this standard."""
+    names = list(balls)
+    stated = {s.name: s.centre for s in nominal.spheres}
+    pairs = [(a, b) for i, a in enumerate(names) for b in names[:i]]
+    found = np.array([np.linalg.norm(balls[a][0] - balls[b][0]) for a, b in pairs])
+    wanted = np.array([np.linalg.norm(stated[a] - stated[b]) for a, b in pairs])
+    ratio = float(np.median(found / wanted))
+    for unit, factor in _UNITS.items():
+        if abs(ratio / factor - 1.0) < _LIKE:
+            raise BadFile(cmm.path, "x, y, z", f"distances of balls in {unit}", "mm")
+    worst = int(np.argmax(np.abs(found - wanted)))
+    if abs(found[worst] - wanted[worst]) > _ASTRAY:
+        a, b = pairs[worst]
+        raise BadFile(
+            cmm.path,
+            f"{a}, {b}",
+            f"{found[worst]:.3f} mm between their centres",
+            f"about {wanted[worst]:.3f} mm: other balls, or another standard",
+        )
+
+
+def _alignment(nominal: Standard, cmm: CmmPoints, centres: dict[str, Array]) -> Array:
+    """Pose (4, 4) that takes the points of the CMM to the frame of the design."""
+    stated = np.array([s.centre for s in nominal.spheres if s.name in centres])
+    found = np.array([centres[s.name] for s in nominal.spheres if s.name in centres])
+    if np.linalg.matrix_rank(stated - stated.mean(axis=0), tol=1.0) < 2:
+        raise NotEnoughData(f"{cmm.path}: balls on one line, expected one beside it")
+    return rigid_motion(found, stated, np.eye(4))
+
+
+def _check_face(patch: FreeformPatch, cmm: CmmPoints, rows: np.ndarray, point: Array) -> None:
+    """Enough points, all of them near their face."""
+    if len(rows) < MIN_FACE:
+        raise NotEnoughData(
+            f"{cmm.path}: {patch.name} has {len(rows)} points, expected at least {MIN_FACE}"
+        )
+    uv = patch.project(point[rows])
+    far = np.linalg.norm(point[rows] - patch.point(np.nan_to_num(uv)), axis=1)
+    far = np.where(np.isfinite(uv).all(axis=1), far, np.inf)
+    worst = int(np.argmax(far))
+    if far[worst] > _ASTRAY:
+        raise BadFile(
+            cmm.path,
+            f"line {cmm.line[rows[worst]]}",
+            f"a point {far[worst] / UM:.0f} µm from {patch.name}"
+            if np.isfinite(far[worst])
+            else f"a point beside {patch.name}",
+            f"points within {_ASTRAY:g} mm of their feature",
+        )

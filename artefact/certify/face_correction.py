@@ -1,0 +1,120 @@
+"""A face as points say that it is: its control heights with a smooth correction."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from artefact.body import FreeformPatch
+from twin.frames import Array
+
+_WEIGHTS = np.logspace(-8.0, 4.0, 49)  # of the bending, over the range from none to a plane
+_ROUNDS = 3  # foot points move by slope times correction: micrometres, settled after two
+_GRID = 3.0  # mm between the places over which the uncertainty of the surface is averaged
+
+
+@dataclass(frozen=True)
+class CorrectedFace:
+    """A face as it is.
+
+    Attributes:
+        patch: With corrected heights.
+        u_form: Root mean square standard uncertainty of the surface over the face, mm.
+        u_tilt: Standard uncertainty of its rotations by the points, rad.
+        moved: Largest deviation from the design along the normal, mm.
+        left: Root mean square that the points deviate from the corrected face, mm.
+    """
+
+    patch: FreeformPatch
+    u_form: float
+    u_tilt: float
+    moved: float
+    left: float
+
+
+def corrected_face(patch: FreeformPatch, points: Array, u_point: float) -> CorrectedFace:
+    """Fit a smooth correction to the deviations of points.
+
+    Args:
+        patch: As designed.
+        points: On the real face, artefact frame, (N, 3), mm.
+        u_point: Standard uncertainty of a point; more where the points scatter more, mm.
+    """
+    bend = _bending(patch)
+    heights = patch.heights
+    for _ in range(_ROUNDS):
+        uv, deviation, tilt = _deviations(replace(patch, heights=heights), points)
+        B = _basis(patch, uv) / tilt[:, None]  # a height counts by the cosine of its slope
+        before = B @ (heights - patch.heights).ravel()
+        c, root, left = _smooth(B, deviation + before, bend, u_point)
+        heights = patch.heights + c.reshape(heights.shape)
+    made = replace(patch, heights=heights)
+    grid = patch.grid(_GRID)
+    slope = np.hypot(patch.jet(grid).hu, patch.jet(grid).hv)
+    G = _basis(patch, grid) / np.sqrt(1.0 + slope**2)[:, None]
+    u = np.linalg.norm(G @ root, axis=1)
+    plane = np.column_stack([np.ones(len(grid)), grid])
+    tilts = np.linalg.lstsq(plane, _basis(patch, grid) @ root, rcond=None)[0][1:]
+    return CorrectedFace(
+        patch=made,
+        u_form=float(np.sqrt(np.mean(u**2))),
+        u_tilt=float(np.linalg.norm(tilts) / np.sqrt(2.0)),
+        moved=float(np.abs(G @ c).max()),
+        left=left,
+    )
+
+
+def _deviations(patch: FreeformPatch, points: Array) -> tuple[Array, Array, Array]:
+    """Foot points, deviations along the normal, and the root of 1 + slope^2 there."""
+    uv = patch.project(points)
+    deviation = np.einsum("ni,ni->n", patch.normal(uv), points - patch.point(uv))
+    jet = patch.jet(uv)
+    return uv, deviation, np.sqrt(1.0 + jet.hu**2 + jet.hv**2)
+
+
+def _basis(patch: FreeformPatch, uv: Array) -> Array:
+    """Height at uv per unit of every control height, (N, poles)."""
+    nu, nv = patch.heights.shape
+    columns = []
+    for k in range(nu * nv):
+        one = np.zeros(nu * nv)
+        one[k] = 1.0
+        columns.append(replace(patch, heights=one.reshape(nu, nv)).height(uv))
+    return np.stack(columns, axis=1)
+
+
+def _bending(patch: FreeformPatch) -> Array:
+    """Root of the mean squared second derivatives of a correction, (3 M, poles), per mm."""
+    nu, nv = patch.heights.shape
+    grid = patch.grid(_GRID, beyond=1.0)
+    rows = []
+    for k in range(nu * nv):
+        one = np.zeros(nu * nv)
+        one[k] = 1.0
+        j = replace(patch, heights=one.reshape(nu, nv)).jet(grid)
+        rows.append(np.concatenate([j.huu, np.sqrt(2.0) * j.huv, j.hvv]))
+    R = np.linalg.qr(np.stack(rows, axis=1), mode="r")
+    return np.asarray(R / np.sqrt(len(grid)) * max(patch.half_size) ** 2)
+
+
+def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Array, float]:
+    """Coefficients, root of their covariance, and what they leave (rms).
+
+    Of all weights the one with the least ``n |d - H d|^2 / (n - tr H)^2``.
+    """
+    n, best = len(d), None
+    gram, right, penalty = B.T @ B / n, B.T @ d / n, bend.T @ bend
+    ridge = 1e-12 * np.trace(gram) * np.eye(len(gram))
+    for weight in _WEIGHTS:
+        M = gram + weight * penalty + ridge
+        c = np.linalg.solve(M, right)
+        used = float(np.trace(np.linalg.solve(M, gram)))
+        left = d - B @ c
+        score = n * float(left @ left) / max(n - used, 1e-3) ** 2
+        if used < 0.8 * n and (best is None or score < best[0]):
+            best = score, c, M, used, float(left @ left)
+    assert best is not None
+    _, c, M, used, squares = best
+    noise = max(u_point, float(np.sqrt(squares / max(n - used, 1.0))))
+    # the Bayesian covariance of the penalised fit, which holds what the penalty may have hidden
+    root = np.linalg.cholesky(np.linalg.inv(M)) * noise / np.sqrt(n)
+    return c, root, float(np.sqrt(squares / n))

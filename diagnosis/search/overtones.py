@@ -1,0 +1,66 @@
+"""Waves that are whole fractions of one period, told as one periodic error of that shape."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
+from diagnosis.search.selection import WORTH
+from twin.effects import MOST_OVERTONES, Again, Overtones, Periodic, usual_distance
+from twin.model import Effect
+
+HIGHEST_FOUND = 4
+"""The strongest wave of a period is at most its fourth."""
+
+
+def with_overtones(
+    complement: ResidualSpace, found: Sequence[ScaledEffect]
+) -> tuple[ScaledEffect, ...] | None:
+    """A set with waves over one axis exchanged for one period of several sines; None for none.
+
+    Args:
+        complement: What the model without them leaves.
+        found: Effects that were found, inner parameters refined.
+    """
+    best: tuple[float, tuple[ScaledEffect, ...] | None] = (
+        EffectSet(complement, projected(complement, found)).evidence + WORTH,
+        None,
+    )
+    for wave in found:
+        own = _wave(wave.effect)
+        for period in () if own is None else [k * own.period for k in range(1, HIGHEST_FOUND + 1)]:
+            for comb in _combs(complement, wave.effect, period):
+                rest = tuple(s for s in found if not _is_fraction(complement, s.effect, comb))
+                beside = EffectSet(complement, projected(complement, rest))
+                evidence, scale = addition(beside, comb)
+                if evidence > best[0]:
+                    best = evidence, (*rest, ScaledEffect(comb, scale))
+    return best[1]
+
+
+def _combs(complement: ResidualSpace, effect: Effect, period: float) -> Iterator[Overtones]:
+    """One period with two sines and more, as many as the readings resolve."""
+    wave = _wave(effect)
+    assert wave is not None
+    q = complement.touches.reading(wave.symbol.link)[complement.used]
+    most = min(MOST_OVERTONES, int(period / (2.0 * usual_distance(q))))
+    if period < 0.5 * float(np.ptp(q)):
+        for order in range(2, most + 1):
+            yield Overtones(wave.symbol, period, order, near=period)
+
+
+def _wave(effect: Effect) -> Periodic | None:
+    """The single sine that an effect is, for the second time or not."""
+    one: object = effect.effect if isinstance(effect, Again) else effect
+    return one if isinstance(one, Periodic) and not isinstance(one, Overtones) else None
+
+
+def _is_fraction(complement: ResidualSpace, effect: Effect, comb: Overtones) -> bool:
+    """Whether an effect is one of the sines of a period, as far as the travel can tell."""
+    wave = _wave(effect)
+    if wave is None or wave.symbol != comb.symbol:
+        return False
+    k = round(comb.period / wave.period)
+    q = complement.touches.reading(wave.symbol.link)[complement.used]
+    apart = abs(1.0 / wave.period - k / comb.period) * float(np.ptp(q))
+    return 1 <= k <= comb.order and apart < 0.5

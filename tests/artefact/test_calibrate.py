@@ -1,0 +1,282 @@
+"""A standard with planted errors, a CMM that measures it somewhere, and what comes back."""
+
+import importlib.util
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.body.standard_file import read_standard, write_standard
+from artefact.certify.calibration_fit import calibrated, fitted_ball
+from artefact.certify.cmm_points_file import read_cmm_points
+from artefact.certify.dmis import APPROACH, dmis_program
+from artefact.worth.calibration import Calibration
+from diagnosis.fit.identification import fit_run
+from matstd.cli import main
+from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.simulation import simulate
+from twin.errors import BadFile, NotEnoughData
+from twin.frames import apply, pose, rotation
+from twin.library.ordinary import ordinary_model
+from twin.units import UM
+
+ROOT = Path(__file__).parents[2]
+NOISE = 0.3 * UM
+"""Of a point of the CMM."""
+
+ELSEWHERE = pose(rotation(np.array([0.01, -0.02, 1.2])), np.array([300.0, 200.0, -50.0]))
+"""The standard in the frame of the CMM."""
+
+SHIFT = np.array([[0.02, -0.01, 0.015], [-0.01, 0.01, -0.02], [0.0, 0.025, 0.01]])
+"""How far the balls stand beside their places, mm."""
+
+
+def form(uv: np.ndarray) -> np.ndarray:
+    """What was planted on FF1, along the normal, mm: place, tilt and a wave."""
+    u, v = uv.T / 15.0
+    return 6 * UM + 4 * UM * u + 7 * UM * np.sin(2.2 * u + 1.0) * np.cos(1.5 * v)
+
+
+@pytest.fixture(scope="module")
+def golden():
+    spec = importlib.util.spec_from_file_location(
+        "golden_calibrated", ROOT / "tests" / "golden" / "make_programs.py"
+    )
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def nominal(golden):
+    return golden.standard()
+
+
+def cmm_rows(nominal, rng, per_face: int = 120, per_ball: int = 25) -> list[tuple]:
+    """Points on the real standard in the frame of the CMM, by formulas of this file."""
+    rows = []
+    for ball, shift in zip(nominal.spheres, SHIFT, strict=True):
+        n = rng.normal(size=(per_ball, 3))
+        n[:, 2] = np.abs(n[:, 2])
+        n /= np.linalg.norm(n, axis=1, keepdims=True)
+        r = ball.radius + 0.7 * UM + NOISE * rng.normal(size=(per_ball, 1))
+        rows += [(ball.name, *p) for p in apply(ELSEWHERE, ball.centre + shift + r * n)]
+    for patch in nominal.patches:
+        a, b = patch.half_size
+        uv = rng.uniform(-1.0, 1.0, (per_face, 2)) * [a, b]
+        high = form(uv) if patch.name == "FF1" else np.zeros(per_face)
+        high = high + NOISE * rng.normal(size=per_face)
+        p = patch.point(uv) + high[:, None] * patch.normal(uv)
+        rows += [(f"{patch.name}_{k}", *x) for k, x in enumerate(apply(ELSEWHERE, p))]
+    return rows
+
+
+def written(path: Path, rows, stamp: str = "", unit: str = "mm", scale: float = 1.0) -> Path:
+    head = [f"# MATSTD {stamp}"] if stamp else []
+    head.append(f"feature,x [{unit}],y [{unit}],z [{unit}]")
+    body = [f"{name},{x * scale:.9f},{y * scale:.9f},{z * scale:.9f}" for name, x, y, z in rows]
+    path.write_text("\n".join([*head, *body]) + "\n")
+    return path
+
+
+@pytest.fixture(scope="module")
+def found(nominal, tmp_path_factory):
+    path = tmp_path_factory.mktemp("cmm") / "cmm.csv"
+    written(path, cmm_rows(nominal, np.random.default_rng(1)), nominal.fingerprint)
+    return calibrated(nominal, read_cmm_points(path, nominal), NOISE, 0.2 * UM)
+
+
+def aligned_truth(nominal) -> np.ndarray:
+    """Pose that brings the displaced balls back best: the frame of a calibration, (4, 4).
+
+    By Horn's quaternions, the calibration uses singular values.
+    """
+    a = np.array([s.centre for s in nominal.spheres]) + SHIFT
+    b = np.array([s.centre for s in nominal.spheres])
+    S = (a - a.mean(0)).T @ (b - b.mean(0))
+    d = [S[1, 2] - S[2, 1], S[2, 0] - S[0, 2], S[0, 1] - S[1, 0]]
+    N = np.block(
+        [[np.trace(S), np.array(d)], [np.array(d)[:, None], S + S.T - np.trace(S) * np.eye(3)]]
+    )
+    w, x, y, z = np.linalg.eigh(N)[1][:, -1]
+    R = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    return pose(R, b.mean(0) - R @ a.mean(0))
+
+
+def test_balls_and_faces_are_where_they_were_planted(nominal, found) -> None:
+    back = aligned_truth(nominal)
+    for ball, made, shift in zip(nominal.spheres, found.standard.spheres, SHIFT, strict=True):
+        truth = apply(back, (ball.centre + shift)[None])[0]
+        u = found.standard.known.features[ball.name].u
+        assert np.abs(made.centre - truth).max() < 4.0 * u
+        assert made.radius == pytest.approx(ball.radius + 0.7 * UM, abs=0.5 * UM)
+    for patch, made in zip(nominal.patches, found.standard.patches, strict=True):
+        grid = patch.grid(3.0)
+        grid = grid[np.all(np.abs(grid) < 0.93 * np.array(patch.half_size), axis=1)]
+        high = form(grid) if patch.name == "FF1" else np.zeros(len(grid))
+        real = apply(back, patch.point(grid) + high[:, None] * patch.normal(grid))
+        uv = made.project(real)
+        off = np.einsum("ni,ni->n", made.normal(uv), real - made.point(uv))
+        u_form = found.standard.known.features[patch.name].u_form
+        assert np.sqrt(np.mean(off**2)) < 2.0 * u_form + 0.3 * UM  # balls misplace it as a whole
+        assert u_form < NOISE
+
+
+def test_file_keeps_it(found, tmp_path) -> None:
+    write_standard(tmp_path / "s.toml", found.standard)
+    again = read_standard(tmp_path / "s.toml")
+    assert again.fingerprint == found.standard.fingerprint
+    assert again.known.nominal == found.standard.known.nominal
+    for name, feature in found.standard.known.features.items():
+        assert again.known.features[name].u == pytest.approx(feature.u, abs=1e-7)
+
+
+def test_uncertainties_take_the_place_of_those_assumed(nominal, found) -> None:
+    from artefact.reach.touchable import Requests
+
+    ball = nominal.spheres[0]
+    n = np.array([[0.0, 0.0, 1.0]])
+    touch = Requests(np.array([ball.name]), ball.centre + ball.radius * n, n, np.zeros((1, 2)))
+    felt = [
+        np.linalg.norm(Calibration(ball=5 * UM).columns(s, touch))
+        for s in (nominal, found.standard)
+    ]
+    assert felt == pytest.approx([5 * UM, found.standard.known.features[ball.name].u])
+
+
+def test_the_planted_errors_are_no_longer_seen(golden, nominal, found) -> None:
+    """Programs on the real standard: with the design the fit is bad, with the calibration good."""
+    balls = [replace(b, centre=b.centre + d) for b, d in zip(nominal.spheres, SHIFT, strict=True)]
+    faces = []
+    for patch in nominal.patches:
+        heights = patch.heights
+        if patch.name == "FF1":  # heights that follow the planted form at their own places
+            from artefact.body.spline import greville
+
+            gu, gv = (greville(k, 5) for k in (patch.knots_u, patch.knots_v))
+            uv = np.stack(np.meshgrid(gu, gv, indexing="ij"), axis=-1).reshape(-1, 2)
+            uv = np.clip(uv, -18.0, 18.0)
+            j = patch.jet(uv)
+            heights = heights + (form(uv) * np.sqrt(1 + j.hu**2 + j.hv**2)).reshape(heights.shape)
+        faces.append(replace(patch, heights=heights))
+    true = replace(nominal, spheres=tuple(balls), patches=tuple(faces))
+    rows = []
+    rng = np.random.default_rng(8)
+    for body in (*true.spheres, *true.patches):
+        if body in true.patches:
+            uv = rng.uniform(-1.0, 1.0, (120, 2)) * body.half_size
+        else:
+            uv = np.column_stack([rng.uniform(-3, 3, 40), rng.uniform(0.0, 1.5, 40)])
+        p = body.point(uv) + NOISE * rng.normal(size=(len(uv), 1)) * body.normal(uv)
+        rows += [(body.name, *x) for x in apply(ELSEWHERE, p)]
+    path = golden.FOLDER.parent / "nowhere.csv"
+    from artefact.certify.cmm_points_file import CmmPoints
+
+    cmm = CmmPoints(
+        path=path,
+        feature=np.array([r[0] for r in rows]),
+        point=np.array([r[1:] for r in rows]),
+        diameter=np.full(len(rows), np.nan),
+        line=np.arange(len(rows)),
+        remarks=(),
+    )
+    made = calibrated(nominal, cmm, NOISE, 0.2 * UM).standard
+    machine = VirtualMachine(golden.machine(), noise=0.5 * UM)
+    programs = sorted(golden.FOLDER.glob("*_[0-9].H")) or sorted(golden.FOLDER.glob("*.H"))
+    ratio = {}
+    for name, believed in (("design", nominal), ("calibrated", made)):
+        run = simulate(programs, true, machine, np.random.default_rng(2), calibrated=believed).run
+        ratio[name] = fit_run(run, ordinary_model(run.touches.chain)).noise.chi2_ratio
+    assert ratio["design"] > 8.0
+    assert ratio["calibrated"] < 1.8
+
+
+def test_a_ball_by_hand() -> None:
+    """Six points of a ball of 10 mm at (1, 2, 3), exactly."""
+    points = np.array([1.0, 2.0, 3.0]) + 10.0 * np.concatenate([np.eye(3), -np.eye(3)])
+    centre, radius, u, left, count = fitted_ball(points, 1 * UM)
+    assert centre == pytest.approx([1.0, 2.0, 3.0])
+    assert (radius, left, count) == pytest.approx((10.0, 0.0, 6))
+    assert u == pytest.approx(1 * UM / np.sqrt(2.0))  # two points see every coordinate
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (lambda rows: [r for r in rows if not r[0].startswith("FF1_1")], "FF1 has"),
+        (lambda rows: [r for r in rows if r[0] not in ("SPH1",)], "points on 2 balls"),
+        (lambda rows: [*rows, ("FF9_1", 0.0, 0.0, 0.0)], "feature 'FF9'"),
+        (lambda rows: [*rows[:-1], (rows[-1][0], *np.add(rows[-1][1:], 5.0))], "FF2"),
+    ],
+)
+def test_points_that_do_not_do(nominal, tmp_path, spoil, told) -> None:
+    rows = spoil(cmm_rows(nominal, np.random.default_rng(3), per_face=22))
+    path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
+    with pytest.raises((BadFile, NotEnoughData), match=told):
+        calibrated(nominal, read_cmm_points(path, nominal), NOISE, NOISE)
+
+
+def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
+    rows = cmm_rows(nominal, np.random.default_rng(3), per_face=30)
+    write_standard(tmp_path / "standard.toml", nominal)
+    out = tmp_path / "made.toml"
+
+    def call(path: Path) -> int:
+        standard = str(tmp_path / "standard.toml")
+        return main(["calibrate", standard, "--points", str(path), "-o", str(out)])
+
+    assert call(written(tmp_path / "inch.csv", rows, scale=1 / 25.4)) == 2
+    assert "in inches, expected mm" in capsys.readouterr().err
+    assert call(written(tmp_path / "other.csv", rows, stamp="0123456789abcdef")) == 2
+    assert "fingerprint" in capsys.readouterr().err
+    assert not out.exists()
+    inches = written(tmp_path / "in.csv", rows, nominal.fingerprint, "in", 1 / 25.4)
+    assert call(inches) == 0
+    assert "FF1: 30 points" in capsys.readouterr().out
+    again = main(["calibrate", str(out), "--points", str(inches), "-o", str(tmp_path / "x.toml")])
+    assert again == 2
+    assert "already" in capsys.readouterr().err
+
+
+def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
+    """Read back by patterns of its own: points on surfaces, normals, ways that meet nothing."""
+    text = dmis_program(nominal)
+    assert nominal.fingerprint in text.splitlines()[0]
+    number = r"(-?\d+\.\d+)"
+    feature, stylus, moved = "", 1.5, 0
+    where = None
+    automatic = False
+    for line in text.splitlines():
+        automatic |= line.startswith("MODE/PROG")
+        if found := re.match(r"F\((\w+)\)=FEAT", line):
+            feature = re.sub(r"_\d+$", "", found[1])
+        if not automatic:
+            continue
+        if found := re.match(rf"\s+PTMEAS/CART,{','.join([number] * 6)}$", line):
+            p, n = np.array(found.groups(), dtype=float).reshape(2, 3)
+            surface = nominal.features[feature]
+            uv = surface.project(p[None])
+            assert np.linalg.norm(surface.point(uv)[0] - p) < 1e-3
+            assert surface.normal(uv)[0] @ n > 1.0 - 1e-6
+            goals = [p + (APPROACH + stylus) * n]
+        elif found := re.match(rf"\s+GOTO/CART,{','.join([number] * 3)}$", line):
+            goals = [np.add(np.array(found.groups(), dtype=float), [0.0, 0.0, stylus])]
+        else:
+            continue
+        for goal in goals:
+            if where is not None:
+                way = where + np.linspace(0.0, 1.0, 60)[:, None] * (goal - where)
+                assert nominal.distance(way).min() > stylus, (feature, line)
+                moved += 1
+            where = goal
+    assert moved > 200
+    opened, closed = text.count("MEAS/") - text.count("PTMEAS/"), text.count("ENDMES")
+    assert opened == closed == text.count("OUTPUT/")
