@@ -15,6 +15,7 @@ what users get wrong in a description. `residual` tests what is left for structu
 regions where a model fails. `search` finds sets of effects, `choice` takes the one that predicts
 best, `answer` turns it into a verdict with sizes and look-alikes. `task` evaluates visits to
 calibrated features for a user's measuring task. `files` reads and writes models and results.
+`drift` has laws of thermal drift from logs.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
 should know about a run is a record in `remarks`, its sentence in `report.words`; a
@@ -46,6 +47,7 @@ PARTS = (
     "answer",
     "task",
     "files",
+    "drift",
 )
 """From bottom to top: each imports only from those before it."""
 

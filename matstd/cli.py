@@ -18,6 +18,7 @@ COMMANDS = {
     "import": "tables of instruments, CMMs and spreadsheets made a run file",
     "compare": "measurements against the model: where it fails",
     "diagnose": "which effect is missing in the model, and how far the error falls with it",
+    "thermal": "laws of a thermal drift from logs of temperatures, and predictions with them",
     "calibrate": "a standard as a coordinate measuring machine finds it; the program for the CMM",
     "uncertainty": "of a measuring task, from visits to the calibrated faces (ISO 15530-3)",
     "compensate": "the identified model goes back to the control: tables, or a part program",
@@ -26,6 +27,9 @@ COMMANDS = {
     "new": "a commented minimal file to start from: machine, project, run or effect",
     "effects": "the effects that can be added, each with its formula and units",
 }
+
+PLACES = dict.fromkeys(("compensate", "contributions"), "compensation")
+"""Where commands are whose modules are not in `commands`."""
 
 EXIT_BAD_INPUT = 2
 
@@ -102,7 +106,8 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     for name, line in COMMANDS.items():
         command = commands.add_parser(name, help=line, description=line[0].upper() + line[1:] + ".")
         if name == called:
-            module = importlib.import_module(f"matstd.commands.{name.replace('-', '_')}")
+            place = PLACES.get(name, "commands")
+            module = importlib.import_module(f"matstd.{place}.{name.replace('-', '_')}")
             module.add_arguments(command)
             command.set_defaults(run=module.run)
     return parser

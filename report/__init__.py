@@ -17,6 +17,7 @@ is a number in a result.
     pages   HTML, one template a page in `pages/templates`
     compensation
             what compensation corrects and leaves, with its page
+    drift   laws of a thermal drift beside one another, with their page
 
 A new picture is a function that takes a result and a path (`maps`, `plots` or `scenes`) and is
 called by the page that shows it; a new sentence is a function in `words`.
@@ -54,6 +55,7 @@ PARTS = (
     "scenes",
     "pages",
     "compensation",
+    "drift",
 )
 """From bottom to top: each imports only from those before it."""
 

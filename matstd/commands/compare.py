@@ -18,6 +18,10 @@ from matstd.options import (
 if TYPE_CHECKING:
     from diagnosis.answer import Comparison
     from diagnosis.files import SavedModel
+    from twin.record import Run
+
+CLEAR = 2.0
+"""Standard uncertainties from which a region is off on average, and does not merely scatter."""
 
 OURS = ("pictures/*.png", *REPORT_FILES)
 """Results that not every comparison leaves."""
@@ -31,20 +35,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
-    import numpy as np
-
-    from diagnosis.answer import compare
-    from diagnosis.files import write_comparison, write_residuals
-    from matstd.folder import results_folder
     from matstd.inputs import read_inputs, with_pitches
-    from matstd.progress import stages, turns
-    from report.words import remark_sentence, structure_words
-    from twin.record import without_copies
+    from twin.words import deviations_in
 
     run, saved = read_inputs(
         [args.run_file], model_file(args), args.effects, "so the agreement is optimistic"
     )
     run = with_pitches(run, args.pitch)
+    with deviations_in(run.touches.deviation_unit):
+        return _compared(args, run, saved)
+
+
+def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
+    """The comparison as files and in words."""
+    import numpy as np
+
+    from diagnosis.answer import compare
+    from diagnosis.files import write_comparison, write_residuals
+    from matstd.folder import results_folder
+    from matstd.progress import stages, turns
+    from report.words import remark_sentence, structure_words
+    from twin.record import without_copies
+
     model = saved.model if saved else first_model(args, run.touches.chain)
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
@@ -82,6 +94,7 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
     from report.words import (
         comparison_sentence,
         learnt_lines,
+        microns,
         promise_sentence,
         region_words,
         remark_sentence,
@@ -96,7 +109,9 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
         say(promise_sentence(found, saved.source.held_out_um * UM))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
-        say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
+        is_off = abs(region.mean) > CLEAR * region.u
+        size = mean if is_off else f"{microns(region.rms)} rms"
+        say(f"{region_words(region.conditions)}: {size} ({int(region.rows.sum())} touches)")
     for line, is_first in console_lines(found.run.touches, found.geometry, found.faults):
         say(f"- {line}", style="bold" if is_first else None)
     for remark in found.remarks:

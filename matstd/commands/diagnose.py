@@ -64,15 +64,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
-    import numpy as np
-
-    from matstd.folder import results_folder
     from matstd.inputs import read_inputs, with_pitches
-    from matstd.progress import stages, turns
+    from twin.words import deviations_in
 
     same = "so that its estimates are made anew: no touch counts twice"
     run, saved = read_inputs(args.run_files, model_file(args), args.effects, same, args.hold_out)
     run = with_pitches(run, args.pitch)
+    with deviations_in(run.touches.deviation_unit):
+        return _made(args, run, saved)
+
+
+def _made(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
+    """The diagnosis as files and in words."""
+    import numpy as np
+
+    from matstd.folder import results_folder
+    from matstd.progress import stages, turns
+
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         result = _diagnosed(args, run, saved, turns(show))
@@ -143,10 +151,11 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     from report.effects import plan_words, rival_words
     from report.geometry import console_lines
     from report.words import remark_sentence, scanned_sentence, verdict_sentence
+    from twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
-    numbers = [Column(word, justify="right", no_wrap=True) for word in right]
+    numbers = [Column(in_own_unit(word), justify="right", no_wrap=True) for word in right]
     words = [Column(word, overflow="fold", max_width=WIDE) for word in ("effect", "size")]
     table = Table(*words, *numbers, box=None)
     for step in result.steps:

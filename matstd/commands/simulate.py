@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
     machine = virtual_machine(args, args.machine, for_errors, dialect, record)
     probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
     first = read_program(args.programs[0], machine.chain, probe, dialect)
-    if first.is_search:
+    if first.is_search or first.is_first:
         return _search(args, first, standard, machine, for_noise)
     with stages() as show:
         campaign = simulate(args.programs, standard, machine, for_noise, probe, show)
@@ -97,7 +97,7 @@ def _search(
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> int:
-    """Write the log of a search, which measures nothing and leaves no run file."""
+    """Write the log of a program that measures nothing and leaves no run file."""
     from matstd.console import say
     from probe_paths.campaign import simulate_search
     from twin.errors import DesignError
@@ -105,12 +105,13 @@ def _search(
 
     if not args.logs or len(args.programs) > 1:
         raise DesignError(
-            f"{program.path}: a search for the standard leaves a log and no run file: run it "
-            "alone, with --logs FOLDER"
+            f"{program.path}: a search for the standard and a commissioning program leave a log "
+            "and no run file: run it alone, with --logs FOLDER"
         )
+    reader = "replan" if program.is_search else "evaluate"
     for name, text in simulate_search(program, standard, machine, rng).log.items():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
-        say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd replan reads it")
+        say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd {reader} reads it")
     return 0
 
 

@@ -10,6 +10,7 @@ from twin.files.pose_file import read_poses, reading_columns
 from twin.files.run_file import SetupTable, read_run
 from twin.files.run_writer import write_run
 from twin.files.sensor_file import SensorRecord, read_sensors
+from twin.files.table import CsvTable
 from twin.files.toml import (
     Table,
     check_format,
@@ -28,6 +29,7 @@ from twin.files.whole import (
 
 __all__ = [
     "NOT_WRITABLE",
+    "CsvTable",
     "MachineTables",
     "Pair",
     "SensorRecord",

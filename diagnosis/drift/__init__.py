@@ -1,0 +1,46 @@
+"""Thermal drift from logs: laws that are judged by hours that they never saw.
+
+In: logs of temperatures, speeds and displacements (`read_log`). Out: laws beside one another
+(`judge`), each with what it leaves one step ahead, in blocks left out, and running freely in
+held-out hours; the one that was `chosen` inside the training part, its uncertainty, and what
+probing now and then makes of it (`kept`). A new law is a module with a function that fits it, and
+a line in `judged.offered`.
+"""
+
+from diagnosis.drift.arx import ArxInputs
+from diagnosis.drift.arx import coefficients as arx_coefficients
+from diagnosis.drift.beams import Beam, beam_estimate, read_beams
+from diagnosis.drift.drift_file import read_law, write_drift, write_prediction
+from diagnosis.drift.judged import Judged, Law, chosen, judge, offered
+from diagnosis.drift.linear import LinearLaw
+from diagnosis.drift.log_file import check_alike, read_log, read_probed
+from diagnosis.drift.network import has_network
+from diagnosis.drift.probing import Kept, kept
+from diagnosis.drift.record import DriftRecord, IntArray, joined, varying
+
+__all__ = [
+    "ArxInputs",
+    "Beam",
+    "DriftRecord",
+    "IntArray",
+    "Judged",
+    "Kept",
+    "Law",
+    "LinearLaw",
+    "arx_coefficients",
+    "beam_estimate",
+    "check_alike",
+    "chosen",
+    "has_network",
+    "joined",
+    "judge",
+    "kept",
+    "offered",
+    "read_beams",
+    "read_law",
+    "read_log",
+    "read_probed",
+    "varying",
+    "write_drift",
+    "write_prediction",
+]

@@ -1,0 +1,198 @@
+"""Laws of a drift beside one another: judged by blocks left out, then by hours never seen."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+
+from diagnosis.drift.arx import arx
+from diagnosis.drift.beams import Beam, beam_law
+from diagnosis.drift.lags import at_once, remembered
+from diagnosis.drift.linear import ridge
+from diagnosis.drift.network import has_network, network
+from diagnosis.drift.plain_laws import OneStepArx, constant, one_step_arx
+from diagnosis.drift.record import DriftRecord, IntArray, blocks, is_speed
+from twin.compute import Progress
+from twin.frames import Array
+
+BLOCKS = 4
+"""Parts of the training hours that are left out in turn: each must hold a load cycle."""
+
+
+class Law(Protocol):
+    """A law of a drift; `residual` and `memory` are those of what it leaves in training."""
+
+    @property
+    def residual(self) -> Array: ...  # noqa: D102
+
+    @property
+    def memory(self) -> float: ...  # noqa: D102
+
+    def predicted(self, record: DriftRecord) -> Array:
+        """Free run, (N, K), base units."""
+        ...
+
+    def leverage(self, record: DriftRecord) -> Array:
+        """Variance by unknown coefficients, per unit variance of the residual, (N,)."""
+        ...
+
+
+Fits = Callable[[DriftRecord, Sequence[IntArray]], Law]
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """One law and how it did, root mean squares by component, (K,), base units.
+
+    Attributes:
+        name: Of the law.
+        law: Fitted to all of the training part.
+        one_step: In the held-out hours, the displacement of the row before given.
+        left_out: Free run in blocks of the training part that neither fit nor choice had seen.
+        free_run: In the held-out hours.
+        noisy: The same with noise on the temperatures; None where none was asked for.
+        factor: By which left-out blocks miss more than residual and leverage say.
+        pole: Of a law that is unstable; None of the others.
+    """
+
+    name: str
+    law: Law
+    one_step: Array
+    left_out: Array
+    free_run: Array
+    noisy: Array | None
+    factor: Array
+    pole: float | None = None
+
+    @property
+    def is_offered(self) -> bool:
+        """Whether it may be chosen: not if it was fitted for one step and is used for many."""
+        return not isinstance(self.law, OneStepArx)
+
+    def total(self, values: Array, record: DriftRecord) -> float:
+        """Over all components, in micrometres or microradians."""
+        return float(np.sqrt(np.mean((values / record.size) ** 2)))
+
+    def u(self, record: DriftRecord) -> Array:
+        """Standard uncertainty of the free run at every row, (N, K), base units."""
+        spread = np.sqrt(1.0 + self.law.leverage(record))
+        return self.factor * self.law.residual * spread[:, None]
+
+
+def offered(
+    record: DriftRecord, beams: Sequence[Beam] = (), networks: bool = True
+) -> dict[str, Fits]:
+    """Every law that suits a record, by name."""
+    has_speed = any(map(is_speed, record.drives))
+    laws: dict[str, Fits] = {
+        "constant": constant,
+        "one-step-arx": one_step_arx,
+        "static-ridge": lambda r, p: ridge(r, at_once(r), p),
+    }
+    if has_speed:
+        laws["speed-lags"] = lambda r, p: ridge(r, remembered(r, temperatures=False), p)
+    laws["lags"] = lambda r, p: ridge(r, remembered(r, temperatures=True), p)
+    laws["arx"] = arx
+    if networks and has_network():
+        laws["network"] = network
+    if beams:
+        laws["beams"] = partial(_with_beams, beams, False)
+        laws["beams-arx"] = partial(_with_beams, beams, True)
+    return laws
+
+
+def _with_beams(
+    beams: Sequence[Beam], is_coupled: bool, record: DriftRecord, parts: Sequence[IntArray]
+) -> Law:
+    return beam_law(beams, record, parts, is_coupled)
+
+
+def judge(
+    record: DriftRecord,
+    train: IntArray,
+    held: IntArray,
+    laws: dict[str, Fits],
+    show: Progress,
+    noisy: DriftRecord | None = None,
+) -> list[Judged]:
+    """Fit and judge laws; the choice among them never sees a held-out row.
+
+    Args:
+        record: Training part and held-out hours.
+        train: Rows to learn from.
+        held: Rows held out.
+        laws: By name.
+        show: Told which law is at work.
+        noisy: The same record with noise on its temperatures.
+    """
+    out = []
+    for k, (name, fits) in enumerate(laws.items()):
+        show("laws of the drift", k, len(laws))
+        out.append(_judged(name, fits, record, train, held, noisy))
+    return out
+
+
+def chosen(judged: Sequence[Judged], record: DriftRecord) -> Judged:
+    """The law that predicts left-out blocks of the training part best."""
+    return min((j for j in judged if j.is_offered), key=lambda j: j.total(j.left_out, record))
+
+
+def _judged(
+    name: str,
+    fits: Fits,
+    record: DriftRecord,
+    train: IntArray,
+    held: IntArray,
+    noisy: DriftRecord | None,
+) -> Judged:
+    parts = blocks(train, BLOCKS)
+    law = fits(record, parts)
+    nothing = np.full(len(record.components), np.nan)
+    if isinstance(law, OneStepArx) and not law.is_stable:
+        step = rms(law.one_step(record)[held] - record.displacement[held])
+        return Judged(
+            name=name,
+            law=law,
+            one_step=step,
+            left_out=nothing,
+            free_run=nothing,
+            noisy=None,
+            factor=nothing,
+            pole=law.pole,
+        )
+    errors, ratios, pole = [], [], None
+    for i, part in enumerate(parts):
+        own = fits(record, [b for j, b in enumerate(parts) if j != i])
+        if isinstance(own, OneStepArx) and not own.is_stable:
+            pole = own.pole
+            break
+        error = own.predicted(record)[part] - record.displacement[part]
+        errors.append(error)
+        spread = np.sqrt(1.0 + own.leverage(record)[part])[:, None]
+        ratios.append(error / np.maximum(own.residual * spread, 1e-12))
+    free = law.predicted(record)
+    return Judged(
+        name=name,
+        law=law,
+        one_step=rms((_one_step(law, record, free) - record.displacement)[held]),
+        left_out=nothing if pole else rms(np.concatenate(errors)),
+        free_run=rms((free - record.displacement)[held]),
+        noisy=rms((law.predicted(noisy) - record.displacement)[held]) if noisy else None,
+        factor=nothing if pole else rms(np.concatenate(ratios)),
+        pole=pole,
+    )
+
+
+def _one_step(law: Law, record: DriftRecord, free: Array) -> Array:
+    """With the displacement of the row before: that plus the change that the law predicts."""
+    if isinstance(law, OneStepArx):
+        return law.one_step(record)
+    before = np.maximum(np.arange(len(record)) - 1, 0)
+    return record.displacement[before] + free - free[before]
+
+
+def rms(values: Array) -> Array:
+    """Of every column, (K,)."""
+    return np.sqrt(np.mean(values**2, axis=0))

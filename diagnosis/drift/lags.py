@@ -1,0 +1,76 @@
+"""Drives at once, and drives that are followed with time constants: columns of linear laws."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import lfilter
+
+from diagnosis.drift.record import DriftRecord, is_speed
+from twin.frames import Array
+from twin.units import MINUTE
+
+LAGS = tuple(minutes * MINUTE for minutes in (4.0, 16.0, 64.0, 256.0))
+"""Time constants of first-order lags, s; neighbours, a factor of four apart, imitate any between
+them to 5 % of a step.
+"""
+
+
+@dataclass(frozen=True)
+class Lagged:
+    """Drives, each at once (time constant zero) or with a lag.
+
+    Attributes:
+        places: Drive and time constant, s, of every column.
+    """
+
+    places: tuple[tuple[str, float], ...]
+
+    def __call__(self, record: DriftRecord) -> Array:
+        """What has followed of every drive, (N, M)."""
+        drive = record.columns([name for name, _ in self.places])
+        out = np.empty_like(drive)
+        for k, (name, tau) in enumerate(self.places):
+            poles = (np.exp(-record.step / tau),) if tau > 0.0 else ()
+            out[:, k] = followed(record, name, poles)
+        return out
+
+
+def followed(record: DriftRecord, drive: str, poles: tuple[float, ...]) -> Array:
+    """A drive after first-order lags one behind the other, gain 1, (N,).
+
+    In every stretch anew: at its first row the machine has settled at the temperatures that it has
+    there, and is cold where speeds are concerned.
+
+    Args:
+        record: With the drive.
+        drive: Its name.
+        poles: Of the lags, exp(-step/tau).
+    """
+    values = record.columns([drive])[:, 0]
+    if not poles:
+        return values
+    denominator = np.poly(poles)
+    gain = [denominator.sum()]
+    out = np.empty_like(values)
+    for rows in record.stretches():
+        start = 0.0 if is_speed(drive) else values[rows.start]
+        out[rows] = start + lfilter(gain, denominator, values[rows] - start)
+    return out
+
+
+def at_once(record: DriftRecord) -> Lagged:
+    """Every drive without memory."""
+    return Lagged(tuple((name, 0.0) for name in record.drives))
+
+
+def remembered(record: DriftRecord, temperatures: bool) -> Lagged:
+    """Every temperature at once, and speeds with every lag.
+
+    Args:
+        record: With the drives.
+        temperatures: Whether temperatures are followed with lags too.
+    """
+    speeds = [name for name in record.drives if is_speed(name)]
+    lagged = list(record.drives) if temperatures else speeds
+    plain = tuple((name, 0.0) for name in record.drives if name not in speeds)
+    return Lagged((*plain, *((name, tau) for tau in LAGS for name in lagged)))

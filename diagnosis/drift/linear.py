@@ -1,0 +1,189 @@
+"""Linear laws: ridge regression whose weight is chosen by blocks left out, with its covariance."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from diagnosis.drift.record import DriftRecord, IntArray
+from twin.frames import Array
+
+WEIGHTS = 10.0 ** np.arange(-6.0, 1.1, 0.5)
+"""Of ridge regression, in variances of a standardised column."""
+
+SAME = 1e-9
+"""A column whose spread is less than this of its size is constant."""
+
+
+class Inputs(Protocol):
+    """What a linear law makes of the drives of a record."""
+
+    def __call__(self, record: DriftRecord) -> Array:
+        """Columns, (N, M)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class LinearLaw:
+    """``y = intercept + (X - mean)/scale @ coefficients``, and how well it is known.
+
+    Attributes:
+        inputs: Columns X of a record.
+        mean: Of the columns in training, (M,).
+        scale: Their standard deviations, (M,).
+        intercept: (K,), base units.
+        coefficients: (M, K).
+        weight: Of the ridge.
+        covariance: Of intercept and coefficients per unit variance of one independent residual,
+            (1 + M, 1 + M).
+        residual: Standard deviation of what is left in training, (K,).
+        memory: Time in which what is left forgets itself, s.
+    """
+
+    inputs: Inputs
+    mean: Array
+    scale: Array
+    intercept: Array
+    coefficients: Array
+    weight: float
+    covariance: Array
+    residual: Array
+    memory: float
+
+    def basis(self, record: DriftRecord) -> Array:
+        """One and the standardised columns, (N, 1 + M)."""
+        return _with_one((self.inputs(record) - self.mean) / self.scale)
+
+    def predicted(self, record: DriftRecord) -> Array:
+        """Free run: no displacement is fed back, (N, K)."""
+        return self.basis(record) @ np.vstack([self.intercept, self.coefficients])
+
+    def leverage(self, record: DriftRecord) -> Array:
+        """Variance that unknown coefficients add, per unit variance of the residual, (N,)."""
+        X = self.basis(record)
+        return np.einsum("nm,mk,nk->n", X, self.covariance, X)
+
+
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """Sums of products of standardised columns, block by block, from which many fits are made.
+
+    Attributes:
+        gram: (B, 1 + M, 1 + M).
+        cross: With the components in units of their size, (B, 1 + M, K).
+        square: Of the components, (B, K).
+        count: Rows of each block, (B,).
+    """
+
+    gram: Array
+    cross: Array
+    square: Array
+    count: Array
+
+    def left_out(self, sets: IntArray, weight: float) -> Array:
+        """Mean squared error of every block, predicted from the others, (B, C).
+
+        Args:
+            sets: Columns of every candidate, (C, m); 0 is the constant and stands in each.
+            weight: Of the ridge.
+        """
+        at, across = sets[:, :, None], sets[:, None, :]
+        gram, cross = self.gram[:, at, across], self.cross[:, sets]
+        others = gram.sum(axis=0) - gram
+        count = self.count.sum() - self.count
+        penalty = weight * count[:, None, None, None] * np.diag(np.arange(sets.shape[1]) > 0)
+        theta = np.linalg.solve(others + penalty + _tiny(others), cross.sum(axis=0) - cross)
+        error = (
+            self.square[:, None]
+            - 2.0 * np.einsum("bcmk,bcmk->bck", theta, cross)
+            + np.einsum("bcmk,bcmn,bcnk->bck", theta, gram, theta)
+        )
+        return np.maximum(error, 0.0).mean(axis=2) / self.count[:, None]
+
+
+def _tiny(gram: Array) -> Array:
+    """What keeps columns that are sums of one another solvable."""
+    m = gram.shape[-1]
+    return 1e-12 * np.trace(gram, axis1=-2, axis2=-1)[..., None, None] / m * np.eye(m)
+
+
+def _with_one(columns: Array) -> Array:
+    return np.column_stack([np.ones(len(columns)), columns])
+
+
+def standardised(X: Array, rows: IntArray) -> tuple[Array, Array, Array]:
+    """Columns less their mean over rows and in units of their spread there, mean and spread."""
+    mean, spread = X[rows].mean(axis=0), X[rows].std(axis=0)
+    scale = np.where(spread > SAME * np.maximum(np.abs(mean), 1.0), spread, np.inf)
+    return (X - mean) / scale, mean, scale
+
+
+def sums(record: DriftRecord, Z: Array, parts: Sequence[IntArray]) -> Sums:
+    """Sums of standardised columns over blocks of rows."""
+    Z, y = _with_one(Z), record.displacement / record.size
+    return Sums(
+        np.array([Z[b].T @ Z[b] for b in parts]),
+        np.array([Z[b].T @ y[b] for b in parts]),
+        np.array([(y[b] ** 2).sum(axis=0) for b in parts]),
+        np.array([float(len(b)) for b in parts]),
+    )
+
+
+def ridge(record: DriftRecord, inputs: Inputs, parts: Sequence[IntArray]) -> LinearLaw:
+    """A linear law whose weight predicts left-out blocks best."""
+    Z, _, _ = standardised(inputs(record), np.concatenate(parts))
+    added = sums(record, Z, parts)
+    every = np.arange(Z.shape[1] + 1)[None]
+    errors = [(added.left_out(every, w) @ [1.0]) @ added.count for w in WEIGHTS]
+    return fitted(record, inputs, parts, float(WEIGHTS[int(np.argmin(errors))]))
+
+
+def fitted(
+    record: DriftRecord, inputs: Inputs, parts: Sequence[IntArray], weight: float
+) -> LinearLaw:
+    """A linear law with a given weight, from all blocks.
+
+    The residual is no white noise: rows count as many as there are spans of twice its memory.
+    """
+    rows = np.concatenate(parts)
+    Z, mean, scale = standardised(inputs(record), rows)
+    X, y = _with_one(Z), record.displacement
+    penalty = weight * len(rows) * np.diag(np.arange(X.shape[1]) > 0)
+    gram = X[rows].T @ X[rows]
+    theta: Array = np.asarray(
+        np.linalg.solve(gram + penalty + _tiny(gram), X[rows].T @ y[rows]), dtype=np.float64
+    )
+    left = y[rows] - X[rows] @ theta
+    spread: Array = np.sqrt(np.mean(left**2, axis=0))
+    memory = memory_of(left / record.size, record.step)
+    independent = max(len(rows) * record.step / (2.0 * memory), 1.0)
+    inverse: Array = np.asarray(
+        np.linalg.pinv((gram + penalty) / len(rows), hermitian=True), dtype=np.float64
+    )
+    return LinearLaw(
+        inputs=inputs,
+        mean=mean,
+        scale=scale,
+        intercept=theta[0],
+        coefficients=theta[1:],
+        weight=weight,
+        covariance=inverse / independent,
+        residual=spread,
+        memory=memory,
+    )
+
+
+def memory_of(left: Array, step: float) -> float:
+    """Time after which the correlation of a residual (N, K) has fallen to 1/e, s; a step at least.
+
+    Example:
+        >>> memory_of(np.sin(np.arange(1000) / 50.0)[:, None], 60.0) / 60.0
+        60.0
+    """
+    left = left - left.mean(axis=0)
+    power = float((left**2).sum())
+    for lag in range(1, len(left) // 2):
+        if (left[lag:] * left[:-lag]).sum() < power * np.exp(-1.0):
+            return lag * step
+    return step * max(len(left) // 2, 1)

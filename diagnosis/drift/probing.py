@@ -1,0 +1,119 @@
+"""A law of a drift that is kept right by probing: every probed standard corrects its state.
+
+What the law leaves is a process that forgets itself (standard deviation and memory of the law's
+own residual), and its coefficients are known only so well. Both are a Gaussian state, and a probed
+drift is a reading of their sum: a Kalman filter. Between two probings the correction fades where
+it was a passing residual and stays where it was a coefficient.
+
+Reference: adaptive learning by on-machine probing, Blaser et al., J. Manuf. Syst. 44, 2017;
+Kalman filter, Anderson and Moore, Optimal Filtering.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.drift.judged import Judged
+from diagnosis.drift.linear import LinearLaw
+from diagnosis.drift.record import DriftRecord, IntArray
+from twin.frames import Array
+from twin.units import DAY
+
+RENEWED = 2.0 * DAY
+"""Time in which a machine changes by as much as its coefficients were unknown, s: of a week with
+a change of its load half-way, 1 to 4 days differ by less than a tenth of what is left.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """A drift as it is predicted with the probings up to every row.
+
+    Attributes:
+        predicted: (N, K), base units.
+        u: Standard uncertainty, (N, K).
+        offset_only: What holding the last probed value does, no law at all, (N, K).
+    """
+
+    predicted: Array
+    u: Array
+    offset_only: Array
+
+
+def kept(judged: Judged, record: DriftRecord, rows: IntArray, u: float | Array) -> Kept:
+    """Predict with probings at some rows of a record.
+
+    Args:
+        judged: The law, with what it missed in left-out blocks.
+        record: Its displacement is known at `rows` only.
+        rows: Rows at which a standard was probed.
+        u: Standard uncertainty of what was probed, µm or µrad, one for all or (n,).
+    """
+    law = judged.law
+    free = law.predicted(record)
+    basis = law.basis(record) if isinstance(law, LinearLaw) else np.zeros((len(record), 0))
+    unit = law.covariance if isinstance(law, LinearLaw) else np.zeros((0, 0))
+    known, noise = np.zeros(len(record), dtype=bool), np.zeros(len(record))
+    known[rows], noise[rows] = True, u
+    out, spread = np.empty_like(free), np.empty_like(free)
+    for k in range(free.shape[1]):
+        variance = float(judged.factor[k] * law.residual[k]) ** 2
+        misses = record.displacement[:, k] - free[:, k]
+        filtered = _Filter(variance, unit, law.memory)
+        for t in range(len(record)):
+            if t:
+                filtered.advance(record.step)
+            if known[t]:
+                filtered.update(basis[t], misses[t], (noise[t] * record.size[k]) ** 2)
+            added, v = filtered.at(basis[t])
+            out[t, k], spread[t, k] = free[t, k] + added, np.sqrt(v)
+    return Kept(out, spread, _held(record, known))
+
+
+def _held(record: DriftRecord, known: np.ndarray) -> Array:
+    """The last probed value, before the first one that value."""
+    at = np.maximum.accumulate(np.where(known, np.arange(len(known)), -1))
+    first = int(np.argmax(known))
+    return record.displacement[np.where(at < 0, first, at)]
+
+
+class _Filter:
+    """State: what is wrong with every coefficient, then what passes.
+
+    Args:
+        variance: Of what passes.
+        unit: Covariance of the coefficients per unit of it.
+        memory: Of what passes, s.
+    """
+
+    def __init__(self, variance: float, unit: Array, memory: float) -> None:
+        m = len(unit)
+        self.first = variance * unit
+        self.variance, self.memory = variance, memory
+        self.mean = np.zeros(m + 1)
+        self.covariance = np.zeros((m + 1, m + 1))
+        self.covariance[:m, :m] = self.first
+        self.covariance[m, m] = variance
+
+    def advance(self, step: float) -> None:
+        """By some time, s."""
+        m = len(self.first)
+        fades = np.exp(-step / self.memory)
+        self.mean[m] *= fades
+        self.covariance[m] *= fades
+        self.covariance[:, m] *= fades
+        self.covariance[m, m] += self.variance * (1.0 - fades**2)
+        self.covariance[:m, :m] += self.first * step / RENEWED
+
+    def update(self, row: Array, value: float, noise: float) -> None:
+        """With a probed value of what the law misses."""
+        h = np.append(row, 1.0)
+        across = self.covariance @ h
+        gain = across / (h @ across + noise)
+        self.mean += gain * (value - h @ self.mean)
+        self.covariance -= np.outer(gain, across)
+
+    def at(self, row: Array) -> tuple[float, float]:
+        """What the law misses now, and its variance."""
+        h = np.append(row, 1.0)
+        return float(h @ self.mean), float(h @ self.covariance @ h)

@@ -1,0 +1,14 @@
+"""Laws of a thermal drift in words, pictures and on a page: each beside the others."""
+
+from report.drift.drift_page import write_drift_page
+from report.drift.drift_pictures import draw_drift, draw_laws
+from report.drift.drift_words import drift_lines, kept_line, law_title
+
+__all__ = [
+    "draw_drift",
+    "draw_laws",
+    "drift_lines",
+    "kept_line",
+    "law_title",
+    "write_drift_page",
+]

@@ -1,0 +1,97 @@
+"""What laws of a thermal drift leave, in sentences."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from diagnosis.drift import ArxInputs, DriftRecord, IntArray, Judged, Kept, LinearLaw
+from report.numbers import digits, span
+from twin.frames import Array
+from twin.units import MINUTE
+
+_TITLES = {
+    "hold": "last value held",
+    "constant": "constant",
+    "one-step-arx": "ARX, all drives, fitted one step ahead",
+    "static-ridge": "ridge on all drives at once",
+    "speed-lags": "ridge, speed with first-order lags",
+    "lags": "ridge, all drives with first-order lags",
+    "arx": "ARX, few drives, fitted running freely",
+    "network": "neural network, one hidden layer",
+    "beams": "beams alone",
+    "beams-arx": "beams with ARX",
+}
+
+
+def law_title(name: str) -> str:
+    """A law in words."""
+    return _TITLES.get(name, name)
+
+
+def units_word(record: DriftRecord) -> str:
+    """Unit in which components are told together."""
+    return " and ".join("µm" if u == "mm" else "µrad" for u in dict.fromkeys(record.units))
+
+
+def together(values: Array, record: DriftRecord) -> float:
+    """Root mean square over components, µm or µrad."""
+    return float(np.sqrt(np.mean((values / record.size) ** 2)))
+
+
+def drift_lines(
+    record: DriftRecord, judged: Sequence[Judged], best: Judged, hold: Array
+) -> Iterator[tuple[str, bool]]:
+    """The table of laws and the choice, line by line, and whether a line is the chosen one.
+
+    Args:
+        record: All hours.
+        judged: Every law.
+        best: The chosen one.
+        hold: What holding the last value leaves one step ahead, (K,).
+    """
+    has_noise = any(j.noisy is not None for j in judged)
+    head = f"{'rms over ' + str(len(record.components)) + ' components, ' + units_word(record):<42}"
+    head += f"{'one step':>10}{'left out':>10}{'held out':>10}"
+    yield head + (f"{'with noise':>12}" if has_noise else ""), False
+    step = digits(together(hold, record))
+    yield f"{law_title('hold'):<42}{step:>10}{'–':>10}{'–':>10}", False
+    for j in judged:
+        cells = [digits(together(v, record)) for v in (j.one_step, j.left_out, j.free_run)]
+        line = f"{law_title(j.name):<42}" + "".join(f"{c:>10}" for c in cells)
+        if j.noisy is not None:
+            line += f"{digits(together(j.noisy, record)):>12}"
+        if j.pole is not None:
+            line += f"  unstable: pole {j.pole:.4f}"
+        yield line, j is best
+    yield f"chosen by left-out blocks: {law_title(best.name)}; {law_words(best, record)}", True
+
+
+def law_words(judged: Judged, record: DriftRecord) -> str:
+    """Uncertainty of a law, and what it is made of."""
+    u = judged.u(record)
+    words = f"u {digits(together(np.sqrt(np.mean(u**2, axis=0)), record), 2)} {units_word(record)}"
+    law = judged.law
+    if isinstance(law, LinearLaw) and isinstance(law.inputs, ArxInputs):
+        times = " and ".join(span(tau, 2) for tau in law.inputs.time_constants)
+        words += f"; drives {', '.join(law.inputs.drives)}; poles at {times}"
+    return words
+
+
+def kept_line(result: Kept, record: DriftRecord, rows: IntArray, every: float) -> str:
+    """What probing now and then leaves, beside the same probings without a law.
+
+    Args:
+        result: With the probings.
+        record: All hours.
+        rows: Rows that are judged.
+        every: Time between two probings, s.
+    """
+    left, plain = (
+        together(np.sqrt(np.mean((v - record.displacement)[rows] ** 2, axis=0)), record)
+        for v in (result.predicted, result.offset_only)
+    )
+    every_words = f"{every / MINUTE:.0f} min" if every < 120 * MINUTE else span(every)
+    return (
+        f"probed every {every_words}: {digits(left)} {units_word(record)} held out "
+        f"({digits(plain)} if the probed value is held without a law)"
+    )

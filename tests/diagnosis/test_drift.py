@@ -1,0 +1,226 @@
+"""Laws of a thermal drift, each beside something that does not share its code."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sklearn.linear_model import Ridge
+
+from diagnosis.drift.arx import ArxInputs, arx, coefficients
+from diagnosis.drift.beams import Beam, beam_estimate, read_beams
+from diagnosis.drift.judged import chosen, judge, offered
+from diagnosis.drift.lags import Lagged, at_once, followed
+from diagnosis.drift.linear import WEIGHTS, fitted, ridge
+from diagnosis.drift.network import _regressor, network
+from diagnosis.drift.plain_laws import one_step_arx
+from diagnosis.drift.probing import RENEWED, kept
+from diagnosis.drift.record import DriftRecord, blocks, joined
+from twin.compute import silent
+from twin.errors import BadFile
+from twin.units import UM
+
+STEP = 300.0
+
+
+def heat(rng, rows=400, drives=4):
+    """Temperatures that wander, and a spindle that is on and off."""
+    T = 20.0 + np.cumsum(0.1 * rng.standard_normal((rows, drives)), axis=0)
+    rpm = 1000.0 * np.repeat(rng.integers(0, 4, rows // 40 + 1), 40)[:rows]
+    rpm[:40] = 0.0
+    return np.column_stack([T, rpm])
+
+
+def record_of(drive, displacement):
+    names = tuple(f"t{k}" for k in range(drive.shape[1] - 1))
+    count = displacement.shape[1]
+    return DriftRecord(
+        time=np.arange(len(drive)) * STEP,
+        stretch=np.zeros(len(drive), dtype=np.int64),
+        step=STEP,
+        drives=(*names, "spindle_rpm"),
+        drive=drive,
+        components=tuple("xyz"[:count]),
+        units=("mm",) * count,
+        displacement=displacement,
+    )
+
+
+def by_its_equation(a, b, constant, drive, first):
+    """The difference equation of the paper, step by step; b is (D, q)."""
+    out = list(first)
+    for t in range(len(first), len(drive)):
+        past = sum(a[i] * out[t - 1 - i] for i in range(len(a)))
+        new = sum(b[j, k] * drive[t - k, j] for j in range(b.shape[0]) for k in range(b.shape[1]))
+        out.append(constant + past + new)
+    return np.array(out)
+
+
+@pytest.fixture(scope="module")
+def planted():
+    """A drift of its own past (time constants 30 and 110 min), two sensors and the speed."""
+    rng = np.random.default_rng(3)
+    drive = heat(rng)
+    a = np.poly(np.exp(-STEP / np.array([1800.0, 6600.0])))
+    b = np.zeros((5, 2))
+    b[0], b[2], b[4] = (3e-4, -2e-4), (-1e-4, 0.0), (1e-7, 0.0)
+    settled = (0.001 + drive[0] @ b.sum(axis=1)) / a.sum()
+    true = by_its_equation(-a[1:], b, 0.001, drive, [settled, settled])
+    y = np.column_stack([true, -0.5 * true]) + 0.1 * UM * rng.standard_normal((len(true), 2))
+    return record_of(drive, y)
+
+
+def test_arx_finds_the_drives_and_runs_freely_into_hours_it_never_saw(planted):
+    rows = np.arange(280)
+    law = arx(planted, blocks(rows, 4))
+    assert {"t0", "t2", "spindle_rpm"} <= set(law.inputs.drives)
+    left = (law.predicted(planted) - planted.displacement)[280:] / UM
+    assert np.sqrt(np.mean(left**2)) < 0.05 * np.ptp(planted.displacement[280:, 0]) / UM
+    assert all(0.0 < pole < 1.0 for pole in law.inputs.poles(STEP))
+
+
+def test_the_coefficients_of_an_arx_law_are_those_of_its_equation(planted):
+    inputs = ArxInputs(("t0", "t2", "spindle_rpm"), (1500.0, 7000.0), 2)
+    law = fitted(planted, inputs, [np.arange(300)], 1e-4)
+    found = coefficients(law, STEP)
+    free = law.predicted(planted)
+    drive = planted.columns(inputs.drives)
+    for k in range(2):
+        again = by_its_equation(found.a, found.b[..., k], found.constant[k], drive, free[:2, k])
+        np.testing.assert_allclose(again, free[:, k], atol=1e-9)
+
+
+def test_ridge_is_that_of_scikit_learn(planted):
+    rows = np.arange(100, 300)
+    law = fitted(planted, at_once(planted), [rows], 0.03)
+    Z = (planted.drive - planted.drive[rows].mean(axis=0)) / planted.drive[rows].std(axis=0)
+    theirs = Ridge(alpha=0.03 * len(rows)).fit(Z[rows], planted.displacement[rows])
+    np.testing.assert_allclose(law.predicted(planted), theirs.predict(Z), atol=1e-9)
+
+
+def test_the_weight_of_a_ridge_is_the_best_of_refitted_blocks(planted):
+    parts = blocks(np.arange(280), 4)
+    law = ridge(planted, at_once(planted), parts)
+    y = planted.displacement / UM
+    Z = (planted.drive - planted.drive[:280].mean(axis=0)) / planted.drive[:280].std(axis=0)
+
+    def left_out(weight):
+        total = 0.0
+        for part in parts:
+            others = np.setdiff1d(np.arange(280), part)
+            theirs = Ridge(alpha=weight * len(others)).fit(Z[others], y[others])
+            total += ((theirs.predict(Z[part]) - y[part]) ** 2).sum()
+        return total
+
+    own = left_out(law.weight)
+    assert all(own <= 1.0001 * left_out(w) for w in WEIGHTS)
+
+
+def test_a_lag_is_the_exact_solution_of_a_body_that_warms_up():
+    """A speed that is on from row 10: 1 - exp(-t/tau); a temperature has settled at its first."""
+    drive = np.column_stack([np.full(100, 25.0), np.where(np.arange(100) < 10, 0.0, 2000.0)])
+    record = record_of(drive, np.zeros((100, 1)))
+    pole = (float(np.exp(-STEP / 3000.0)),)
+    t = np.maximum(np.arange(100) - 9, 0) * STEP
+    speed = followed(record, "spindle_rpm", pole)
+    np.testing.assert_allclose(speed, 2000.0 * -np.expm1(-t / 3000.0), atol=1e-9)
+    np.testing.assert_allclose(followed(record, "t0", pole), 25.0)
+
+
+def test_a_log_of_another_day_begins_anew(planted):
+    two = joined([planted, planted])
+    columns = Lagged((("spindle_rpm", 3600.0), ("t0", 3600.0)))
+    once, twice = columns(planted), columns(two)
+    np.testing.assert_array_equal(twice, np.vstack([once, once]))
+
+
+def test_a_network_predicts_as_scikit_learn_does(planted):
+    law = network(planted, blocks(np.arange(200), 2))
+    V, v, W, w = law.weights[0]
+    theirs = _regressor()(hidden_layer_sizes=(len(v),), activation="tanh", max_iter=1, solver="sgd")
+    Z = (planted.drive - law.mean) / law.scale
+    theirs.partial_fit(Z[:10], np.zeros((10, 2)))
+    theirs.coefs_, theirs.intercepts_ = [V, W], [v, w]
+    alone = replace(law, weights=law.weights[:1]).predicted(planted)
+    np.testing.assert_allclose(alone, law.center + law.spread * theirs.predict(Z), atol=1e-12)
+
+
+def test_one_step_is_no_evidence_and_an_unstable_law_is_told():
+    """A drift that grows with the hours has a pole of 1: nearly no error one step ahead."""
+    rng = np.random.default_rng(5)
+    drive = heat(rng)
+    y = np.cumsum(0.5 * UM + 0.2 * UM * rng.standard_normal((400, 1)), axis=0)
+    record = record_of(drive, y * np.exp(np.arange(400) / 200.0)[:, None])
+    laws = {n: f for n, f in offered(record).items() if n in ("constant", "one-step-arx")}
+    judged = judge(record, np.arange(280), np.arange(280, 400), laws, silent)
+    arx_law = judged[1]
+    assert arx_law.pole is not None
+    assert arx_law.pole > 1.0
+    assert arx_law.one_step[0] < 0.05 * judged[0].free_run[0]
+    assert not one_step_arx(record, [np.arange(280)]).is_stable
+    assert chosen(judged, record).name == "constant"
+
+
+def test_left_out_blocks_choose_and_their_uncertainty_holds(planted):
+    laws = offered(planted, networks=False)
+    judged = judge(planted, np.arange(280), np.arange(280, 400), laws, silent)
+    best = chosen(judged, planted)
+    assert best.left_out[0] == min(j.left_out[0] for j in judged if j.is_offered)
+    z = ((best.law.predicted(planted) - planted.displacement) / best.u(planted))[280:]
+    assert 0.8 <= np.mean(np.abs(z) < 2.0) <= 1.0
+
+
+def test_probing_is_what_conditioning_a_gaussian_process_gives(planted):
+    """The filter against one solution with the whole covariance of state and probings."""
+    laws = {"static-ridge": offered(planted)["static-ridge"]}
+    (judged,) = judge(planted, np.arange(280), np.arange(280, 400), laws, silent)
+    at = np.array([20, 60, 61, 150])
+    result = kept(judged, planted, at, 2.0)
+    law, n = judged.law, 180
+    X, t = law.basis(planted)[:n], np.arange(n) * STEP
+    variance = float(judged.factor[0] * law.residual[0]) ** 2
+    forgets = variance * np.exp(-np.abs(t[:, None] - t) / law.memory)
+    drifts = 1.0 + np.minimum(t[:, None], t) / RENEWED
+    K = forgets + variance * drifts * (X @ law.covariance @ X.T)
+    free = law.predicted(planted)[:n, 0]
+    misses = planted.displacement[:n, 0] - free
+    for row in (10, 20, 59, 100, 149, 170):
+        seen = at[at <= row]
+        if not len(seen):
+            want, v = 0.0, K[row, row]
+        else:
+            S = K[np.ix_(seen, seen)] + (2.0 * UM) ** 2 * np.eye(len(seen))
+            want = K[row, seen] @ np.linalg.solve(S, misses[seen])
+            v = K[row, row] - K[row, seen] @ np.linalg.solve(S, K[seen, row])
+        assert result.predicted[row, 0] - free[row] == pytest.approx(want, abs=1e-9)
+        assert result.u[row, 0] == pytest.approx(np.sqrt(v), rel=1e-6)
+
+
+def test_a_beam_grows_and_bends_as_in_a_book():
+    """500 mm of steel 4 K warm: 23 µm; 2 K over 200 mm of depth: 57.5 µrad, 14.375 µm."""
+    drive = np.column_stack([np.full(50, 24.0), np.full(50, 22.0), np.arange(50.0)])
+    record = record_of(drive, np.zeros((50, 2)))
+    record = replace(record, units=("mm", "rad"))
+    beam = Beam(
+        name="ram", length_mm=500.0, alpha_um_per_m_K=11.5, sensors=["t0"], grows={"x": -1.0},
+        depth_mm=200.0, warm=["t0"], cold=["t1"], bends={"x": 1.0}, tilts={"y": 1.0},
+    )  # fmt: skip
+    found = beam_estimate([beam], record)
+    np.testing.assert_allclose(found[:, 0], -23.0 * UM + 14.375 * UM)
+    np.testing.assert_allclose(found[:, 1], 57.5e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('sensors = ["t9"]\ngrows = {x = 1.0}', "sensor 't9'"),
+        ('sensors = ["t0"]\ngrows = {q = 1.0}', "component 'q'"),
+        ('warm = ["t0"]\ncold = ["t1"]\nbends = {x = 1.0}', "bending without a section"),
+        ('sensors = ["t0"]', "nothing that it moves"),
+        ('sensors = ["t0"]\ntilts = {x = 1.0}', "component 'x'"),
+    ],
+)
+def test_beams_that_make_no_sense_are_refused(planted, tmp_path, text, words):
+    path = tmp_path / "beams.toml"
+    path.write_text(f'[[beam]]\nname = "b"\nlength_mm = 1.0\nalpha_um_per_m_K = 11.0\n{text}\n')
+    with pytest.raises(BadFile, match=words):
+        read_beams(str(path), planted)
