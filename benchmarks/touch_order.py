@@ -12,6 +12,7 @@ made locally best by turning parts round and moving single touches, for some sec
 
 import argparse
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ import numpy as np
 from artefact.body import read_standard
 from probe_paths.control import Clock, read_program, step_times
 from probe_paths.linuxcnc import shortened
-from probe_paths.plan.order import short_order
+from probe_paths.plan import short_order
 from twin.files import read_machine
 from twin.frames import Array
 from twin.units import MINUTE
@@ -50,7 +51,7 @@ def exact(cost: Array) -> float:
 
 
 def length(cost: Array, tour: list[int]) -> float:
-    return float(sum(cost[a, b] for a, b in zip(tour, tour[1:], strict=False)))
+    return float(sum(cost[a, b] for a, b in pairwise(tour)))
 
 
 def searched(cost: Array, seconds: float, rng: np.random.Generator) -> float:
