@@ -1,0 +1,30 @@
+"""The machine file of a serial arm as a run has it, beside the other results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from diagnosis.fit import Fit
+
+FOUND = "machine_found.toml"
+"""Machine file with the lines of all joints as found."""
+
+
+def write_found_arm(folder: Path, fit: Fit, title: str) -> str:
+    """Write it, and say what it is good for; nothing, and "", where the machine is no arm."""
+    from diagnosis.geometry import found_arm
+    from report.words import microns
+    from twin.files import write_whole
+    from twin.foreign import machine_text
+
+    arm = found_arm(fit)
+    if arm is None:
+        return ""
+    write_whole(folder / FOUND, machine_text(arm.chain, title, is_known=True))
+    return (
+        f"{FOUND} has the lines of all joints as found, to put in the machine file's place: with "
+        f"nothing but the set-up {microns(arm.after)} are left then, {microns(arm.before)} now; "
+        "take all of them or none, and import again, which finds the reflector anew"
+    )
