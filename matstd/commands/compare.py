@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.found_machine import FOUND, write_found_arm
+from matstd.folder import FOUND, results_folder, write_found_arm
 from matstd.options import (
     REPORT_FILES,
     add_measured,
@@ -53,7 +53,6 @@ def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> i
 
     from diagnosis.answer import compare
     from diagnosis.files import write_comparison, write_residuals
-    from matstd.folder import results_folder
     from matstd.progress import stages, turns
     from report.words import remark_sentence, structure_words
     from twin.record import without_copies

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.found_machine import FOUND, write_found_arm
+from matstd.folder import FOUND, results_folder, write_found_arm
 from matstd.options import (
     REPORT_FILES,
     add_measured,
@@ -79,7 +79,6 @@ def _made(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
     """The diagnosis as files and in words."""
     import numpy as np
 
-    from matstd.folder import results_folder
     from matstd.progress import stages, turns
 
     printed_by = asked_printer(args)
