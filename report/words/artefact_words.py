@@ -18,9 +18,11 @@ _CRITERIA = {
 def criterion_words(wanted: StandardTable) -> str:
     """What touches were chosen for."""
     words = [_CRITERIA[wanted.criterion]]
-    if wanted.drawn_machines:
-        which = "" if wanted.worst_share == 1.0 else f"the worst {percent(wanted.worst_share)} of "
-        words.append(f"averaged over {which}{wanted.drawn_machines} drawn machines")
+    if wanted.robust_machines:
+        which = (
+            "" if wanted.robust_share == 1.0 else f"the worst {percent(wanted.robust_share)} of "
+        )
+        words.append(f"averaged over {which}{wanted.robust_machines} drawn machines")
     if wanted.potential and wanted.criterion == "D":
         words.append("with the effects of the library beside them")
     elif wanted.potential:

@@ -283,7 +283,7 @@ def test_groups_of_errors_reach_the_placement(reach, workspace, chain, monkeypat
         raise ScalesAreDrawn
 
     monkeypatch.setattr("artefact.worth.touch_criterion.drawn_scales", recorded)
-    options = replace(OPTIONS, criterion=CriterionOptions(drawn_machines=6))
+    options = replace(OPTIONS, criterion=CriterionOptions(robust_machines=6))
     for groups in ([Group(names, correlation=1.0)], [Group(names, correlation=0.0)]):
         population = Population(chain, dependence=grouped(groups))
         with pytest.raises(ScalesAreDrawn):
