@@ -329,6 +329,7 @@ def test_named_effects_and_effects_of_ones_own(folder, tmp_path, monkeypatch) ->
     assert 'name = "tested-hose"' in (out / "model.toml").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_the_page_stands_with_the_files(tmp_path, changed) -> None:
     """With pictures: a comparison of a part of the run."""
     out = tmp_path / "out"
