@@ -4,6 +4,8 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from twin.words import in_own_unit
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -24,7 +26,7 @@ def console() -> "Console":
 
 def say(text: str, style: str | None = None) -> None:
     """One line as it is: a terminal breaks it where it likes, a file keeps it whole."""
-    console().print(text, markup=False, style=style, soft_wrap=True)
+    console().print(in_own_unit(text), markup=False, style=style, soft_wrap=True)
 
 
 def say_assumed(chain: "Chain") -> None:

@@ -1,6 +1,33 @@
-"""Names that a user may have meant, and lists of names, for messages."""
+"""Names that a user may have meant, lists of names, the unit of deviations, for messages."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+LENGTHS = "µm"
+_UNIT: ContextVar[str] = ContextVar("unit of deviations", default=LENGTHS)
+
+
+@contextmanager
+def deviations_in(unit: str) -> Iterator[None]:
+    """While it lasts, what is said, shown and drawn of deviations has this unit."""
+    token = _UNIT.set(unit)
+    try:
+        yield
+    finally:
+        _UNIT.reset(token)
+
+
+def in_own_unit(text: str) -> str:
+    """A text whose figures of µm are those of an instrument of angles: the same in µrad.
+
+    Example:
+        >>> with deviations_in("µrad"):
+        ...     in_own_unit("12 µm left")
+        '12 µrad left'
+    """
+    unit = _UNIT.get()
+    return text if unit == LENGTHS else text.replace(LENGTHS, unit)
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

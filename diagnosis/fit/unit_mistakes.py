@@ -65,8 +65,8 @@ def unit_mistake(fit: Fit) -> UnitMistake | None:
     Judged by two yardsticks, since either alone misleads: a very good machine has small deviations,
     and an uncertainty may be stated wrongly. A model without a machine in it expects nothing.
     """
-    if not fit.model.effects:
-        return None
+    if not fit.model.effects or fit.run.touches.instrument.reads_angle:
+        return None  # a cheap encoder is off by degrees, a good one by a part of a second
     measured, expected, stated = _typical_sizes(fit)
     what = _mistaken(fit, measured, expected, stated)
     if what is None:
@@ -82,6 +82,7 @@ def unit_mistake(fit: Fit) -> UnitMistake | None:
 
 def _mistaken(fit: Fit, measured: float, expected: float, stated: float) -> MistakenUnit | None:
     """Which unit is mistaken, by typical sizes in mm."""
+    has_ball = fit.run.touches.instrument.is_ball_on_standard
     if measured == 0.0:
         return None
     if measured > LARGE * np.hypot(expected, min(stated, COARSEST)):
@@ -89,7 +90,8 @@ def _mistaken(fit: Fit, measured: float, expected: float, stated: float) -> Mist
         return MistakenUnit.BOTH_IN_NM if both else MistakenUnit.DEVIATIONS_IN_NM
     if SMALL * measured < expected and measured < QUIET * stated:
         return MistakenUnit.DEVIATIONS_IN_MM
-    if TINY * measured < expected and stated < FINEST:
+    # encoders and interferometers resolve so little, and what they measure may be as good
+    if TINY * measured < expected and stated < FINEST and has_ball:
         return MistakenUnit.BOTH_IN_MM
     if measured < QUIET * stated:
         return MistakenUnit.UNCERTAINTIES_IN_NM

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.folder import FOUND, results_folder, write_found_arm
 from matstd.options import (
     REPORT_FILES,
     add_measured,
@@ -18,8 +19,12 @@ from matstd.options import (
 if TYPE_CHECKING:
     from diagnosis.answer import Comparison
     from diagnosis.files import SavedModel
+    from twin.record import Run
 
-OURS = ("pictures/*.png", *REPORT_FILES)
+CLEAR = 2.0
+"""Standard uncertainties from which a region is off on average, and does not merely scatter."""
+
+OURS = (FOUND, "pictures/*.png", *REPORT_FILES)
 """Results that not every comparison leaves."""
 
 
@@ -31,20 +36,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
-    import numpy as np
-
-    from diagnosis.answer import compare
-    from diagnosis.files import write_comparison, write_residuals
-    from matstd.folder import results_folder
     from matstd.inputs import read_inputs, with_pitches
-    from matstd.progress import stages, turns
-    from report.words import remark_sentence, structure_words
-    from twin.record import without_copies
+    from twin.words import deviations_in
 
     run, saved = read_inputs(
         [args.run_file], model_file(args), args.effects, "so the agreement is optimistic"
     )
     run = with_pitches(run, args.pitch)
+    with deviations_in(run.touches.deviation_unit):
+        return _compared(args, run, saved)
+
+
+def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
+    """The comparison as files and in words."""
+    import numpy as np
+
+    from diagnosis.answer import compare
+    from diagnosis.files import write_comparison, write_residuals
+    from matstd.progress import stages, turns
+    from report.words import remark_sentence, structure_words
+    from twin.record import without_copies
+
     model = saved.model if saved else first_model(args, run.touches.chain)
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
@@ -62,6 +74,7 @@ def run(args: argparse.Namespace) -> int:
             [remark_sentence(r) for r in found.remarks],
         )
         write_residuals(folder / "residuals.csv", found)
+        arm = "" if saved else write_found_arm(folder, found.fit, Path(args.run_file).name)
         if not args.no_report:
             from report.pages import write_compare_page
 
@@ -70,11 +83,11 @@ def run(args: argparse.Namespace) -> int:
             told = saved.told if saved else None
             write_compare_page(found, folder, title, np.random.default_rng(0), told)
             print_report(folder, printed_by)
-    _tell(args, found, saved)
+    _tell(args, found, saved, arm)
     return 0
 
 
-def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None) -> None:
+def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None, arm: str) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
     from report.geometry import console_lines
@@ -82,6 +95,7 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
     from report.words import (
         comparison_sentence,
         learnt_lines,
+        microns,
         promise_sentence,
         region_words,
         remark_sentence,
@@ -96,10 +110,12 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
         say(promise_sentence(found, saved.source.held_out_um * UM))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
-        say(f"{region_words(region.conditions)}: {mean} ({int(region.rows.sum())} touches)")
+        is_off = abs(region.mean) > CLEAR * region.u
+        size = mean if is_off else f"{microns(region.rms)} rms"
+        say(f"{region_words(region.conditions)}: {size} ({int(region.rows.sum())} touches)")
     for line, is_first in console_lines(found.run.touches, found.geometry, found.faults):
         say(f"- {line}", style="bold" if is_first else None)
-    for remark in found.remarks:
-        say(f"- {remark_sentence(remark)}")
+    for line in filter(None, [arm, *map(remark_sentence, found.remarks)]):
+        say(f"- {line}")
     first = "" if args.no_report else "report.html, "
     say(f"{args.output}: look at {first}comparison.json, residuals.csv")

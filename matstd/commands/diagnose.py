@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.folder import FOUND, results_folder, write_found_arm
 from matstd.options import (
     REPORT_FILES,
     add_measured,
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from diagnosis.files import SavedModel
     from twin.record import Run
 
-OURS = ("next_measurement_*.csv", "pictures/*.png", *REPORT_FILES)
+OURS = ("next_measurement_*.csv", FOUND, "pictures/*.png", *REPORT_FILES)
 """Results that not every diagnosis leaves."""
 
 
@@ -64,19 +65,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
-    import numpy as np
-
-    from matstd.folder import results_folder
     from matstd.inputs import read_inputs, with_pitches
-    from matstd.progress import stages, turns
+    from twin.words import deviations_in
 
     same = "so that its estimates are made anew: no touch counts twice"
     run, saved = read_inputs(args.run_files, model_file(args), args.effects, same, args.hold_out)
     run = with_pitches(run, args.pitch)
+    with deviations_in(run.touches.deviation_unit):
+        return _made(args, run, saved)
+
+
+def _made(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
+    """The diagnosis as files and in words."""
+    import numpy as np
+
+    from matstd.progress import stages, turns
+
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         result = _diagnosed(args, run, saved, turns(show))
         _write(args, result, saved, folder)
+        found = write_found_arm(folder, result.fit, _title(args))
         if not args.no_report:
             from report.pages import write_diagnosis_page
 
@@ -84,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
             title = _title(args)
             write_diagnosis_page(result, folder, title, np.random.default_rng(0))
             print_report(folder, printed_by)
-    _tell(args, result)
+    _tell(args, result, found)
     return 0
 
 
@@ -135,18 +144,19 @@ def _write(
         write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
 
 
-def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
-    """The verdict, the error falling, and what else should be known."""
+def _tell(args: argparse.Namespace, result: Diagnosis, found: str) -> None:
+    """The verdict, the error falling, what was found to copy, and what else should be known."""
     from rich.table import Column, Table
 
     from matstd.console import console, say
     from report.effects import plan_words, rival_words
     from report.geometry import console_lines
     from report.words import remark_sentence, scanned_sentence, verdict_sentence
+    from twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
-    numbers = [Column(word, justify="right", no_wrap=True) for word in right]
+    numbers = [Column(in_own_unit(word), justify="right", no_wrap=True) for word in right]
     words = [Column(word, overflow="fold", max_width=WIDE) for word in ("effect", "size")]
     table = Table(*words, *numbers, box=None)
     for step in result.steps:
@@ -158,7 +168,11 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     known = result.run.touches, result.geometry, result.faults, result.trend
     for line, is_first in console_lines(*known):
         say(f"- {line}", style="bold" if is_first else None)
-    told = [*(remark_sentence(r) for r in result.remarks), scanned_sentence(result.detectable)]
+    told = [
+        found,
+        *(remark_sentence(r) for r in result.remarks),
+        scanned_sentence(result.detectable),
+    ]
     for line in filter(None, told):
         say(f"- {line}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:

@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
 
     from artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
-    from probe_paths.campaign import ball_changes, check_changes, evaluate
+    from probe_paths.campaign import ball_changes, check_changes, evaluate, read_heights
     from probe_paths.control import read_log
     from probe_paths.language import Dialect
     from report.words import ball_lines
@@ -64,6 +64,12 @@ def run(args: argparse.Namespace) -> int:
     parts = [part for path in args.logs for part in read_log(path, chain.rotary_axes)]
     dialect, u, limit = Dialect(result_height=args.z), args.u_um * UM, args.probe_limit_um * UM
     changes = ball_changes(parts, standard, chain, u, dialect)
+    heights = [read_heights(part, standard, chain) for part in parts if part.is_first]
+    told = ball_lines(changes, limit, heights)
+    if not any(part.is_measuring for part in parts) and told:
+        say("no run file: the logs hold no measurements")
+        say_each(told)
+        return 0
     check_changes(changes, limit)
     measured = evaluate(parts, standard, chain, u, dialect)
     if args.sensors:
@@ -75,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
         f"poses, deviations {rms:.3f} µm rms after the set-up was fitted"
     )
     say_assumed(chain)
-    say_each(ball_lines(changes, limit))
+    say_each(told)
     if not changes and any(part.is_ball for part in parts):
         say_each(["the ball was measured once: whether the probe has changed is not known"])
     say_each(measured.remarks)

@@ -24,6 +24,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "programs", metavar="PROGRAM", nargs="+", help="in the order in which they are run"
     )
     parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="what is probed")
+    parser.add_argument(
+        "--real-standard",
+        metavar="STANDARD.toml",
+        help="the piece as it really is, a calibrated one, say, where --standard is what is "
+        "believed of it",
+    )
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
     add_planted(parser)
     parser.add_argument(
@@ -61,16 +67,17 @@ def run(args: argparse.Namespace) -> int:
     checked_noise(args)
     refuse_to_overwrite(args.output, args.force)
     standard = read_standard(args.standard)
+    real = read_standard(args.real_standard) if args.real_standard else standard
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     record = read_sensors(args.sensors) if args.sensors else None
     dialect = read_dialect(args.control)
     machine = virtual_machine(args, args.machine, for_errors, dialect, record)
     probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
     first = read_program(args.programs[0], machine.chain, probe, dialect)
-    if first.is_search:
-        return _search(args, first, standard, machine, for_noise)
+    if first.is_search or first.is_first:
+        return _search(args, first, real, machine, for_noise)
     with stages() as show:
-        campaign = simulate(args.programs, standard, machine, for_noise, probe, show)
+        campaign = simulate(args.programs, real, machine, for_noise, probe, show, standard)
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
     for name, text in campaign.logs.items() if args.logs else ():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
@@ -97,7 +104,7 @@ def _search(
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> int:
-    """Write the log of a search, which measures nothing and leaves no run file."""
+    """Write the log of a program that measures nothing and leaves no run file."""
     from matstd.console import say
     from probe_paths.campaign import simulate_search
     from twin.errors import DesignError
@@ -105,12 +112,13 @@ def _search(
 
     if not args.logs or len(args.programs) > 1:
         raise DesignError(
-            f"{program.path}: a search for the standard leaves a log and no run file: run it "
-            "alone, with --logs FOLDER"
+            f"{program.path}: a search for the standard and a commissioning program leave a log "
+            "and no run file: run it alone, with --logs FOLDER"
         )
+    reader = "replan" if program.is_search else "evaluate"
     for name, text in simulate_search(program, standard, machine, rng).log.items():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
-        say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd replan reads it")
+        say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd {reader} reads it")
     return 0
 
 

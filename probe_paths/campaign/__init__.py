@@ -6,7 +6,7 @@ never learns what the virtual machine knew. `visits` runs them again and again. 
 `probing_time` say what a plan costs.
 """
 
-from probe_paths.campaign.ball_change import BallChange, ball_changes, check_changes
+from probe_paths.campaign.ball_change import BallChange, ball_changes, check_changes, read_heights
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_points import foot_points
 from probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
@@ -38,6 +38,7 @@ __all__ = [
     "in_campaign",
     "orders",
     "probing_time",
+    "read_heights",
     "setup_tolerance",
     "simulate",
     "simulate_search",

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import pairwise
+from typing import get_args, get_type_hints
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from probe_paths.campaign.evaluation import ball_centres
 from probe_paths.control import LogPart
 from probe_paths.language import Dialect
 from twin.errors import BadFile, DesignError
-from twin.frames import Array, apply
+from twin.frames import Array, apply, inverse
 from twin.machine import Chain
 from twin.units import HOUR, UM
 
@@ -150,6 +151,30 @@ def _change(
         scatter=scatter,
         is_odd=scatter > _ODD * u,
     )
+
+
+def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, float]:
+    """How far the ball of a commissioning touch is beside the surface it met, mm.
+
+    One touch from above settles what Z a control returns: by the wrong meaning the ball is the
+    whole length of the probe beside.
+
+    Args:
+        part: Of its log.
+        standard: As calibrated.
+
+    Returns:
+        By each meaning that Z can have, as `Dialect.result_height` names them.
+    """
+    ball = list(standard.features.values())[int(part.feature[0]) - 1]
+    beside = {}
+    for meaning in get_args(get_type_hints(Dialect)["result_height"]):
+        believed = inverse(part.heading.setup.T_table_artefact)
+        centre = apply(believed, ball_centres(part, chain, Dialect(result_height=meaning)))
+        foot = ball.project(centre)
+        gap = np.einsum("ni,ni->n", ball.normal(foot), centre - ball.point(foot)) - part.radius
+        beside[meaning] = float(gap[0])
+    return beside
 
 
 def _middle(balls: Array, middle: Array) -> Array:

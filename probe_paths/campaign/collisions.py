@@ -95,7 +95,9 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
     direction = np.array([touch.direction for touch in touches]).reshape(start.shape)
     back = np.array([touch.back for touch in touches])
     distance = np.array([touch.distance for touch in touches])
-    feature = np.array([program.features[touch.feature] for touch in touches], dtype="U32")
+    names = [program.features.get(touch.feature, "") for touch in touches]
+    feature = np.array(names, dtype="U32")
+    is_air = np.array([touch.is_air for touch in touches], dtype=bool)
     T_artefact_table = inverse(clearance.setup.T_table_artefact)
     columns = [chain.axis_index(a) for a in chain.linear_axes]
     along = linear_directions(chain, start)
@@ -110,11 +112,12 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
         _check_search(program, clearance, start + met.travel[:, None] * direction, is_met, words)
         return
     good = (met.meeting == Meeting.SURFACE) & (met.feature == feature)
+    good = np.where(is_air, met.meeting == Meeting.NOTHING, good)
     for i in np.flatnonzero(~good)[:1]:
         found = f"a ball that {met.meeting[i]} {met.feature[i]}".rstrip()
-        raise BadFile(
-            program.path, f"line {line[i]}", found, f"touch {touches[i].number} on {feature[i]}"
-        )
+        wanted = f"touch {touches[i].number} on {feature[i]}"
+        wanted = "a touch in the air" if is_air[i] else wanted
+        raise BadFile(program.path, f"line {line[i]}", found, wanted)
     looks = stroke_gaps(clearance, start, direction, back, distance, feature, SMALLEST_GAP)
     for stage, (gap, nearest) in looks.items():
         _refuse(program, line, gap, np.array([f"{name} {stage}" for name in nearest]))

@@ -46,8 +46,8 @@ def evaluate(
     deviation. Then ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 
     Args:
-        parts: Of one or several logs; touches on a ball that only compare the probe with itself
-            (`ball_changes`) are left aside.
+        parts: Of one or several logs; those that measure nothing (`LogPart.is_measuring`) are left
+            aside.
         standard: As calibrated.
         u: Standard uncertainty of one touch, mm; that of the calibrated surface comes to it.
 
@@ -56,7 +56,7 @@ def evaluate(
             another standard or serial number, or two versions of one log.
         NotEnoughData: No touch at all.
     """
-    measured = [part for part in parts if not part.is_ball]
+    measured = [part for part in parts if part.is_measuring]
     parts, remarks = checked_parts(distinct_parts(measured), standard)
     if not sum(len(part.number) for part in parts):
         raise NotEnoughData("the logs hold no touch")

@@ -14,7 +14,14 @@ import numpy as np
 
 from probe_paths.control import Clock, ProbeStep, interpret, step_times
 from probe_paths.emit import Feeds, make_programs
-from probe_paths.plan import TouchPlan, Visit, home_readings, nearest_neighbours
+from probe_paths.plan import (
+    LINEAR,
+    TouchPlan,
+    Visit,
+    home_readings,
+    nearest_neighbours,
+    short_order,
+)
 from twin.frames import Array
 from twin.library import parse_effect
 from twin.model import Effect, Model, columns
@@ -171,12 +178,12 @@ def _once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPlan:
     for visit in visits or plan.visits:
         first.setdefault(visit.pose, visit)
     pose = np.array([visit.pose for visit in plan.visits])[plan.visit]
-    linear = [plan.chain.axis_index(name) for name in plan.chain.linear_axes]
+    sideways = [plan.chain.axis_index(name) for name in LINEAR[:2]]
     rows = []
     for k in first:
         mine = np.flatnonzero(pose == k)
-        places = plan.start[mine][:, linear]
-        rows.append(mine[nearest_neighbours(places, places[0])])
+        places = plan.start[mine][:, sideways]
+        rows.append(mine[short_order(places, places[0])])
     sizes = [len(mine) for mine in rows]
     moved = _rows(plan, np.concatenate(rows))
     return replace(

@@ -52,7 +52,7 @@ def simulate_search(
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> VirtualRun:
-    """What a search for the standard does on the twin, with the log that it leaves.
+    """What a search or a commissioning program does on the twin, with the log that it leaves.
 
     Raises:
         BadFile: A touch that meets nothing, or a tool that comes too near to something, where the
@@ -141,5 +141,5 @@ def _campaign(
     ]
     u = max(machine.noise, SMALLEST_U)
     run = evaluate(parts, believed, machine.chain, u, machine.dialect)
-    begin = min(part.begin for part in parts if not part.is_ball)
+    begin = min(part.begin for part in parts if part.is_measuring)
     return Campaign(run, tuple(runs), tuple(parts), begin)

@@ -40,6 +40,7 @@ class Outcome(StrEnum):
 
     DONE = "done"
     NO_CONTACT = "no contact"
+    IN_AIR = "contact in the air"
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +74,12 @@ class VirtualRun:
         if self.outcome is Outcome.DONE:
             return
         touch = self.program.touches[self.reached - 1]
+        if touch.is_air:
+            raise NotReachable(
+                f"{self.program.path}: line {touch.line}: the touch in the air meets "
+                f"{self.feature[touch.index] or 'something'}",
+                run=self,
+            )
         name = self.feature[touch.index]
         raise NotReachable(
             f"{self.program.path}: line {touch.line}: touch {touch.number} "
@@ -248,11 +255,11 @@ class _Control:
                 return Outcome.NO_CONTACT, tried, now
             elif isinstance(step, ProbeStep):
                 tried += 1
-                if not self.contacts.is_contact[step.index]:
+                if bool(self.contacts.is_contact[step.index]) is step.is_air:
                     for branch in step.on_miss:
                         if isinstance(branch, Print):
                             self._print(branch, now)
-                    return Outcome.NO_CONTACT, tried, now
+                    return Outcome.IN_AIR if step.is_air else Outcome.NO_CONTACT, tried, now
         return Outcome.DONE, tried, now
 
     def _print(self, step: Print, now: float) -> None:

@@ -7,7 +7,7 @@ takes (`ReadProgram`), and what one run of it logged (`LogPart`). Rules for sing
 
 from probe_paths.control.clock import Clock, step_times
 from probe_paths.control.interpreter import interpret, read_program, stated_probe
-from probe_paths.control.log import BALL, UNDATED, LogPart, read_log
+from probe_paths.control.log import BALL, FIRST, UNDATED, LogPart, read_log
 from probe_paths.control.motion import MAX_FEED
 from probe_paths.control.steps import (
     STATUS,
@@ -23,6 +23,7 @@ from probe_paths.control.steps import (
 
 __all__ = [
     "BALL",
+    "FIRST",
     "MAX_FEED",
     "STATUS",
     "UNDATED",

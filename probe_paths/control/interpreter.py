@@ -22,7 +22,7 @@ from probe_paths.control.structure import (
     program_name,
     promise,
 )
-from probe_paths.language import Dialect, Q, interlocks, language_of, read_blocks
+from probe_paths.language import Dialect, Label, Q, interlocks, language_of, read_blocks
 from probe_paths.plan import Heading, Probe, ProgramFrame
 from twin.errors import BadFile
 from twin.machine import Chain
@@ -103,15 +103,17 @@ def interpret(
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head.log_lines)
-    state = _begun(path, frame, stated.is_search)
+    state = _begun(path, frame, stated)
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
-    for test in interlocks(language_of(path), frame):
+    for test in interlocks(language_of(path), frame, stated.is_first):
         for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
-            runner.run(0, replace(_begun(path, frame, False), fault=test, off=off))
+            runner.run(0, replace(_begun(path, frame, stated), fault=test, off=off))
     for touch in steps:
-        if isinstance(touch, ProbeStep) and touch.feature not in features:
+        if not isinstance(touch, ProbeStep) or touch.is_air:
+            continue
+        if touch.feature not in features:
             raise BadFile(
                 path,
                 f"line {touch.line}",
@@ -125,13 +127,21 @@ def interpret(
         features=features,
         steps=tuple(steps),
         is_search=stated.is_search,
+        is_first=stated.is_first,
     )
 
 
-def _begun(path: Path, frame: ProgramFrame, is_search: bool) -> State:
+def _begun(path: Path, frame: ProgramFrame, stated: Promise) -> State:
     """The control when a program is started: nobody knows where its axes stand."""
     axes = len(frame.chain.axes)
-    return State(path, frame, np.full(axes, np.nan), np.zeros(axes), is_search=is_search)
+    return State(
+        path,
+        frame,
+        np.full(axes, np.nan),
+        np.zeros(axes),
+        is_search=stated.is_search,
+        is_first=stated.is_first,
+    )
 
 
 def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:
@@ -142,7 +152,11 @@ def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], 
     ):
         if said != done:
             raise BadFile(path, "head", f"{what} {said}", f"{done}, as the program calls it")
-    made, wanted = [touch.number for touch in touches], list(stated.touches)
+    made = [touch.number for touch in touches if not touch.is_air]
+    wanted = list(stated.touches)
+    if stated.is_first and sum(touch.is_air for touch in touches) != 1:
+        expected = f"one touch in the air, which goes on at LBL {Label.AIR:d}"
+        raise BadFile(path, "head", "commissioning without a touch in the air", expected)
     start = state.parameters.get(Q.START, 1.0)
     if start != 1.0:  # at a later visit
         if not made and wanted:

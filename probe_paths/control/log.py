@@ -37,8 +37,9 @@ _VERSION = re.compile(r"MATSTD LOG \d+\Z")
 UNDATED = datetime(1900, 1, 1)
 """Begin of a part whose date cannot be read: no sensor record covers it."""
 
-BALL = "CAL"
-"""Last letters of the name of a program that measures a ball before and after the others."""
+BALL, FIRST = "CAL", "COM"
+"""Last letters of the names of programs that measure nothing: touches on one ball before and after
+the others, and one touch that a control is tried with."""
 
 Line = tuple[int, str]
 """Number in the file and text."""
@@ -91,6 +92,16 @@ class LogPart:
     def is_ball(self) -> bool:
         """Whether its touches are those on a ball that show whether the probe has changed."""
         return self.program.endswith(f"_{BALL}")
+
+    @property
+    def is_first(self) -> bool:
+        """Whether it is that of a commissioning program."""
+        return self.program.endswith(f"_{FIRST}")
+
+    @property
+    def is_measuring(self) -> bool:
+        """Whether its touches are measurements."""
+        return not (self.is_ball or self.is_first)
 
 
 def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -> list[LogPart]:

@@ -14,6 +14,10 @@ MAX_PROBING_FEED = 1000.0
 SHORTEST_BACK = 1.0
 """Retract after a contact, mm: with less the ball still lies on the surface when it moves off."""
 
+_ANYWHERE = 17.31
+"""Reading of an axis that the tool changer left anywhere, mm: not zero, so that a test of the
+preset that forgot to read where the axis stands is seen."""
+
 LONGEST_SEARCH = 10.0
 """Beyond the expected contact, mm: what a probe may be driven into where nothing is expected."""
 
@@ -31,8 +35,7 @@ def system_datum(block: Block, state: State) -> float:
     }
     places = {Datum(word) for a in frame.letters for word in (a, f"preset {a}")}
     for letter in frame.letters:
-        # where the tool changer left an axis, its position is any, with and without the preset
-        reading = float(np.nan_to_num(state.q[frame.chain.axis_index(letter)]))
+        reading = float(np.nan_to_num(state.q[frame.chain.axis_index(letter)], nan=_ANYWHERE))
         known[Datum(letter)] = reading if letter in LINEAR else reading / DEG
         known[Datum(f"preset {letter}")] = frame.coordinate(letter, reading)
     if state.tool is not None:

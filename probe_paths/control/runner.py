@@ -73,8 +73,10 @@ class Runner:
         self.source = masks
         self.masks: dict[str, tuple[MaskLine, ...]] = {}
         form = language_of(path).LOG
+        rotary = frame.chain.rotary_axes
         texts = [head_mask(form, name, remarks)]
-        texts += shared_masks(form, _DECIMALS, frame.chain.rotary_axes).values()
+        texts += shared_masks(form, _DECIMALS, rotary).values()
+        texts.append(head_mask(form, name, remarks, rotary, _DECIMALS))
         self.readable = {_shape(parse_mask(text, path)) for text in texts}
         self.touches: list[ProbeStep] = []
         self.logged: set[int] = set()
@@ -120,7 +122,7 @@ class Runner:
             return self._jump(i, block, state)
         if block.kind in _SILENT:
             return i + 1
-        if block.kind is Kind.LABEL and Label.is_behind(int(block.word("label"))):
+        if block.kind is Kind.LABEL and Label.stands_inside(int(block.word("label"))):
             return i + 1
         step = self._execute(i, block, state)
         if step is not None:
@@ -139,14 +141,19 @@ class Runner:
             return target if (value < limit if is_less else value > limit) else i + 1
         if value.part != STATUS or limit != 0.0 or not is_less:
             raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
+        touch = self.touches[value.touch]
         state.untested = None
         missed = state.copied()
+        # what has met something in the air ends the program, what has not goes on
+        wrong, right = (i + 1, target) if touch.is_air else (target, i + 1)
         self.branches += 1
         if self.branches > MAX_CALLS:  # a branch that comes back to its own touch
             raise state.refusal(block, "a loop without end", "a program that comes to M30")
-        self.touches[value.touch].on_miss.extend(self.run(target, missed, is_branch=True))
+        touch.on_miss.extend(self.run(wrong, missed, is_branch=True))
         self.branches -= 1
-        return i + 1
+        if touch.is_air and not isinstance(touch.on_miss[-1], Halt):
+            raise state.refusal(block, "a contact in the air that goes on", state.says.halt)
+        return right
 
     def _check_skip(self, i: int, block: Block, state: State) -> None:
         """A visit is skipped after its turn and all tests, up to the retract of the next one."""
@@ -200,6 +207,7 @@ class Runner:
         direction[state.frame.linear] = [vector.number(a) for a in "xyz"]
         length = float(np.linalg.norm(direction))
         check_cycle(state, block, vector, length)
+        is_air = state.is_first and self._goes_to(i + 1, Label.AIR)
         touch = ProbeStep(
             line=block.line,
             index=len(self.touches),
@@ -211,25 +219,34 @@ class Runner:
             step_back=float(block.words.get("step") or 0.0),
             back=block.number("back"),
             side=state.side.copy(),
-            number=state.whole(block, Q.TOUCH, "touch"),
-            pose=state.whole(block, Q.POSE, "pose"),
-            feature=state.whole(block, Q.FEATURE, "feature"),
+            number=0 if is_air else state.whole(block, Q.TOUCH, "touch"),
+            pose=0 if is_air else state.whole(block, Q.POSE, "pose"),
+            feature=0 if is_air else state.whole(block, Q.FEATURE, "feature"),
+            is_air=is_air,
         )
-        self._check_sides(block, state, touch)
+        if not is_air:
+            self._check_sides(block, state, touch)
         state.stale |= {Q.TOUCH, Q.FEATURE}
         left_over = state.parameters.get(result + STATUS)
         for part in range(4):
             state.write(block, result + part, Result(touch.index, part))
-        if not isinstance(left_over, float) or left_over >= 0.0:
+        # the control has to write what is hoped for
+        if not isinstance(left_over, float) or (left_over >= 0.0) is not is_air:
+            unset = state.says.unset.format(q=result + STATUS)
             raise state.refusal(
                 block,
                 "the status of the touch before",
-                f"{state.says.unset.format(q=result + STATUS)} before it",
+                f"{unset.replace('-1', '+0') if is_air else unset} before it",
             )
         state.untested, state.way_back = touch.index, state.q.copy()
         state.is_synchronous = False
         self.touches.append(touch)
         return touch
+
+    def _goes_to(self, i: int, label: Label) -> bool:
+        """Whether a block is a jump to a label."""
+        block = self.blocks[i]
+        return block.kind is Kind.JUMP and block.word("label") == str(int(label))
 
     def _check_sides(self, block: Block, state: State, touch: ProbeStep) -> None:
         """The sides that the log will state are those that the axes really came from."""
@@ -324,7 +341,7 @@ class Runner:
     def check_logged(self) -> None:
         """Every touch ends up in the log; raises BadFile."""
         for touch in self.touches:
-            if touch.index not in self.logged:
+            if touch.index not in self.logged and not touch.is_air:
                 raise BadFile(
                     self.path,
                     f"line {touch.line}",

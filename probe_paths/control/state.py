@@ -47,6 +47,7 @@ class State:
         stale: Counters that belong to the touch or the visit before.
         off: By how much, mm or degrees.
         is_search: Touches may be long where they come from above.
+        is_first: One touch may be in the air, where it must meet nothing.
     """
 
     path: Path
@@ -72,6 +73,7 @@ class State:
     off: float = 0.0
     stale: set[int] = field(default_factory=set)
     is_search: bool = False
+    is_first: bool = False
 
     def copied(self) -> "State":
         """A state that can run on its own."""

@@ -58,7 +58,8 @@ class ProbeStep:
         number: Of the touch, as the log will name it.
         pose: Number of the table pose, likewise.
         feature: Number of the feature, likewise.
-        on_miss: What the program does when there is no contact.
+        on_miss: What the program does when there is no contact; of one in the air, when there is.
+        is_air: It must meet nothing; it has no number, and no line in the log.
     """
 
     line: int
@@ -75,6 +76,7 @@ class ProbeStep:
     slow_feed: float = 0.0
     step_back: float = 0.0
     on_miss: list["Step"] = field(default_factory=list)
+    is_air: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +118,7 @@ class ReadProgram:
         features: Name of every feature number.
         steps: In order of execution.
         is_search: Its touches come down from above on whatever is there.
+        is_first: It is one that a control is tried with, and measures nothing.
     """
 
     path: Path
@@ -124,6 +127,7 @@ class ReadProgram:
     features: Mapping[int, str]
     steps: tuple[Step, ...]
     is_search: bool = False
+    is_first: bool = False
 
     @property
     def touches(self) -> list[ProbeStep]:

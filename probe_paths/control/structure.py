@@ -2,16 +2,18 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from probe_paths.language import Block, Kind, Label
+from probe_paths.language import Block, Kind, Label, language_of
 from probe_paths.plan import Heading, parse_heading
 from twin.errors import BadFile
 
 _TOUCHES = re.compile(r"TOUCHES (\d+) TO (\d+),.*")
 _DRY = re.compile(r"DRY RUN, RAISED BY [+-][\d.]+ MM, NO TOUCH")
 _SEARCH = re.compile(r"SEARCH FROM ABOVE, STANDS WITHIN [\d.]+ MM AND [\d.]+ DEG")
+_FIRST = re.compile(r"COMMISSIONING: ONE TOUCH IN AIR, ONE ON BALL \S+")
 _PRESET = re.compile(r"PRESET (\d+):.*")
 _TOOL = re.compile(r"TOOL (\d+) IS THE PROBE: L([+-][\d.]+) R([+-][\d.]+),.*")
 _FEATURE = re.compile(r"FEATURE (\d+) IS (\S+)")
@@ -36,12 +38,14 @@ class Promise(NamedTuple):
         tool: Number of the probe in the tool table.
         preset: Row of the preset table.
         is_search: Its touches are long ones from above that look for the standard.
+        is_first: It is the one that a control is tried with: few tests, a touch in the air.
     """
 
     touches: range
     tool: int
     preset: int
     is_search: bool = False
+    is_first: bool = False
 
 
 def program_name(blocks: Sequence[Block], path: Path) -> str:
@@ -90,12 +94,12 @@ def labels(blocks: Sequence[Block], path: Path) -> dict[int, int]:
         number = int(block.word("label"))
         if number in found:
             raise BadFile(path, f"line {block.line}", f"LBL {number} again", "every label once")
-        if i < stop and not Label.is_behind(number):
+        if i < stop and not Label.stands_inside(number):
             raise BadFile(path, f"line {block.line}", f"LBL {number}", "subprograms after M30")
         found[number] = i
     for block in blocks:
         if block.kind in (Kind.CALL, Kind.JUMP) and int(block.word("label")) not in found:
-            available = ", ".join(str(n) for n in found if not Label.is_behind(n)) or "none"
+            available = ", ".join(str(n) for n in found if not Label.stands_inside(n)) or "none"
             raise BadFile(
                 path,
                 f"line {block.line}",
@@ -104,14 +108,18 @@ def labels(blocks: Sequence[Block], path: Path) -> dict[int, int]:
             )
     asked = {int(b.word("label")) for b in blocks if b.kind is Kind.JUMP}
     for number in sorted(set(found) - asked):
-        if Label.is_behind(number):
+        if Label.stands_inside(number):
             line, lost = f"line {blocks[found[number]].line}", f"LBL {number} that nothing goes to"
             raise BadFile(path, line, lost, "a test of the visit to start at")
     return found
 
 
 def check_cycles(blocks: Sequence[Block], path: Path) -> None:
-    """Cycle 4 stands in four blocks, in order and together; raises BadFile."""
+    """Cycles 4 and 7 stand in four blocks, in order and together; raises BadFile."""
+    for before, block in pairwise(blocks):
+        is_in_7 = before.kind in (Kind.SHIFT_NAME, Kind.SHIFT)
+        if block.kind is Kind.SHIFT and not is_in_7 and language_of(path).HAS_MASKS:
+            raise BadFile(path, f"line {block.line}", repr(block.text), "CYCL DEF 7.0 before it")
     expected = 0
     for block in blocks:
         place = _CYCLE.index(block.kind) if block.kind in _CYCLE else None
@@ -177,8 +185,16 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
     ):
         if abs(float(stated) - planned) > _DIGITS:
             raise BadFile(path, f"line {line}", f"{name}{stated}", f"{planned:+.4f} as PROBE says")
-    is_search = any(_SEARCH.fullmatch(text) for _, text in remarks)
-    return Promise(made, int(tool[0]), int(preset[0]), is_search)
+    is_search, is_first = (
+        any(form.fullmatch(text) for _, text in remarks) for form in (_SEARCH, _FIRST)
+    )
+    return Promise(
+        touches=made,
+        tool=int(tool[0]),
+        preset=int(preset[0]),
+        is_search=is_search,
+        is_first=is_first,
+    )
 
 
 def _remark(

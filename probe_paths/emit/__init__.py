@@ -10,6 +10,7 @@ from probe_paths.emit.program import (
     ProgramSet,
     make_ball,
     make_dry_run,
+    make_first,
     make_programs,
     make_search,
 )
@@ -22,6 +23,7 @@ __all__ = [
     "ProgramSet",
     "make_ball",
     "make_dry_run",
+    "make_first",
     "make_programs",
     "make_search",
 ]

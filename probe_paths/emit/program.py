@@ -10,16 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control import BALL, Clock, interpret, step_times
+from probe_paths.control import BALL, FIRST, Clock, interpret, step_times
+from probe_paths.emit.first import FirstWriter
 from probe_paths.emit.writer import Feeds, Special, Writer
 from probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
 from probe_paths.plan import TouchPlan
+from twin.errors import DesignError
 from twin.files import write_whole
 from twin.record import IntArray
 from twin.units import DEG, MINUTE
 
 DRY_RUN, SEARCH = "DRY", "LOC"
-"""Last letters of the names of these programs; that on a ball has `BALL`."""
+"""Last letters of the names of these programs; others have `BALL` and `FIRST`."""
 
 SEARCH_FEED = 800.0
 """Of a search, mm/min: what is found needs 0.3 mm, and its touches are 100 mm long."""
@@ -42,6 +44,11 @@ class Program:
     text: str
     touches: int
     duration: float
+
+    @property
+    def blocks(self) -> int:
+        """Number of its blocks."""
+        return sum(line[:1].isdigit() for line in self.text.splitlines())
 
     @property
     def file(self) -> str:
@@ -173,6 +180,33 @@ def make_ball(
     return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
 
 
+def make_first(
+    plan: TouchPlan,
+    dialect: Dialect | None = None,
+    feeds: Feeds | None = None,
+    clock: Clock | None = None,
+) -> ProgramSet:
+    """The program that a control is tried with: one touch in the air and one on a ball.
+
+    Args:
+        plan: Of touches on one ball, with the rotary axes at home.
+        dialect: Words of the control, in Klartext.
+        feeds: Feeds.
+        clock: For its duration.
+
+    Raises:
+        NotReachable: The ball is touched at another pose than home, or not from above.
+        DesignError: A control of another language.
+    """
+    dialect = dialect or Dialect()
+    if not LANGUAGES[dialect.language].HAS_MASKS:
+        raise DesignError(f"a commissioning program in {dialect.language}: expected klartext")
+    remark = f"COMMISSIONING: ONE TOUCH IN AIR, ONE ON BALL {plan.feature[0]}"
+    special = Special(FIRST, (remark,), is_first=True)
+    made = _Maker(plan, dialect, feeds or Feeds(), clock or Clock(), special)
+    return ProgramSet(made.programs([[0]]), made.printed_masks)
+
+
 class _Maker:
     """Makes programs of parts of a plan, each read back before it is handed out."""
 
@@ -187,14 +221,18 @@ class _Maker:
         self.plan, self.dialect, self.clock = plan, dialect, clock
         self.language = LANGUAGES[dialect.language]
         form, rotary = self.language.LOG, plan.chain.rotary_axes
-        self.masks = shared_masks(form, dialect.log_decimals, rotary)
-        self.writer = Writer(plan, dialect, feeds, self.masks, special)
+        self.shared = shared_masks(form, dialect.log_decimals, rotary)
+        self.masks = dict(self.shared)
+        self.is_first = special is not None and special.is_first
+        written_by = FirstWriter if self.is_first else Writer
+        self.writer = written_by(plan, dialect, feeds, self.masks, special)
         self.only = special.ending if special else ""
 
     @property
     def printed_masks(self) -> dict[str, str]:
         """Mask files, where the control has them."""
-        return dict(self.masks) if self.language.HAS_MASKS else {}
+        only_own = [name for name in self.masks if not (self.is_first and name in self.shared)]
+        return {name: self.masks[name] for name in only_own} if self.language.HAS_MASKS else {}
 
     def programs(self, parts: list[list[int]]) -> tuple[Program, ...]:
         """One program of each part."""
@@ -209,13 +247,15 @@ class _Maker:
         )
 
     def _program(self, name: str, title: str, part: list[int]) -> Program:
-        heading = self.writer.heading
-        self.masks[f"{name}.A"] = head_mask(self.language.LOG, name, heading.log_lines)
+        form, remarks = self.language.LOG, self.writer.heading.log_lines
+        rotary = self.plan.chain.rotary_axes if self.is_first else None
+        self.masks[f"{name}.A"] = head_mask(form, name, remarks, rotary, self.dialect.log_decimals)
         # the head states the duration, which is known once the program has been read back
         duration = self._duration(name, self.writer.text(name, title, part, 0.0))
         text = self.writer.text(name, title, part, duration)
         self._duration(name, text)
         touches = 0 if self.writer.raised is not None else np.isin(self.plan.visit, part).sum()
+        touches = 1 if self.is_first else touches
         return Program(
             name=name,
             ending=self.language.ENDING,

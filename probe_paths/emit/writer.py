@@ -67,11 +67,13 @@ class Special:
         remarks: That its head has of it.
         raised: By how much a dry run is raised, which goes where the programs go and touches
             nothing, mm; None for a program that touches.
+        is_first: It is written by `first`: one touch in the air and one on a ball.
     """
 
     ending: str
     remarks: tuple[str, ...] = ()
     raised: float | None = None
+    is_first: bool = False
 
 
 class Writer:

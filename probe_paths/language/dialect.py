@@ -43,6 +43,9 @@ _ENDS_OF_VISITS = range(111, 255)  # up to the last label that the oldest softwa
 class Label(IntEnum):
     """Subprograms of our programs; from `OTHER_PROBE` on alarms, which docs/alarms.md explains.
 
+    `NOT_AS_PLANNED` is the alarm of all tests of a commissioning program, and `AIR` where that goes
+    on after a touch in the air met nothing.
+
     Labels in the program itself stand behind the visits: a program that is started at a later one
     goes there past the touches.
     """
@@ -50,6 +53,8 @@ class Label(IntEnum):
     LOG = 90
     NO_CONTACT = 91
     OTHER_PROBE = 92
+    NOT_AS_PLANNED = 93
+    AIR = 94
     RADIUS = 101
     ROTATION = 102
     TOP = 103
@@ -68,6 +73,11 @@ class Label(IntEnum):
     def is_behind(number: int) -> bool:
         """Whether a number is that of such a label."""
         return number in _ENDS_OF_VISITS
+
+    @staticmethod
+    def stands_inside(number: int) -> bool:
+        """Whether a label stands in the program itself, and not behind its end."""
+        return number in _ENDS_OF_VISITS or number == Label.AIR
 
 
 class ErrorText(IntEnum):

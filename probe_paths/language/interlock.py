@@ -44,8 +44,24 @@ class Interlock(NamedTuple):
     limit: float
 
 
-def interlocks(language: Language, frame: ProgramFrame) -> list[Interlock]:
-    """Tests of a program, in their order."""
+_FIRST = (
+    Label.OTHER_PROBE,
+    Label.ROTATION,
+    Label.PRESET_X,
+    Label.PRESET_Y,
+    Label.PRESET_Z,
+)
+"""What decides where the ball comes down, which a commissioning program tests."""
+
+
+def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) -> list[Interlock]:
+    """Tests of a program, in their order.
+
+    Args:
+        language: Of the control.
+        frame: With the probe as planned.
+        is_first: Of a commissioning program, which has blocks for few, and one alarm for all.
+    """
     probe, chain = frame.probe, frame.chain
     rows: list[tuple[Label, str, Datum | None, Datum | None, float, float]] = [
         (Label.OTHER_PROBE, "length of the tool", None, None, probe.tool_length, LENGTH_LIMIT),
@@ -61,4 +77,7 @@ def interlocks(language: Language, frame: ProgramFrame) -> list[Interlock]:
         rows.append((label, f"zero of {letter}", Datum(letter), work, 0.0, ANGLE_LIMIT))
     tests = [Interlock(*row) for row in rows]
     known = {None, *language.SYSTEM}
-    return [test for test in tests if test.datum in known and test.work in known]
+    tests = [test for test in tests if test.datum in known and test.work in known]
+    if not is_first:
+        return tests
+    return [test._replace(label=Label.NOT_AS_PLANNED) for test in tests if test.label in _FIRST]

@@ -147,6 +147,17 @@ def shared_masks(form: LogForm, decimals: int, rotary: Sequence[str]) -> dict[st
         decimals: Of coordinates.
         rotary: Letters of the machine's rotary axes.
     """
+    clock = form.clock
+    missed = _fields([("NOCONTACT P", Q.TOUCH)], form.counter)
+    return {
+        f"{SharedMask.POINT}.A": _mask(_point_lines(form, decimals, rotary)),
+        f"{SharedMask.END}.A": _mask([(f"END {clock[0]}", clock[1])]),
+        f"{SharedMask.NO_CONTACT}.A": _mask([missed, clock]),
+    }
+
+
+def _point_lines(form: LogForm, decimals: int, rotary: Sequence[str]) -> list[Fields]:
+    """Lines of one touch."""
     number = _number(form, decimals)
     side = "%5.1LF" if form.is_wide else form.counter
     sides = [Q.SIDE_1, Q.SIDE_2][: len(rotary)]
@@ -155,16 +166,10 @@ def shared_masks(form: LogForm, decimals: int, rotary: Sequence[str]) -> dict[st
     came_from = [("U" + a, q) for a, q in zip(rotary, sides, strict=True)]
     turned = [(a, q) for a, q in zip(rotary, places, strict=True)]
     measured = [("X", Q.RESULT_X), ("Y", Q.RESULT_Y), ("Z", Q.RESULT_Z)]
-    point = [_fields(counters, form.counter), _fields(measured, number)]
+    point: list[Fields] = [_fields(counters, form.counter), _fields(measured, number)]
     if turned:
         point += [_fields(turned, number), _fields(came_from, side)]
-    clock = form.clock
-    missed = _fields([("NOCONTACT P", Q.TOUCH)], form.counter)
-    return {
-        f"{SharedMask.POINT}.A": _mask([*point, clock]),
-        f"{SharedMask.END}.A": _mask([(f"END {clock[0]}", clock[1])]),
-        f"{SharedMask.NO_CONTACT}.A": _mask([missed, clock]),
-    }
+    return [*point, form.clock]
 
 
 def _number(form: LogForm, decimals: int) -> str:
@@ -176,22 +181,38 @@ def _fields(named: Sequence[tuple[str, int]], form: str) -> tuple[str, list[str]
     return " ".join(name + form for name, _ in named), [_q(q) for _, q in named]
 
 
-def head_mask(form: LogForm, name: str, remarks: Sequence[str]) -> str:
+def head_mask(
+    form: LogForm,
+    name: str,
+    remarks: Sequence[str],
+    rotary: Sequence[str] | None = None,
+    decimals: int = 6,
+) -> str:
     """Mask of one program's head: what was planned, then the calibration of the probe.
 
     Args:
         form: Of the control.
         name: Of the program.
         remarks: Lines of the program's own head (standard, set-up), printed as they are.
+        rotary: Letters of the machine's rotary axes: then one touch and the end follow, which is
+            the whole log of a commissioning program.
+        decimals: Of the coordinates of that touch.
     """
+    lines = _head_lines(form, name, remarks)
+    if rotary is not None:
+        lines += [*_point_lines(form, decimals, rotary), (f"END {form.clock[0]}", form.clock[1])]
+    return _mask(lines)
+
+
+def _head_lines(form: LogForm, name: str, remarks: Sequence[str]) -> list[Fields]:
     checked_name(name)
     number = _number(form, 6)
     lines: list[Fields] = [(LOG_HEAD, ()), (f"PGM {name}", ())]
     lines += [(remark, ()) for remark in remarks]
-    lines += [
+    return [
+        *lines,
         *form.date,
         _fields([("TOOL", Q.TOOL), ("PRESET", Q.PRESET)], form.counter),
         _fields([("R", Q.PROBE_RADIUS), ("L", Q.PROBE_LENGTH)], number),
         _fields([("EX", Q.OFFSET_X), ("EY", Q.OFFSET_Y), ("TL", TOOL_LENGTH)], number),
     ]
-    return _mask(lines)

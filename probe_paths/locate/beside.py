@@ -1,9 +1,9 @@
-"""Programs beside those of a plan: a dry run, a search for the standard, touches on one ball."""
+"""Programs beside those of a plan: a dry run, a search for the standard, one ball, one touch."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from probe_paths.emit import Feeds, ProgramSet, make_ball, make_dry_run, make_search
+from probe_paths.emit import Feeds, ProgramSet, make_ball, make_dry_run, make_first, make_search
 from probe_paths.language import Dialect
 from probe_paths.locate.ball_plan import plan_ball
 from probe_paths.locate.search_plan import Spread, plan_search
@@ -31,6 +31,7 @@ class Companions:
         no_search: Why there is no search.
         ball: Touches on one ball, before the programs and after them; None where there can be none.
         no_ball: Why there is none.
+        first: One touch that a control is tried with; None where there is none.
     """
 
     dry_run: ProgramSet
@@ -40,10 +41,11 @@ class Companions:
     no_search: str = ""
     ball: ProgramSet | None = None
     no_ball: str = ""
+    first: ProgramSet | None = None
 
     def write(self, folder: Path) -> None:
         """Write programs and masks into a folder."""
-        for programs in (self.dry_run, self.search, self.ball):
+        for programs in (self.dry_run, self.search, self.ball, self.first):
             if programs is not None:
                 programs.write(folder)
 
@@ -55,7 +57,7 @@ def companions(
     raised: float = RAISED,
     spread: Spread | None = None,
 ) -> Companions:
-    """Dry run, search and ball of a plan.
+    """Dry run, search, ball and commissioning program of a plan.
 
     Args:
         plan: Of the programs.
@@ -69,7 +71,10 @@ def companions(
         dry_run=make_dry_run(plan, raised, dialect, feeds), raised=raised, spread=SPREADS[-1]
     )
     try:
-        made = replace(made, ball=make_ball(plan_ball(plan), dialect, feeds))
+        ball = plan_ball(plan)
+        made = replace(made, ball=make_ball(ball, dialect, feeds))
+        if dialect.language == "klartext":
+            made = replace(made, first=make_first(ball, dialect, feeds))
     except NotReachable as error:
         made = replace(made, no_ball=str(error))
     for chosen in SPREADS if spread is None else (spread,):

@@ -16,7 +16,13 @@ from probe_paths.plan.clearance import (
 )
 from probe_paths.plan.frame import LINEAR, ProgramFrame
 from probe_paths.plan.heading import Heading, calibration_hash, parse_heading, stated_serial
-from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, waypoints
+from probe_paths.plan.order import (
+    Visit,
+    home_readings,
+    nearest_neighbours,
+    short_order,
+    waypoints,
+)
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.strokes import Stage, stroke_gaps
@@ -40,6 +46,7 @@ __all__ = [
     "plan_touches",
     "readings_at",
     "requests_at",
+    "short_order",
     "solid_hull",
     "stated_serial",
     "stroke_gaps",

@@ -16,6 +16,8 @@ GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 LONGEST_TURN = 170.0 * DEG
 """A rotary move is cut into pieces below half a turn, so that M126 cannot change its way."""
 
+_PART, _NO_GAIN = 3, 1e-9  # places that are put elsewhere together; mm
+
 _ROUNDING = 1e-9
 """A reading at the very end of the travel is inside, whatever its last digit, rad."""
 
@@ -110,6 +112,61 @@ def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:
     for stop in stops:
         path += [waypoints(path[-1][-1], stop.before), stop.rotary[None]]
     return np.concatenate([*path, end[None]])
+
+
+def short_order(places: Array, first: Array) -> IntArray:
+    """Order of places (N, 2) that goes from `first` (2,) a short way, as rapid moves take time.
+
+    The axis that has farthest to go decides how long a move takes. From nearest neighbours, parts
+    are turned round (2-opt) and parts of up to three are put elsewhere (Or-opt) while that helps.
+    """
+    cost = np.abs(places[:, None] - places).max(axis=-1)
+    away = np.abs(places - first).max(axis=-1)
+    order = nearest_neighbours(places, first)
+    while True:
+        tried = [_turned_round(order, cost, away), _put_elsewhere(order, cost, away)]
+        gain, better = max(tried, key=lambda one: one[0])
+        if gain <= _NO_GAIN:
+            return order
+        order = better
+
+
+def _turned_round(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
+    """The part whose other direction saves most: what it saves, and the order with it."""
+    n = len(order)
+    into = np.concatenate([[away[order]], cost[order[:-1][:, None], order]])  # from before i to j
+    on = np.concatenate([cost[order[:, None], order[1:]], np.zeros((n, 1))], axis=1)
+    at = np.arange(n)
+    gain = (into[at, at][:, None] + on[at, at]) - (into + on)
+    gain = np.triu(gain, 1)
+    i, j = np.unravel_index(int(np.argmax(gain)), gain.shape)
+    return float(gain[i, j]), np.concatenate([order[:i], order[i : j + 1][::-1], order[j + 1 :]])
+
+
+def _put_elsewhere(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
+    """The part of up to three places that saves most elsewhere, in either direction."""
+    n, best, found = len(order), 0.0, order
+    for size in range(1, min(_PART, n - 1) + 1):
+        for i in range(n - size + 1):
+            part, rest = order[i : i + size], np.delete(order, np.s_[i : i + size])
+            before = away[part] if i == 0 else cost[order[i - 1], part]
+            is_last = i + size == n
+            after = 0.0 if is_last else cost[part[-1], order[i + size]]
+            bridge = 0.0
+            if not is_last:
+                follows = order[i + size]
+                bridge = away[follows] if i == 0 else cost[order[i - 1], follows]
+            saved = before[0] + after - bridge
+            behind = np.append(np.diagonal(cost[rest[:-1][:, None], rest[1:]]), 0.0)
+            gaps = np.concatenate([[away[rest[0]]], behind])
+            for one in (part, part[::-1]):
+                to = np.concatenate([[away[one[0]]], cost[rest, one[0]]])
+                onward = np.append(cost[one[-1], rest], 0.0)
+                gain = saved - (to + onward - gaps)
+                k = int(np.argmax(gain))
+                if gain[k] > best:
+                    best, found = float(gain[k]), np.concatenate([rest[:k], one, rest[k:]])
+    return best, found
 
 
 def nearest_neighbours(places: Array, first: Array) -> IntArray:

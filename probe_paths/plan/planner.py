@@ -18,7 +18,7 @@ from probe_paths.plan.clearance import (
 )
 from probe_paths.plan.frame import LINEAR, ProgramFrame
 from probe_paths.plan.heading import rounded_setup, rounded_workshop
-from probe_paths.plan.order import Visit, home_readings, nearest_neighbours, rotary_path, visits
+from probe_paths.plan.order import Visit, home_readings, rotary_path, short_order, visits
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.strokes import Stage, stroke_gaps
 from probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
@@ -333,14 +333,14 @@ def _assembled(
     kept: list[Visit] = []
     stops = [stop for stop in stops if np.any(wanted.reason[stop.rows] == "")]
     anchors = _anchors(task, stops)
-    linear = [task.chain.axis_index(name) for name in LINEAR]
+    sideways = [task.chain.axis_index(name) for name in LINEAR[:2]]  # every touch goes up and down
     for stop in stops:
         rows = stop.rows[wanted.reason[stop.rows] == ""]
         anchor, refusal = anchors.get(stop.pose, (wanted[rows[:0]], None))
         if refusal is not None:
             failed.append(refusal)
         first = anchor.start[0] if len(anchor.point) else wanted.start[rows[0]]
-        order = nearest_neighbours(wanted.start[rows][:, linear], first[linear])
+        order = short_order(wanted.start[rows][:, sideways], first[sideways])
         parts += [anchor, wanted[rows[order]]]
         request += [-1] * len(anchor.point) + rows[order].tolist()
         visit += [len(kept)] * (len(anchor.point) + len(rows))

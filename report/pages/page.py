@@ -13,6 +13,7 @@ from report.numbers import percent, signed
 from report.pages.tables import write_tables
 from twin.files import write_whole
 from twin.versions import versions
+from twin.words import in_own_unit
 
 _MINUS = re.compile(r"(?<![^\s(,])-(?=\d)")
 _APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
@@ -49,7 +50,7 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
         "with_contents": with_contents,
     }
     environment.globals |= {"signed": signed, "picture": picture, "versions": versions}
-    write_whole(path, environment.get_template(template).render(**content))
+    write_whole(path, in_own_unit(environment.get_template(template).render(**content)))
     write_tables(path)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from report.style.colours import INK, LINE, SOFT
 from twin.files import written_whole
+from twin.words import in_own_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,6 +30,10 @@ def figure(
 
 def save(drawn: Figure, path: str | Path) -> None:
     """PNG, written whole or not at all."""
+    from matplotlib.text import Text
+
+    for text in drawn.findobj(Text):
+        text.set_text(in_own_unit(text.get_text()))
     with written_whole(path) as part:
         drawn.savefig(part, dpi=DPI, format="png")
 

@@ -1,6 +1,6 @@
 """Words of where a standard stands, and of what a ball tells of the probe."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -11,14 +11,26 @@ from twin.record import Setup
 from twin.units import DEG, UM
 
 
-def ball_lines(changes: Sequence[BallChange], limit: float | None = None) -> list[str]:
+def ball_lines(
+    changes: Sequence[BallChange],
+    limit: float | None = None,
+    heights: Sequence[Mapping[str, float]] = (),
+) -> list[str]:
     """What the same ball tells of the time between two looks at it, in words.
 
     Args:
         changes: In the order of time.
         limit: Beyond which measurements are refused, mm; None where they are not.
+        heights: What touches of commissioning programs tell of Z, by its meanings, mm.
     """
     lines = []
+    for beside in heights:
+        best = min(beside, key=lambda meaning: abs(beside[meaning]))
+        others = ", ".join(f"{abs(v):.3f} mm as {k}" for k, v in beside.items() if k != best)
+        lines.append(
+            f"commissioning touch: Z of the control is that of {best} (--z {best}): the ball is "
+            f"{abs(beside[best]):.3f} mm beside its place, {others}"
+        )
     within = "" if limit is None else f" (limit {limit / UM:g} µm)"
     for change in changes:
         moved = ", ".join(

@@ -67,9 +67,9 @@ def test_a_long_log_is_told_its_wave_and_no_more() -> None:
     assert found.fit.memory.correlation == pytest.approx(0.8, abs=0.03)
 
 
-def step(name: str, value: float, u: float, p: float) -> Step:
+def step(name: str, value: float, u: float, p: float, parameters: int = 2) -> Step:
     size = Reported("amplitude", "um", value, u, UM, Role.SIZE)
-    effect = SimpleNamespace(name=name)
+    effect = SimpleNamespace(name=name, parameters=("",) * parameters)
     return Step(effect=effect, fit=None, p_value=p, reported=(size,), confusion=None)  # type: ignore[arg-type]
 
 
@@ -79,6 +79,8 @@ def test_what_says_least_falls_first() -> None:
     assert weakest([sure], is_weighed=False) is None
     assert weakest([sure, faint], is_weighed=False) == "b"
     assert weakest([sure, faint, chance], is_weighed=False) == "c"
+    form = step("d", 3, 2, 1e-9, parameters=21)  # their length says little where they are there
+    assert weakest([sure, form], is_weighed=False) is None
 
 
 def test_members_of_a_weighed_set_fall_only_if_nothing_speaks_for_them() -> None:

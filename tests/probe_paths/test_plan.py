@@ -1,6 +1,7 @@
 """Plans: what is refused and why, the order of poses, heights, rooms for the probe."""
 
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from artefact.reach.touchable import Requests
 from artefact.reach.workshop import Workshop
 from probe_paths.plan.clearance import solid_hull, swing_height, top_height
-from probe_paths.plan.order import LONGEST_TURN, nearest_neighbours, visits, waypoints
+from probe_paths.plan.order import LONGEST_TURN, nearest_neighbours, short_order, visits, waypoints
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import PlanOptions, requests_at
@@ -95,6 +96,25 @@ def test_no_turn_is_half_a_turn_or_longer():
     steps = np.diff(np.vstack([np.array([-350.0, 0.0]) * DEG, path]), axis=0)
     assert np.abs(steps).max() <= LONGEST_TURN + 1e-12
     assert np.abs(path[-1] / DEG - [350.0, 10.0]).max() < ROUNDING
+
+
+@pytest.mark.parametrize("count", [1, 2, 7])
+def test_touches_come_in_nearly_the_shortest_order(count):
+    """Against all orders; the slower axis of a move decides."""
+    rng = np.random.default_rng(4)
+    ratio = []
+    for _ in range(12):
+        places, first = rng.uniform(-100.0, 100.0, (count, 2)), rng.uniform(-100.0, 100.0, 2)
+        orders = np.array(list(permutations(range(count))))
+        ways = np.concatenate([np.tile(first, (len(orders), 1, 1)), places[orders]], axis=1)
+        lengths = np.abs(np.diff(ways, axis=1)).max(axis=-1).sum(axis=1)
+        order = short_order(places, first)
+        assert sorted(order) == list(range(count))
+        made = np.abs(np.diff(np.vstack([first, places[order]]), axis=0)).max(axis=-1).sum()
+        ratio.append(made / lengths.min())
+    assert min(ratio) > 1.0 - ROUNDING
+    assert np.mean(ratio) < 1.02
+    assert max(ratio) < 1.12
 
 
 def test_nearest_neighbours_against_a_loop_in_words():

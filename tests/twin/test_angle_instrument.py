@@ -1,11 +1,14 @@
 """Instruments of angles: rotary tables under an autocollimator, and what they cannot feel."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.fit.identification import fit_run
 from diagnosis.geometry.learnt import geometry_rows
+from matstd.console import say
 from twin.files.run_file import read_run
 from twin.files.run_writer import run_text
 from twin.foreign.machine_draft import machine_text
@@ -18,7 +21,9 @@ from twin.foreign.positioning import (
 from twin.foreign.sheet import read_sheet
 from twin.library.ordinary import ordinary_model
 from twin.machine.chain import Axis, make_chain
+from twin.record.instrument import Instrument
 from twin.units import DEG, UM, URAD
+from twin.words import deviations_in
 
 ARCSEC = DEG / 3600.0
 
@@ -81,7 +86,7 @@ def test_it_is_read_again_as_it_was_written(tilting, tmp_path):
     model = ordinary_model(tilting.touches.chain)
     before, after = model.columns(tilting.touches), model.columns(again.touches)
     np.testing.assert_allclose(after, before, atol=1e-5)
-    assert any("1 µm is 1 µrad" in remark for remark in again.remarks)
+    assert any("1 um is 1 urad" in remark for remark in again.remarks)
 
 
 def test_a_cheap_encoder_off_by_degrees_is_read_and_its_harmonics_found(tmp_path):
@@ -108,3 +113,15 @@ def test_a_cheap_encoder_off_by_degrees_is_read_and_its_harmonics_found(tmp_path
     result = diagnose(again)
     assert [e.name for e in result.found] == ["geometric(ECC,2-4)"]
     assert 50.0 * DEG < result.fit.test_rms < 90.0 * DEG
+
+
+def test_angles_are_told_in_their_own_unit(tilting, capsys):
+    """At an arm of a metre a µm is a µrad; at another, and of lengths, it is not."""
+    touches = tilting.touches
+    assert touches.deviation_unit == "µrad"
+    assert replace(touches, point=0.5 * touches.point).deviation_unit == "µm"
+    assert replace(touches, instrument=Instrument.LASER).deviation_unit == "µm"
+    with deviations_in(touches.deviation_unit):
+        say("left are 3.2 µm rms")
+    say("left are 3.2 µm rms")
+    assert capsys.readouterr().out.splitlines() == ["left are 3.2 µrad rms", "left are 3.2 µm rms"]

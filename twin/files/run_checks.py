@@ -9,7 +9,7 @@ from twin.errors import BadFile
 from twin.files.pose_file import beyond_travel
 from twin.files.table import CsvTable
 from twin.frames import Array
-from twin.record import IntArray, Run, computed_deviation, without_copies
+from twin.record import Instrument, IntArray, Run, computed_deviation, without_copies
 from twin.units import UM
 
 Mask = NDArray[np.bool_]
@@ -211,7 +211,8 @@ def _tell_slip(
 def _with_clock(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     """The run without its times, if its clock goes back; one that stands still is told."""
     time = run.touches.time
-    if "time_s" in table and len(run) > 1 and np.ptp(time) == 0.0:
+    is_timed = run.touches.instrument is not Instrument.CMM  # who asks when a hole was drilled?
+    if "time_s" in table and len(run) > 1 and np.ptp(time) == 0.0 and is_timed:
         remarks.append(f"time_s is {time[0]:g} in every row: no effect of time can be found")
     gaps = np.sort(np.diff(time))
     if len(gaps) > 1 and gaps[-1] > max(JUMP, 10.0 * float(np.abs(gaps[:-1]).sum())):

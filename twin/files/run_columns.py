@@ -338,4 +338,4 @@ def moved_setup(moved: Moved) -> str:
 def angles_told(points: Array) -> str:
     """How an instrument of angles puts them into deviations."""
     arm = float(np.median(np.linalg.norm(points, axis=1)))
-    return f"deviations are angles times {arm:g} mm: 1 µm is {1000.0 / arm:.3g} µrad"
+    return f"dev_um are angles times {arm:g} mm: 1 um is {1000.0 / arm:.3g} urad"

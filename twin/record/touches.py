@@ -25,6 +25,10 @@ IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]
 
 
+METRE = 1000.0
+"""Arm, mm, at which a deviation in µm is as many µrad."""
+
+
 @dataclass(frozen=True, eq=False)
 class Setup:
     """One placement of the standard on the table.
@@ -204,6 +208,12 @@ class Touches:
             return own
         other = self.opposite
         return own.paired(Signature(other.reach, other.normal_table))
+
+    @property
+    def deviation_unit(self) -> str:
+        """Unit in which deviations are told: those of angles at an arm of one metre are µrad."""
+        is_metre = np.allclose(np.linalg.norm(self.point, axis=1), METRE, atol=1e-6)
+        return "µrad" if self.instrument.reads_angle and is_metre else "µm"
 
     @cached_property
     def opposite(self) -> "Touches":

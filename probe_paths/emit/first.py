@@ -1,0 +1,130 @@
+"""The commissioning program: everything that the others rely on, once, in as few blocks as can be.
+
+A programming station without a licence keeps a hundred blocks. So it tests what decides where the
+ball comes down and nothing else, goes to one alarm, and prints its whole log at once.
+"""
+
+import numpy as np
+
+from probe_paths.emit.writer import Writer
+from probe_paths.language import Datum, ErrorText, Label, Q, Touch, interlocks
+from probe_paths.plan import home_readings
+from twin.errors import NotReachable
+from twin.frames import Array
+from twin.units import MINUTE
+
+_FROM_ABOVE = -0.999
+"""Of the Z component of a touch from above."""
+
+
+class FirstWriter(Writer):
+    """Writes a commissioning program of a plan of touches on one ball."""
+
+    def text(self, name: str, title: str, part: list[int], duration: float) -> str:
+        """Whole text: the touch from above, and one in the air where the way down begins."""
+        k = self.language
+        row, visit = self._touch_from_above(), self.plan.visits[0]
+        tests = interlocks(k, self.frame, is_first=True)
+        blocks = [
+            k.begin(name),
+            *self._first_remarks(row, duration),
+            *k.RESET,
+            self.retract,
+            k.tool_call(self.dialect.tool),
+            k.preset(self.dialect.preset),
+            self.retract,
+            *self._home(),
+            *self._read(),
+            *(block for test in tests for block in self._tested(test)),
+            *self._in_air(row, visit.height),
+            *self._on_ball(row, visit.pose),
+            self.retract,
+            k.WAIT,
+            *(k.read(q, Datum(a)) for q, a in self._places()),
+            self._print(f"{name}.A", name),
+            k.PROGRAM_STOP,
+            k.label(Label.NO_CONTACT, "NO CONTACT"),
+            k.retract_max(self.top),
+            k.stop_with_error(ErrorText.TOUCH_POINT_INACCESSIBLE),
+            k.label(Label.NOT_AS_PLANNED, f"ALARM {Label.NOT_AS_PLANNED:d}: PROBE OR PRESET"),
+            k.stop_with_error(ErrorText.INPUT_VALUE_INCORRECT),
+            k.end(name),
+        ]
+        return k.listed(blocks)
+
+    def _touch_from_above(self) -> int:
+        """Row of the touch on the pole, which needs no room beside the ball."""
+        z = self.plan.direction[:, 2]
+        row, home = int(np.argmin(z)), home_readings(self.plan.chain)
+        if z[row] > _FROM_ABOVE or np.any(self.plan.visits[0].rotary != home):
+            raise NotReachable("no ball can be touched from above with the rotary axes at home")
+        return row
+
+    def _first_remarks(self, row: int, duration: float) -> list[str]:
+        assert self.special is not None
+        k, probe, feature = self.language, self.plan.probe, str(self.plan.feature[row])
+        table = f"L{probe.tool_length:+.4f} R{probe.radius:+.4f}"
+        remarks = [
+            *self.heading.lines,
+            f"FEATURE {self.number[feature]} IS {feature}",
+            f"TOUCHES 1 TO 1, ABOUT {max(duration / MINUTE, 1.0):.0f} MIN",
+            *self.special.remarks,
+            f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT",
+            f"TOOL {self.dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN",
+        ]
+        return [k.comment(text) for text in remarks]
+
+    def _read(self) -> list[str]:
+        """Calibration of the probe, tool and preset."""
+        k = self.language
+        return [
+            k.WAIT,
+            k.read(Q.PROBE_RADIUS, Datum.RADIUS),
+            k.read(Q.PROBE_LENGTH, Datum.LENGTH),
+            k.read(Q.OFFSET_X, Datum.OFFSET_X),
+            k.read(Q.OFFSET_Y, Datum.OFFSET_Y),
+            k.read(Q.TOOL, Datum.TOOL),
+            k.assign(Q.PRESET, self.dialect.preset),
+        ]
+
+    def _places(self) -> list[tuple[Q, str]]:
+        return list(zip((Q.ROTARY_1, Q.ROTARY_2), self.rotary, strict=False))
+
+    def _cycle(self, row: int) -> list[str]:
+        options = self.plan.options
+        direction: Array = self.plan.direction[row]
+        touch = Touch(list(direction), self.plan.distance, self.feeds.probing, options.standoff)
+        return self.language.probe_vector(self.dialect, Q.RESULT_X, touch)
+
+    def _in_air(self, row: int, height: float) -> list[str]:
+        """The same cycle high above the ball: its status must say that it met nothing."""
+        k = self.language
+        start = self.frame.coordinates(self.plan.start[row], "XY")
+        back = {**start, "Z": self.frame.coordinate("Z", height)}
+        return [
+            k.assign(Q.STATUS, 0),
+            k.line(start, None),
+            k.line({"Z": back["Z"]}, None),
+            *self._cycle(row),
+            k.jump_if_less(Q.STATUS, 0, Label.AIR),
+            k.retract_max(self.top),
+            k.stop_with_error(ErrorText.TOUCH_POINT_INACCESSIBLE),
+            k.label(Label.AIR, "MET NOTHING, AS IT MUST"),
+            k.line(back, self.feeds.approach),
+        ]
+
+    def _on_ball(self, row: int, pose: int) -> list[str]:
+        k = self.language
+        start = self.frame.coordinates(self.plan.start[row], "XYZ")
+        sides = [k.assign(q, 0) for q, _ in zip((Q.SIDE_1, Q.SIDE_2), self.rotary, strict=False)]
+        return [
+            k.assign(Q.POSE, pose + 1),
+            *sides,
+            k.assign(Q.TOUCH, 1),
+            k.assign(Q.FEATURE, self.number[str(self.plan.feature[row])]),
+            k.assign(Q.STATUS, -1),
+            k.line({"Z": start["Z"]}, self.feeds.approach),
+            *self._cycle(row),
+            k.jump_if_less(Q.STATUS, 0, Label.NO_CONTACT),
+            k.line(start, self.feeds.approach),
+        ]

@@ -1,0 +1,150 @@
+"""The commissioning program: few blocks, all of them needed, and a touch that must meet nothing."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.body import write_standard
+from matstd.cli import main
+from probe_paths.campaign.ball_change import read_heights
+from probe_paths.campaign.collisions import check_moves
+from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.virtual_run import run_program
+from probe_paths.control.interpreter import interpret
+from probe_paths.control.log import read_log
+from probe_paths.control.steps import ProbeStep
+from probe_paths.emit.program import make_first
+from probe_paths.language.dialect_file import read_dialect
+from probe_paths.locate.ball_plan import plan_ball
+from twin.errors import BadFile, DesignError, NotReachable
+from twin.frames import pose
+from twin.units import NM
+
+HARMLESS = {"M127"}
+"""Without it a turn home may go the shorter way, above everything."""
+
+
+@pytest.fixture(scope="module")
+def made(plan):
+    return make_first(plan_ball(plan))
+
+
+@pytest.fixture(scope="module")
+def reads(made, small, chain):
+    """Reads a text as the program, and looks at its moves."""
+
+    def read(text):
+        path = Path(made.programs[0].file)
+        program = interpret(text.encode("ascii"), path, made.masks.get, chain)
+        check_moves(program, small, chain)
+        return program
+
+    return read
+
+
+@pytest.fixture(scope="module")
+def program(made, reads):
+    return reads(made.programs[0].text)
+
+
+def test_it_has_less_than_a_hundred_blocks_a_touch_in_the_air_and_one_on_a_ball(made, program):
+    (one,) = made.programs
+    assert one.blocks == len([s for s in one.text.split("\r\n") if s and s[0] != " "]) < 100
+    assert list(made.masks) == [f"{one.name}.A"]
+    air, ball = (step for step in program.steps if isinstance(step, ProbeStep))
+    assert air.is_air
+    assert not ball.is_air
+    assert np.array_equal(air.direction, ball.direction)
+    assert program.features[ball.feature] == "SPH1"
+
+
+def test_every_block_is_needed(made, reads):
+    """Each one taken out, the others numbered anew: refused, but for what does no harm."""
+    lines = made.programs[0].text.split("\r\n")
+    passed = set()
+    for i, line in enumerate(lines):
+        if not line or line.startswith(" "):
+            continue
+        many = 2 if lines[i + 1].startswith(" ") else 1
+        left = lines[:i] + lines[i + many :]
+        numbers = iter(range(len(left)))
+        text = [f"{next(numbers)} {s.partition(' ')[2]}" if s[:1].isdigit() else s for s in left]
+        try:
+            reads("\r\n".join(text))
+        except BadFile:
+            continue
+        passed.add(line.partition(" ")[2])
+    assert passed == HARMLESS
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("Q1613 = +0", "Q1613 = -1", r"expected FN 0: Q1613 = \+0 before it"),
+        ("LT +0 GOTO LBL 94", "LT +0 GOTO LBL 91", "expected"),
+        ("LT +0 GOTO LBL 94", "LT +1 GOTO LBL 94", "the status"),
+        ("Z+90.0000", "Z+72.0000", "a touch in the air"),
+        (";COMMISSIONING", ";COMMISSIONED", "expected"),
+        ("LT -1 GOTO LBL 93", "LT -3 GOTO LBL 93", "off by"),
+        ("GT +0.0500 GOTO LBL 93", "GT +0.5000 GOTO LBL 93", "basic rotation is off"),
+        ("M140 MB MAX", "L Z-1.0000 R0 FMAX M91", "a move back to the start"),
+        ("FN 14: ERROR= 1014", "FN 0: Q1620 = +2", "expected"),
+        ("SET UP +8.0000", "SET UP +80.0000", "at most 10 mm beyond"),
+        ("Z+70.0000", "Z+75.0000", "touch 1 on SPH1"),
+    ],
+)
+def test_what_is_wrong_is_refused(made, reads, old, new, expected):
+    text = made.programs[0].text
+    assert old in text
+    with pytest.raises(BadFile, match=expected):
+        reads(text.replace(old, new))
+
+
+@pytest.mark.parametrize("meaning", ["gauge", "tip"])
+def test_its_log_tells_what_z_the_control_returns(program, small, chain, meaning):
+    machine = VirtualMachine(chain, dialect=replace(read_dialect("itnc530"), result_height=meaning))
+    run = run_program(program, small, machine, np.random.default_rng(0))
+    run.check_done()
+    (part,) = read_log("MS_A_COM.TXT", chain.rotary_axes, "".join(run.log.values()))
+    assert part.is_complete
+    assert not part.is_measuring
+    assert (part.radius, part.tool_length) == (3.0, 163.0)
+    beside = read_heights(part, small, chain)
+    assert abs(beside.pop(meaning)) < 10.0 * NM
+    assert abs(beside.popitem()[1]) > 100.0  # the length of the probe, from whichever side
+
+
+def test_a_touch_in_the_air_that_meets_something_stops_it(program, small, chain):
+    higher = VirtualMachine(chain, setup_error=pose(np.eye(3), np.array([0.0, 0.0, 22.0])))
+    run = run_program(program, small, higher, np.random.default_rng(0))
+    assert run.log == {}
+    with pytest.raises(NotReachable, match="the touch in the air meets SPH1"):
+        run.check_done()
+
+
+def test_another_language_and_a_pose_beside_home_are_refused(plan):
+    ball = plan_ball(plan)
+    with pytest.raises(DesignError, match="expected klartext"):
+        make_first(ball, read_dialect("linuxcnc"))
+    visit = replace(ball.visits[0], rotary=ball.visits[0].rotary + 0.1)
+    with pytest.raises(NotReachable, match="with the rotary axes at home"):
+        make_first(replace(ball, visits=(visit,)))
+
+
+def test_simulate_and_evaluate_take_it(made, small, tmp_path, capsys):
+    write_standard(tmp_path / "standard.toml", small)
+    (path,) = made.write(tmp_path)
+    machine = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
+    words = ["--standard", str(tmp_path / "standard.toml"), "--machine", str(machine)]
+    out = ["-o", str(tmp_path / "run.csv")]
+    assert main(["simulate", str(path), *words, *out]) == 2
+    assert "a commissioning program leave a log" in capsys.readouterr().err
+    assert main(["simulate", str(path), *words, *out, "--logs", str(tmp_path)]) == 0
+    log = str(tmp_path / "MS_A_COM.TXT")
+    assert main(["evaluate", log, *words, *out]) == 0
+    told = capsys.readouterr().out
+    assert "no run file" in told
+    assert "Z of the control is that of gauge (--z gauge)" in told
+    assert not (tmp_path / "run.csv").exists()
