@@ -132,7 +132,8 @@ def test_a_loaded_bar_pushes_the_tool_outwards(tmp_path):
     rows = [f"{a:g},{w:.4f}" for a, w in zip(angles, wider, strict=True)]
     path.write_text("angle_deg,deviation_um\n" + "\n".join(rows) + "\n")
     out = tmp_path / "run.csv"
-    asked = ["import", str(path), "--circle", "XY", "--radius", "150", "--bar-force", "300", "--u-um", "0.5"]
+    asked = ["import", str(path), "--circle", "XY", "--radius", "150", "--u-um", "0.5"]
+    asked += ["--bar-force", "300"]
     assert main([*asked, "-o", str(out)]) == 0
     run = read_run(out)
     stiff = parse_effect("tool-point-stiffness", run.touches.chain)
