@@ -38,6 +38,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: int = 10) -> Path:
     """The example project with fewer poses, draws and touches."""
     (folder / "machine.toml").write_text((EXAMPLES / "hsm600u-machine.toml").read_text())
+    (folder / "task.toml").write_text((EXAMPLES / "task.toml").read_text())
     text = (EXAMPLES / "hsm600u.toml").read_text()
     for old, new in (
         ("hsm600u-machine.toml", "machine.toml"),
