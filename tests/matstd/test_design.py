@@ -89,6 +89,7 @@ def test_every_file_is_there(made: Path) -> None:
         "run.csv",
         "identification.json",
         "uncertainty.json",
+        "cmm.dmi",
         "identifiability.json",
         "report.html",
         "setup/setup.html",
