@@ -28,21 +28,6 @@ OF_ONE_RUN = ("artefact", "drift")
 """Effects that belong to a run, not to the machine."""
 
 
-def placed(rng: np.random.Generator, stated):
-    """Where a standard really stands that is set up anew at the stated places."""
-    from simulator_experiment import pose_about_z
-
-    out = []
-    for origin, angle in stated:
-        a, b, c = rng.normal(0.0, 20.0e-6, 3)
-        small = np.array([[1, -c, b, 0], [c, 1, -a, 0], [-b, a, 1, 0], [0, 0, 0, 1.0]])
-        small[:3, 3] = rng.normal(0.0, 10.0e-3, 3)
-        u, _, vt = np.linalg.svd(small[:3, :3])
-        small[:3, :3] = u @ vt
-        out.append(pose_about_z(origin, angle) @ small)
-    return out
-
-
 def drawn(rng, machine):
     """A random effect of the machine itself."""
     from simulator_draw import draw
@@ -64,10 +49,10 @@ def three_runs(number: int):
     first = se.random_experiment(rng, label)
     again = replace(
         first,
-        actual=placed(rng, first.stated),
+        actual=se.placed(rng, first.stated),
         temperature={k: np.round(v, 3) for k, v in se.temperatures(rng, first.time).items()},
     )
-    with patch.object(se, "random_setups", lambda r, _: (first.stated, placed(r, first.stated))):
+    with patch.object(se, "random_setups", lambda r, _: (first.stated, se.placed(r, first.stated))):
         other = replace(se.random_experiment(rng, label), errors=first.errors)
 
     def read(e, effects, noise):

@@ -22,6 +22,7 @@ COMMANDS = {
     "calibrate": "a standard as a coordinate measuring machine finds it; the program for the CMM",
     "uncertainty": "of a measuring task, from visits to the calibrated faces (ISO 15530-3)",
     "compensate": "the identified model goes back to the control: tables, or a part program",
+    "serve": "corrections while the machine moves, as an OPC UA server",
     "contributions": "what every error adds along a program or at poses",
     "machines": "the machines that come with the tool, with the source of every figure",
     "new": "a commented minimal file to start from: machine, project, run or effect",

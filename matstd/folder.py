@@ -6,10 +6,17 @@ import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from matstd.lock import is_abandoned, locked
 from twin.errors import DesignError
 from twin.files import NOT_WRITABLE
+
+if TYPE_CHECKING:
+    from diagnosis.fit import Fit
+
+FOUND = "machine_found.toml"
+"""Machine file of a serial arm with the lines of all joints as found."""
 
 WORKING: set[Path] = set()
 """Folders in which this process works; whoever ends it at once removes them."""
@@ -80,3 +87,21 @@ def _remove_abandoned(out: Path) -> None:
         for place in out.parent.iterdir():
             if ours.fullmatch(place.name) and is_abandoned(place):
                 shutil.rmtree(place, ignore_errors=True)
+
+
+def write_found_arm(folder: Path, fit: "Fit", title: str) -> str:
+    """Write it, and say what it is good for; nothing, and "", where the machine is no arm."""
+    from diagnosis.geometry import found_arm
+    from report.words import microns
+    from twin.files import write_whole
+    from twin.foreign import machine_text
+
+    arm = found_arm(fit)
+    if arm is None:
+        return ""
+    write_whole(folder / FOUND, machine_text(arm.chain, title, is_known=True))
+    return (
+        f"{FOUND} has the lines of all joints as found, to put in the machine file's place: with "
+        f"nothing but the set-up {microns(arm.after)} are left then, {microns(arm.before)} now; "
+        "take all of them or none, and import again, which finds the reflector anew"
+    )

@@ -183,8 +183,8 @@ def placement_options(project: Project) -> PlacementOptions:
         criterion=CriterionOptions(
             name=wanted.criterion,
             potential=wanted.potential,
-            drawn_machines=wanted.drawn_machines,
-            worst_share=wanted.worst_share,
+            robust_machines=wanted.robust_machines,
+            robust_share=wanted.robust_share,
             calibration=Calibration(
                 patch=known.patch_um * UM,
                 patch_tilt=known.patch_urad * URAD,

@@ -1,15 +1,17 @@
 """From a standard to probing programs, and from their logs back to measurements.
 
 In: a standard, a machine, a probe, a set-up and the touches that are wanted (`Requests`).
-Out: programs and masks for an iTNC 530, and from the logs that they leave a `Run`.
+Out: programs for an iTNC 530 or another control, and from the logs that they leave a `Run`.
 
     Requests -> plan_touches -> TouchPlan -> make_programs -> ProgramSet (text)
     text -> read_program -> ReadProgram -> simulate (the exact twin) -> logs
     logs, from the twin or from a control -> read_log -> evaluate -> Run
 
 Plan and simulation meet in nothing but the text: what the writer meant is unknown to the reader,
-so a slip between the two shows. Another word of the control goes into `language`, another rule
-for what a program may do into `control`, another shape of program into `emit`.
+so a slip between the two shows. `linuxcnc` has what runs beside that control, `locate` finds a
+standard that stands beside its place and plans again for where it is. Another word of a control
+goes into `language`, another rule for what a program may do into `control`, another shape of
+program into `emit`.
 """
 
 from probe_paths.campaign import Campaign, VirtualMachine, evaluate, orders, probing_time, simulate

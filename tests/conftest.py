@@ -1,6 +1,7 @@
 """One thread a worker: several workers, each with as many BLAS threads as cores, only wait."""
 
 import os
+from base64 import b64decode
 from pathlib import Path
 
 import pytest
@@ -24,7 +25,7 @@ LONGEST = (
     "matstd/test_sensitivity_command.py",
     "test_examples_runs.py",
     "diagnosis/test_prediction.py",
-    "report/test_standard_scene.py",
+    "report/test_scenes.py",
     "cad_out/test_export.py",
     "diagnosis/test_periods.py",
     "probe_paths/test_simulate.py",
@@ -34,6 +35,12 @@ LONGEST = (
 )
 """Files of more than ten seconds: begun first, so that no worker waits for one of them at the end;
 left to itself, xdist begins with the files of most tests."""
+
+
+DOT = b64decode(
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
+)
+"""A PNG of one white pixel."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -48,6 +55,19 @@ def _no_lines_of_progress():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
         yield
+
+
+@pytest.fixture
+def unrendered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures are made, but not rendered: for who reads only the page around them.
+
+    Rendering is most of the time of a page; `report/test_diagnosis_pictures` renders every kind.
+    """
+
+    def dot(figure: object, path: Path, **_: object) -> None:
+        path.write_bytes(DOT)
+
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", dot)
 
 
 @pytest.fixture(autouse=True)

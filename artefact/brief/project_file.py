@@ -43,6 +43,10 @@ FARTHEST = 1e6
 """A reading beyond this (mm, degrees) is a slip; larger whole numbers are no floating ones."""
 
 
+RENAMED = {"drawn_machines": "robust_machines", "worst_share": "robust_share"}
+"""Keys of `[standard]` by what they are called in older files, which are read all the same."""
+
+
 class MonteCarloTable(Table):
     """`[montecarlo]`: number of random machines, and when it is enough of them."""
 
@@ -118,6 +122,7 @@ class Project:
         machines: Number of random machines of the proof.
         visits: Number of virtual visits from which the uncertainty of the task is evaluated.
         task: What the user measures; whatever is touched on the faces where he did not say.
+        remarks: What the user should know of his file.
     """
 
     path: Path
@@ -145,6 +150,7 @@ class Project:
     machines: int
     visits: int
     task: Task
+    remarks: tuple[str, ...] = ()
 
     @property
     def population(self) -> Population:
@@ -165,6 +171,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     path = Path(path)
     data = parse_toml(read_text(path), path)
     check_format(data, "project/1", path)
+    remarks = _under_their_names(data, path)
     if montecarlo and isinstance(data.setdefault("montecarlo", {}), dict):
         data["montecarlo"] |= montecarlo
     table = checked(ProjectTable, data, path)
@@ -213,7 +220,18 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         machines=table.simulation.machines,
         visits=table.simulation.visits,
         task=_task(table, workspace, path),
+        remarks=remarks,
     )
+
+
+def _under_their_names(data: Mapping[str, Any], path: Path) -> tuple[str, ...]:
+    """Put keys of older files under their present names; a remark for each."""
+    wanted, remarks = data.get("standard"), []
+    for old, new in RENAMED.items():
+        if isinstance(wanted, dict) and old in wanted and new not in wanted:
+            wanted[new] = wanted.pop(old)
+            remarks.append(f"{path}: standard.{old} is called {new} now, and read as that")
+    return tuple(remarks)
 
 
 def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], path: Path) -> Task:

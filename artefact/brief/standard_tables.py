@@ -39,8 +39,8 @@ class StandardTable(Table):
     poses: int = Field(default=30, ge=8, le=100)
     criterion: Literal["I", "G", "D", "A", "E"] = "I"
     potential: float = Field(default=0.3, ge=0.0, le=0.95)
-    drawn_machines: int = Field(default=0, ge=0, le=100)
-    worst_share: float = Field(default=1.0, gt=0.0, le=1.0)
+    robust_machines: int = Field(default=0, ge=0, le=100)
+    robust_share: float = Field(default=1.0, gt=0.0, le=1.0)
 
 
 class BlankTable(Table):
@@ -67,11 +67,11 @@ def check_standard(wanted: StandardTable, path: Path) -> None:
     Raises:
         BadFile: The key and what it contradicts.
     """
-    if wanted.worst_share < 1.0 and not wanted.drawn_machines:
+    if wanted.robust_share < 1.0 and not wanted.robust_machines:
         raise BadFile(
             path,
-            "standard.worst_share",
-            f"{wanted.worst_share:g} with drawn_machines = 0",
+            "standard.robust_share",
+            f"{wanted.robust_share:g} with robust_machines = 0",
             "drawn machines of which that share is the worst, or no such key",
         )
     if wanted.poses * 2 > wanted.touches:

@@ -160,17 +160,17 @@ class CriterionOptions:
         potential: Share of the criterion that goes to showing effects of the library, from 0 (they
             are left out) to below 1, judged after touches taken at random. In a D-criterion they
             simply join the determinant, whatever the share.
-        drawn_machines: Number of drawn machines over whose sizes of errors the criterion is
+        robust_machines: Number of drawn machines over whose sizes of errors the criterion is
             averaged; 0 for
             the expected sizes alone.
-        worst_share: Share of the drawn machines, the worst, that are averaged; 1 for all.
+        robust_share: Share of the drawn machines, the worst, that are averaged; 1 for all.
         calibration: How well the features of a standard are known.
     """
 
     name: str = "I"
     potential: float = 0.0
-    drawn_machines: int = 0
-    worst_share: float = 1.0
+    robust_machines: int = 0
+    robust_share: float = 1.0
     calibration: Calibration = field(default_factory=Calibration)
 
     def __post_init__(self) -> None:
@@ -178,8 +178,8 @@ class CriterionOptions:
             raise DesignError(f"criterion '{self.name}', expected one of {', '.join(CRITERIA)}")
         if not 0.0 <= self.potential < 1.0:
             raise DesignError(f"potential {self.potential:g}, expected from 0 to below 1")
-        if self.drawn_machines < 0:
-            raise DesignError(f"drawn machines {self.drawn_machines}, expected 0 or more")
+        if self.robust_machines < 0:
+            raise DesignError(f"drawn machines {self.robust_machines}, expected 0 or more")
 
 
 def criterion_for(
@@ -218,10 +218,10 @@ def criterion_for(
     W = whitened(model.columns(free), prior_sd, noise)
     G = np.concatenate(tips)
     objectives = five_criteria(G, W, prior_sd)
-    if options.drawn_machines:
-        scales = _scales(reach, model, population, options.drawn_machines, rng)
+    if options.robust_machines:
+        scales = _scales(reach, model, population, options.robust_machines, rng)
         objectives = {
-            key: robust(one, scales, options.worst_share) for key, one in objectives.items()
+            key: robust(one, scales, options.robust_share) for key, one in objectives.items()
         }
     terms = None
     if options.potential > 0.0:

@@ -45,7 +45,7 @@ def sizes(
     Args:
         effects: Everything that was added to the model.
         gross: Gross errors, as they were found.
-        complement: What the model to begin with leaves.
+        complement: What the starting model leaves.
     """
     if not effects:
         return (), ()

@@ -157,7 +157,7 @@ def log_evidence(
 
     ``-(n + nu)/2 log(objective + nu s^2) - log_det/2``: the marginal likelihood of a normal linear
     model whose noise has an inverse chi-squared prior of nu degrees of freedom about the stated
-    size s, in units of the size that the model to begin with leaves.
+    size s, in units of the size that the starting model leaves.
     """
     n = complement.count
     objective = np.maximum(objective, 1e-9) + complement.stated

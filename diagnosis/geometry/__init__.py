@@ -5,6 +5,7 @@ errors and lines of the rotary axes with uncertainty, what they do at the ends o
 changed since a saved model, corrections of the machine file, and the ladder from the set-up alone.
 """
 
+from diagnosis.geometry.arm_machine import FoundArm, found_arm
 from diagnosis.geometry.changes import (
     changed_since,
     changing,
@@ -31,6 +32,7 @@ __all__ = [
     "CLEAR",
     "Correction",
     "Estimate",
+    "FoundArm",
     "GeometryRow",
     "LearntGeometry",
     "Quantity",
@@ -38,6 +40,7 @@ __all__ = [
     "changed_runs",
     "changed_since",
     "changing",
+    "found_arm",
     "geometry_rows",
     "learnt_geometry",
     "standing",

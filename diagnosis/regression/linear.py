@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
+from scipy.linalg import qr, solve_triangular
 
 from twin.frames import Array
 
@@ -85,7 +85,7 @@ def solve(X: Array, y: Array) -> Solution:
     stacked = np.empty((n + p, p), order="F")
     stacked[:n] = X
     stacked[n:] = np.eye(p)
-    Q, R = np.linalg.qr(stacked)
+    Q, R = qr(stacked, mode="economic", overwrite_a=True, check_finite=False)
     phi = solve_triangular(R, Q[:n].T @ y, check_finite=False)
     return Solution(np.ascontiguousarray(Q[:n]), R, phi, y - X @ phi)
 

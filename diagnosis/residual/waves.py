@@ -1,5 +1,6 @@
 """Waves in time: does a residual repeat with any period?"""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,22 +77,20 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
     count = int(min(MOST, max(BLOCK, PER_LINE * highest * span)))
     frequency = np.linspace(LONGEST / span, max(highest, 1.0 / span), count)
     along = directions(touches)
-    best = (0.0, frequency[0], "normal")
-    for name, part in along.items():
-        weight = part[complement.used] / complement.u
-        best = max(best, (*_scan(effects, time, frequency, weight, rows), name))
-    weight = along[best[2]][complement.used] / complement.u
+    weights = {name: part[complement.used] / complement.u for name, part in along.items()}
+    _, strongest, direction = _scan(effects, time, frequency, weights, rows)
+    weight = weights[direction]
     lowest, step = frequency[0], frequency[1] - frequency[0]
-    drop, found = _finer(effects, time, best[1], step, lowest, weight, rows)
+    drop, found = _finer(effects, time, strongest, step, lowest, {direction: weight}, rows)
     p = float(f_probability(drop, 2.0, effects.objective - drop, effects.dof - 2.0))
-    columns = _seen(effects, _wave(time, np.array([found]), weight))
+    columns = _seen(effects, _wave(time, np.array([found])) * weight[:, None])
     scale = 10.0 / max(float(np.abs(columns).max()), 1e-300)
     return Wave(
         count=count * len(along),
         p_value=p,
         drop=drop,
         period=1.0 / found,
-        direction=best[2],
+        direction=direction,
         columns=columns * scale,
     )
 
@@ -102,27 +101,30 @@ def _step(time: Array) -> float:
 
 
 def _scan(
-    effects: EffectSet, time: Array, frequency: Array, weight: Array, rows: IntArray
-) -> tuple[float, float]:
-    """Largest fall of the objective by a wave, and its frequency."""
-    best = (0.0, float(frequency[0]))
+    effects: EffectSet, time: Array, frequency: Array, weights: Mapping[str, Array], rows: IntArray
+) -> tuple[float, float, str]:
+    """Largest fall of the objective by a wave, its frequency, and the direction it acts along."""
+    best = (0.0, float(frequency[0]), next(iter(weights)))
     for block in np.array_split(frequency, -(-len(frequency) // BLOCK)):
-        drop = _drops(effects, _of_rows(effects, time, block, weight, rows), rows)
-        i = int(np.argmax(drop))
-        best = max(best, (float(drop[i]), float(block[i])))
+        seen = _of_rows(effects, time, block, rows)
+        for name, weight in weights.items():
+            drop = _drops(effects, seen(weight), rows)
+            i = int(np.argmax(drop))
+            if drop[i] > best[0]:
+                best = (float(drop[i]), float(block[i]), name)
     return best
 
 
 def _of_rows(
-    effects: EffectSet, time: Array, frequency: Array, weight: Array, rows: IntArray
-) -> Array:
-    """Waves at some of the touches, freed of the noise's memory where it has one."""
-
-    def wave(at: IntArray) -> Array:
-        return _wave(time[at], frequency, weight[at])
-
+    effects: EffectSet, time: Array, frequency: Array, rows: IntArray
+) -> Callable[[Array], Array]:
+    """Waves at some of the touches by their weights, freed of the noise's memory if it has one."""
     filter_ = effects.complement.whitener
-    return wave(rows) if filter_ is None else filter_.picked(wave, rows)
+    if filter_ is None:
+        here = _wave(time[rows], frequency)
+        return lambda weight: here * weight[rows, None]
+    every = _wave(time, frequency)
+    return lambda weight: filter_.picked(lambda at: every[at] * weight[at, None], rows)
 
 
 def _seen(effects: EffectSet, F: Array) -> Array:
@@ -137,22 +139,22 @@ def _finer(
     frequency: float,
     step: float,
     lowest: float,
-    weight: Array,
+    weights: Mapping[str, Array],
     rows: IntArray,
 ) -> tuple[float, float]:
     """The same around the best frequency of the scan, finer and finer."""
     best = (0.0, frequency)
     for _ in range(TIMES):
         around = best[1] + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)
-        best = max(best, _scan(effects, time, around[around >= lowest], weight, rows))
+        best = max(best, _scan(effects, time, around[around >= lowest], weights, rows)[:2])
         step /= FINER
     return best
 
 
-def _wave(time: Array, frequency: Array, weight: Array) -> Array:
+def _wave(time: Array, frequency: Array) -> Array:
     """Sines, then cosines of some frequencies, (N, 2 K)."""
     angle = 2.0 * np.pi * time[:, None] * frequency
-    return np.concatenate([np.sin(angle), np.cos(angle)], axis=1) * weight[:, None]
+    return np.concatenate([np.sin(angle), np.cos(angle)], axis=1)
 
 
 def _drops(effects: EffectSet, F: Array, rows: IntArray) -> Array:

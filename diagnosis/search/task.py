@@ -1,4 +1,4 @@
-"""What is diagnosed: a run, the model to begin with, and what is believed of both."""
+"""What is diagnosed: a run, the starting model, and what is believed of both."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Fractions of touches that are nearly the best possible: the relaxed design.
+"""Nearly optimal design weights: the relaxed problem, fractions of touches.
 
 Weight flows from the least useful touch that has some to the most useful one that has room, each
 time as much as is best for the pair (vertex exchange), within the shares that have to be kept.
@@ -35,7 +35,7 @@ _SHARPEST = 1000.0
 
 @dataclass(frozen=True, eq=False)
 class Relaxed:
-    """Fractions of touches that are nearly the best possible, and what no choice can beat.
+    """Nearly optimal design weights, and what no choice can beat.
 
     Attributes:
         weight: Fraction of every candidate, (N,), between 0 and 1.

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.folder import FOUND, results_folder, write_found_arm
 from matstd.options import (
     REPORT_FILES,
     add_measured,
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 CLEAR = 2.0
 """Standard uncertainties from which a region is off on average, and does not merely scatter."""
 
-OURS = ("pictures/*.png", *REPORT_FILES)
+OURS = (FOUND, "pictures/*.png", *REPORT_FILES)
 """Results that not every comparison leaves."""
 
 
@@ -52,7 +53,6 @@ def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> i
 
     from diagnosis.answer import compare
     from diagnosis.files import write_comparison, write_residuals
-    from matstd.folder import results_folder
     from matstd.progress import stages, turns
     from report.words import remark_sentence, structure_words
     from twin.record import without_copies
@@ -74,6 +74,7 @@ def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> i
             [remark_sentence(r) for r in found.remarks],
         )
         write_residuals(folder / "residuals.csv", found)
+        arm = "" if saved else write_found_arm(folder, found.fit, Path(args.run_file).name)
         if not args.no_report:
             from report.pages import write_compare_page
 
@@ -82,11 +83,11 @@ def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> i
             told = saved.told if saved else None
             write_compare_page(found, folder, title, np.random.default_rng(0), told)
             print_report(folder, printed_by)
-    _tell(args, found, saved)
+    _tell(args, found, saved, arm)
     return 0
 
 
-def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None) -> None:
+def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None, arm: str) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
     from report.geometry import console_lines
@@ -114,7 +115,7 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None)
         say(f"{region_words(region.conditions)}: {size} ({int(region.rows.sum())} touches)")
     for line, is_first in console_lines(found.run.touches, found.geometry, found.faults):
         say(f"- {line}", style="bold" if is_first else None)
-    for remark in found.remarks:
-        say(f"- {remark_sentence(remark)}")
+    for line in filter(None, [arm, *map(remark_sentence, found.remarks)]):
+        say(f"- {line}")
     first = "" if args.no_report else "report.html, "
     say(f"{args.output}: look at {first}comparison.json, residuals.csv")

@@ -73,6 +73,7 @@ def run(args: argparse.Namespace) -> int:
         project = replace(project, control=own if own.endswith(".toml") else args.control)
     dialect(project)  # a control that nobody knows is refused before any work
     say_assumed(project.chain)
+    say_each(project.remarks)
     say_each(standing_remarks(project.chain, project.setup.T_table_artefact))
     leftovers = (*REPORT_FILES, *SHEET_FILES)
     with (

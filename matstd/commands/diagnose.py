@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.folder import FOUND, results_folder, write_found_arm
 from matstd.options import (
     REPORT_FILES,
     add_measured,
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from diagnosis.files import SavedModel
     from twin.record import Run
 
-OURS = ("next_measurement_*.csv", "pictures/*.png", *REPORT_FILES)
+OURS = ("next_measurement_*.csv", FOUND, "pictures/*.png", *REPORT_FILES)
 """Results that not every diagnosis leaves."""
 
 
@@ -78,13 +79,13 @@ def _made(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
     """The diagnosis as files and in words."""
     import numpy as np
 
-    from matstd.folder import results_folder
     from matstd.progress import stages, turns
 
     printed_by = asked_printer(args)
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         result = _diagnosed(args, run, saved, turns(show))
         _write(args, result, saved, folder)
+        found = write_found_arm(folder, result.fit, _title(args))
         if not args.no_report:
             from report.pages import write_diagnosis_page
 
@@ -92,7 +93,7 @@ def _made(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
             title = _title(args)
             write_diagnosis_page(result, folder, title, np.random.default_rng(0))
             print_report(folder, printed_by)
-    _tell(args, result)
+    _tell(args, result, found)
     return 0
 
 
@@ -143,8 +144,8 @@ def _write(
         write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
 
 
-def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
-    """The verdict, the error falling, and what else should be known."""
+def _tell(args: argparse.Namespace, result: Diagnosis, found: str) -> None:
+    """The verdict, the error falling, what was found to copy, and what else should be known."""
     from rich.table import Column, Table
 
     from matstd.console import console, say
@@ -167,7 +168,11 @@ def _tell(args: argparse.Namespace, result: Diagnosis) -> None:
     known = result.run.touches, result.geometry, result.faults, result.trend
     for line, is_first in console_lines(*known):
         say(f"- {line}", style="bold" if is_first else None)
-    told = [*(remark_sentence(r) for r in result.remarks), scanned_sentence(result.detectable)]
+    told = [
+        found,
+        *(remark_sentence(r) for r in result.remarks),
+        scanned_sentence(result.detectable),
+    ]
     for line in filter(None, told):
         say(f"- {line}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:

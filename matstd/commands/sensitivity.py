@@ -77,12 +77,13 @@ def _table(args: argparse.Namespace) -> int:
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
     from artefact.brief import read_project
-    from matstd.console import say_assumed
+    from matstd.console import say_assumed, say_each
     from matstd.folder import results_folder
     from matstd.workers import connected
 
     project, printed_by = read_project(args.source, _settings(args)), asked_printer(args)
     say_assumed(project.chain)
+    say_each(project.remarks)
     with results_folder(args.output, args.force, REPORT_FILES) as folder:
         from matstd.progress import stages
         from matstd.study_run import study_project

@@ -3,14 +3,18 @@
 import argparse
 
 
+def _several(parser: argparse.ArgumentParser, name: str, metavar: str, meaning: str) -> None:
+    """An option that takes one value or more, and none where it is not given."""
+    parser.add_argument(name, metavar=metavar, nargs="+", default=[], help=meaning)
+
+
 def add_state(parser: argparse.ArgumentParser) -> None:
     """Datum, tool, workspace, state, switches."""
-    parser.add_argument(
+    _several(
+        parser,
         "--datum",
-        metavar="AXIS=READING",
-        nargs="+",
-        default=[],
-        help="readings (mm, degrees) where the preset is taken; others are zero",
+        "AXIS=READING",
+        "readings (mm, degrees) where the preset is taken; others are zero",
     )
     parser.add_argument(
         "--tool-length",
@@ -19,33 +23,28 @@ def add_state(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="from the gauge point to the tip of the tool that stands at the datum",
     )
-    parser.add_argument(
+    _several(
+        parser,
         "--within",
-        metavar="AXIS=LOW:HIGH",
-        nargs="+",
-        default=[],
-        help="workspace that is judged (mm, degrees); others over their travel",
+        "AXIS=LOW:HIGH",
+        "workspace that is judged (mm, degrees); others over their travel",
     )
     parser.add_argument(
         "--after", metavar="MIN", type=float, default=0.0, help="minutes since switching on"
     )
-    parser.add_argument(
+    _several(
+        parser,
         "--temperature",
-        metavar="SENSOR=DEGC",
-        nargs="+",
-        default=[],
-        help="of sensors that the model follows; what lags behind one has settled at it",
+        "SENSOR=DEGC",
+        "of sensors that the model follows; what lags behind one has settled at it",
     )
-    parser.add_argument(
-        "--value", metavar="COLUMN=NUMBER", nargs="+", default=[], help="columns of your own"
-    )
+    _several(parser, "--value", "COLUMN=NUMBER", "columns of your own")
     parser.add_argument("--rpm", type=float, help="spindle speed since switching on")
-    parser.add_argument(
+    _several(
+        parser,
         "--switch",
-        metavar="WORD=FACTOR",
-        nargs="+",
-        default=[],
-        help="scale errors, 0 is off: by symbol, effect, kind, class, axis or all",
+        "WORD=FACTOR",
+        "scale errors, 0 is off: by symbol, effect, kind, class, axis or all",
     )
     parser.add_argument(
         "--active",

@@ -70,9 +70,7 @@ def screenshot(plotter: Any, path: Path | None = None) -> Array:
     """Image of a finished scene on white, and its PNG where a path is given."""
     plotter.set_background("white", all_renderers=True)
     plotter.enable_anti_aliasing("ssaa", all_renderers=True)
-    image = plotter.screenshot(None, return_img=True)
+    image = plotter.screenshot(None if path is None else str(path), return_img=True)
     if image.std() < 1.0:
         raise DesignError("no picture: the renderer gives an empty image")
-    if path is not None:
-        plotter.screenshot(str(path))
     return np.asarray(image)

@@ -175,6 +175,7 @@ def folder(tmp_path_factory):
     return place
 
 
+@pytest.mark.usefixtures("unrendered")
 @pytest.mark.parametrize(
     "option",
     [

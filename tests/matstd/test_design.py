@@ -38,6 +38,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: int = 10) -> Path:
     """The example project with fewer poses, draws and touches."""
     (folder / "machine.toml").write_text((EXAMPLES / "hsm600u-machine.toml").read_text())
+    (folder / "task.toml").write_text((EXAMPLES / "task.toml").read_text())
     text = (EXAMPLES / "hsm600u.toml").read_text()
     for old, new in (
         ("hsm600u-machine.toml", "machine.toml"),
@@ -163,10 +164,10 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ('criterion = "I"', 'criterion = "C"', "standard.criterion"),
         ("potential = 0.3", "potential = 1.0", "standard.potential"),
         ("potential = 0.3", "potential = -0.1", "standard.potential"),
-        ("drawn_machines = 0", "drawn_machines = 2.5", "standard.drawn_machines"),
-        ("drawn_machines = 0", "drawn_machines = -1", "standard.drawn_machines"),
-        ("worst_share = 1.0", "worst_share = 0.0", "standard.worst_share"),
-        ("worst_share = 1.0", "worst_share = 0.25", "drawn_machines = 0"),
+        ("robust_machines = 0", "robust_machines = 2.5", "standard.robust_machines"),
+        ("robust_machines = 0", "robust_machines = -1", "standard.robust_machines"),
+        ("robust_share = 1.0", "robust_share = 0.0", "standard.robust_share"),
+        ("robust_share = 1.0", "robust_share = 0.25", "robust_machines = 0"),
         ("poses = 10 ", "poses = 4 ", "standard.poses"),
         ("touches = 120", "touches = 50", "standard.touches"),
         ("poses = 10 ", "poses = 61 ", "found 61 with touches = 120"),
@@ -252,19 +253,32 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
         name="FFS-600U", serial="001", patches=5, choice=TouchOptions(120, 10, 60)
     )
     plain = re.sub(
-        r"(?m)^(criterion|potential|drawn_machines|worst_share|poses = 10).*\n", "", text
+        r"(?m)^(criterion|potential|robust_machines|robust_share|poses = 10).*\n", "", text
     )
     assert "potential" not in re.sub("#.*", "", plain)
     path.write_text(plain)
     assert placement_options(read_project(path)).criterion == CriterionOptions("I", 0.3)
     for criterion in CRITERIA:
         wanted = text.replace('criterion = "I"', f'criterion = "{criterion}"')
-        for key, value in (("drawn_machines", "8"), ("worst_share", "0.5"), ("potential", "0.1")):
+        for key, value in (("robust_machines", "8"), ("robust_share", "0.5"), ("potential", "0.1")):
             wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
         path.write_text(wanted.replace("poses = 10 ", "poses = 12 "))
         options = placement_options(read_project(path))
         assert options.choice == TouchOptions(120, 12, 60)
         assert options.criterion == CriterionOptions(criterion, 0.1, 8, 0.5)
+    assert read_project(path).remarks == ()
+
+
+def test_keys_of_older_projects_are_read_and_named(tmp_path: Path) -> None:
+    path = small_project(tmp_path)
+    text = path.read_text().replace("robust_machines = 0", "drawn_machines = 8")
+    path.write_text(text.replace("robust_share = 1.0", "worst_share = 0.5"))
+    project = read_project(path)
+    assert (project.standard.robust_machines, project.standard.robust_share) == (8, 0.5)
+    assert [remark.removeprefix(f"{path}: ") for remark in project.remarks] == [
+        "standard.drawn_machines is called robust_machines now, and read as that",
+        "standard.worst_share is called robust_share now, and read as that",
+    ]
 
 
 def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:

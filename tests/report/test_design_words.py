@@ -27,7 +27,12 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
     power = SimpleNamespace(touches=160, power=np.array([0.9, 1.0]), found=1, effects=("a", "b"))
     body = SimpleNamespace(patches=("FF1", "FF2"))
     return SimpleNamespace(
-        own=rivals[0], rivals=rivals, power=power, power_of_balls=power, standard=body
+        own=rivals[0],
+        rivals=rivals,
+        power=power,
+        power_in_volume=power,
+        power_of_balls=power,
+        standard=body,
     )
 
 

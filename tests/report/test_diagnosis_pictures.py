@@ -18,20 +18,12 @@ from report.pages.compare_page import write_compare_page
 from report.pages.diagnosis_page import write_diagnosis_page
 from report.pages.page import p_value
 from report.plots.effect_pictures import (
-    draw_candidates,
-    draw_effect,
-    draw_fall,
     draw_rivals,
     shown_partial,
 )
 from report.plots.pattern_pictures import draw_pattern
-from report.plots.residual_pictures import (
-    draw_normal_plot,
-    draw_over_variables,
-)
 from report.plots.spatial_pictures import (
     draw_on_standard,
-    draw_pose_arrows,
     is_spread,
 )
 from report.words.diagnosis_words import (
@@ -68,10 +60,16 @@ def strange(case):
 
 
 @pytest.fixture(scope="module")
-def page(warm, tmp_path_factory):
+def written(warm, tmp_path_factory):
+    """Folder of its page."""
     place = tmp_path_factory.mktemp("page")
     write_diagnosis_page(warm, place, "run & file.csv", np.random.default_rng(0))
-    return (place / "report.html").read_text(encoding="utf-8")
+    return place
+
+
+@pytest.fixture(scope="module")
+def page(written):
+    return (written / "report.html").read_text(encoding="utf-8")
 
 
 def text_of(page):
@@ -210,34 +208,25 @@ def is_drawn(path):
     return float(imread(path)[..., :3].mean(axis=2).std()) > BLANK
 
 
-def test_every_picture_of_a_fit_renders(warm, tmp_path):
-    fit, path = warm.start, tmp_path / "picture.png"
-    assert is_spread(fit.run.touches)
-    assert has_poses(fit)
-    draw_on_standard(path, (("before", fit), ("after", warm.fit)))
-    assert is_drawn(path)
-    draw_on_standard(path, (("before", fit),))
-    assert is_drawn(path)
-    draw_over_variables(path, fit, rank_variables(fit)[:5])
-    assert is_drawn(path)
-    draw_pose_arrows(path, fit)
-    assert is_drawn(path)
-    draw_normal_plot(path, fit)
-    assert is_drawn(path)
+def test_every_picture_of_the_page_renders(written, warm):
+    """Of the starting model, of the model with what was found, and of what was found."""
+    assert is_spread(warm.run.touches)
+    assert has_poses(warm.fit)
+    drawn = {p.name for p in (written / "pictures").iterdir()}
+    fits = {
+        f"{fit}_{kind}.png" for fit in ("before", "after") for kind in ("over", "poses", "normal")
+    }
+    assert fits | {"fall.png", "candidates.png", "effect_1.png", "on_standard.png"} <= drawn
+    for name in drawn:
+        assert is_drawn(written / "pictures" / name), name
+
+
+def test_a_fit_by_itself_and_rivals_that_coincide_are_drawn(warm, tmp_path):
+    draw_rivals(tmp_path / "picture.png", warm.steps[1].confusion)
+    assert is_drawn(tmp_path / "picture.png")
+    draw_on_standard(tmp_path / "picture.png", (("before", warm.start),))
+    assert is_drawn(tmp_path / "picture.png")
     assert [p.name for p in tmp_path.iterdir()] == ["picture.png"]
-
-
-def test_every_picture_of_what_was_found_renders(warm, tmp_path):
-    path = tmp_path / "picture.png"
-    draw_fall(path, warm)
-    assert is_drawn(path)
-    draw_candidates(path, warm)
-    assert is_drawn(path)
-    (step,) = warm.steps[1:]
-    draw_rivals(path, step.confusion)
-    assert is_drawn(path)
-    draw_effect(path, warm.fit, step.effect)
-    assert is_drawn(path)
 
 
 def test_a_pattern_is_drawn_over_two_variables_and_over_one(strange, tmp_path):
@@ -321,6 +310,7 @@ def test_every_detectable_effect_is_in_the_table(page, warm):
     assert table.count("never: the model in use imitates it") == len(hidden)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_an_unexplained_run_says_what_is_left(strange, tmp_path):
     assert strange.verdict is Verdict.UNEXPLAINED
     path = write_diagnosis_page(strange, tmp_path, "run.csv", np.random.default_rng(0))
@@ -334,6 +324,7 @@ def test_an_unexplained_run_says_what_is_left(strange, tmp_path):
     assert (tmp_path / "pictures" / "pattern_0.png").exists()
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_run_without_anything_hidden_says_so(case, tmp_path):
     run = case(35, "hmc1995").run
     result = diagnose(run, candidates=list(BACKLASH.propose(run.touches)))
@@ -347,6 +338,7 @@ def test_a_run_without_anything_hidden_says_so(case, tmp_path):
     assert f"{result.fit.test_rms / UM:.2f} µm, and the noise is" in text
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_page_of_a_comparison_has_its_numbers(warm, tmp_path):
     found = compare(warm.run, ordinary_model(warm.run.touches.chain))
     path = write_compare_page(found, tmp_path, "run.csv", np.random.default_rng(0))
@@ -364,6 +356,7 @@ def test_page_of_a_comparison_has_its_numbers(warm, tmp_path):
         assert row in text
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_readings_of_one_place_have_no_picture_in_space(case, tmp_path):
     """A single instrument in front of one point: nothing to draw in space, and nothing breaks."""
     run = case(33, "hmc1995").run[:60]

@@ -77,6 +77,7 @@ def test_scenes_of_S_are_of_different_links_and_change_in_the_volume(study):
         assert scene.T_readings_artefact is None
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_the_page_holds_every_map_once_and_the_regions_in_words(study, tmp_path):
     maps = [
         ("variance_shares.png", "Shares of the parameters. More words."),
@@ -113,6 +114,7 @@ def test_without_opengl_the_page_is_written_with_a_remark(study, tmp_path, monke
     assert not (tmp_path / S_3D).exists()
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_machine_without_a_volume_is_told_so(tmp_path):
     lathe = make_chain(
         "lathe",

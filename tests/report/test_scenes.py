@@ -1,8 +1,10 @@
-"""Maps in three dimensions: what is rendered, and what is written on it."""
+"""Pictures in space: what is rendered, what is written on it, and what without OpenGL."""
 
 import numpy as np
 import pytest
 
+from cad_out.build.process import Ending
+from report.scenes.standard_scene import draw_standard
 from report.scenes.volume_scene import PIXELS, Scene, composed, draw_volumes, eye
 from twin.errors import DesignError, MissingLibrary, ShapeMismatch
 
@@ -26,27 +28,33 @@ def scene(values=None, **changes):
     return Scene(**(facts | changes))
 
 
-def rendered(*arguments):
-    """Pixels of the first picture; on a machine without OpenGL there are none."""
+@pytest.fixture(scope="module")
+def pictures(built, tmp_path_factory):
+    """Pixels by name, of one rendering; on a machine without OpenGL there are none."""
     from matplotlib.image import imread
 
-    path = next(iter(arguments[0]))
-    try:
-        draw_volumes(*arguments)
-    except MissingLibrary:
-        return None
-    return imread(path)[..., :3]
-
-
-def test_values_have_the_colours_of_the_scale_and_the_standard_is_grey(small, built, tmp_path):
     T = np.eye(4)
     T[2, 3] = -380.0
-    bare = rendered({tmp_path / "bare.png": [scene()]})
-    if bare is None:
+    flat = scene(np.full((5, 4, 3), 7.0))  # the same everywhere: sections, but no iso-surfaces
+    wanted = {
+        "bare": [scene()],
+        "with the standard": [scene(T_readings_artefact=T)],
+        "two": [scene(), scene()],
+        "flat": [flat],
+    }
+    place = tmp_path_factory.mktemp("volumes")
+    paths = {name: place / f"{name}.png" for name in wanted}
+    try:
+        draw_volumes({paths[n]: w for n, w in wanted.items()}, built[0] / "standard.stl")
+    except MissingLibrary:
+        return None
+    return {name: imread(path)[..., :3] for name, path in paths.items()}
+
+
+def test_values_have_the_colours_of_the_scale_and_the_standard_is_grey(pictures):
+    if pictures is None:
         return
-    full = rendered(
-        {tmp_path / "full.png": [scene(T_readings_artefact=T)]}, built[0] / "standard.stl"
-    )
+    bare, full = pictures["bare"], pictures["with the standard"]
     assert bare.shape == full.shape
 
     def share(image, low, high):
@@ -60,17 +68,12 @@ def test_values_have_the_colours_of_the_scale_and_the_standard_is_grey(small, bu
     assert share(full[height], *grey) > share(bare[height], *grey) + 0.02
 
 
-def test_several_pictures_from_one_rendering(tmp_path):
-    paths = [tmp_path / "one.png", tmp_path / "two.png"]
-    flat = scene(np.full((5, 4, 3), 7.0))  # the same everywhere: sections, but no iso-surfaces
-    wide = rendered({paths[0]: [scene(), scene()], paths[1]: [flat]})
-    if wide is None:
+def test_several_pictures_from_one_rendering(pictures):
+    if pictures is None:
         return
-    from matplotlib.image import imread
-
-    single = imread(paths[1])
+    wide, single = pictures["two"], pictures["flat"]
     assert wide.shape[1] == pytest.approx(2 * single.shape[1], abs=2)
-    assert single[..., :3].std() > 0.1
+    assert single.std() > 0.1
 
 
 def test_ticks_axes_and_bar_are_written_with_their_units():
@@ -103,9 +106,45 @@ def test_what_cannot_be_drawn_is_refused(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_without_opengl_the_package_is_named_and_nothing_written(tmp_path, monkeypatch):
-    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
+def test_a_renderer_that_fails_names_the_package_and_nothing_is_written(tmp_path, monkeypatch):
+    """As it fails without OpenGL, which `test_study_page` takes away."""
+    failed = Ending(1, "", "libEGL warning")
+    monkeypatch.setattr("report.scenes.renderer.run_apart", lambda *_, **__: failed)
     with pytest.raises(MissingLibrary, match="apt-get install libegl1") as caught:
         draw_volumes({tmp_path / "a.png": [scene()]})
     assert "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
+
+
+# the standard by itself
+
+
+def test_faces_spheres_and_plane_are_in_the_picture(small, built, tmp_path):
+    from matplotlib.image import imread
+
+    path = tmp_path / "standard.png"
+    try:
+        draw_standard(small, built[0] / "standard.stl", path)
+    except MissingLibrary:  # on a machine without OpenGL; what it says is tested below
+        return
+    image = imread(path)[..., :3]
+    assert image.shape == (860, 2000, 3)
+    assert 0.3 < np.mean(image.min(axis=2) > 0.99) < 0.85  # white round the part
+    r, g, b = image.transpose(2, 0, 1)
+    assert np.mean((r > 0.5) & (g > 0.85 * r) & (b < 0.6 * r)) > 0.002  # spheres, yellow
+    assert np.mean((g > r + 0.05) & (g > b + 0.1)) > 0.05  # datum plane
+
+
+def test_without_opengl_the_package_is_named_and_nothing_written(
+    small, built, tmp_path, monkeypatch
+):
+    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
+    with pytest.raises(MissingLibrary, match="apt-get install libegl1") as caught:
+        draw_standard(small, built[0] / "standard.stl", tmp_path / "standard.png")
+    assert "\n" not in str(caught.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_mesh_is_named(small, tmp_path):
+    with pytest.raises(DesignError, match=r"none\.stl: cannot be read"):
+        draw_standard(small, tmp_path / "none.stl", tmp_path / "standard.png")

@@ -1,0 +1,29 @@
+"""Corrections while the machine moves: readings in, what is added to the linear axes out.
+
+`PointCorrection` corrects one pose in some tens of microseconds from tables of the errors,
+`Service` adds what operation needs (temperatures, limits, age, no jumps), `serve` is its OPC UA
+server.
+"""
+
+from compensation.service.history import History
+from compensation.service.opcua_server import NAMESPACE, serve
+from compensation.service.output import Output, OutputLimits, Quality, Sent
+from compensation.service.point_correction import PointCorrection
+from compensation.service.service import Answer, Service
+from compensation.service.tabulated import CLOSE, ErrorTable, error_tables
+
+__all__ = [
+    "CLOSE",
+    "NAMESPACE",
+    "Answer",
+    "ErrorTable",
+    "History",
+    "Output",
+    "OutputLimits",
+    "PointCorrection",
+    "Quality",
+    "Sent",
+    "Service",
+    "error_tables",
+    "serve",
+]

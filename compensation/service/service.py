@@ -1,0 +1,178 @@
+"""A machine in operation: readings and temperatures come in, corrections go out.
+
+Without any network: `opcua_server` carries it to controls, tests play it by hand.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from compensation.field import Datum, MachineErrors, relative_columns
+from compensation.service.history import History
+from compensation.service.output import Output, OutputLimits, Sent
+from compensation.service.point_correction import Point, PointCorrection
+from twin.errors import DesignError, OutsideTravel
+from twin.units import DEG
+
+_BESIDE = 1.0  # mm on either side, between which a slope is taken
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a control reads.
+
+    Attributes:
+        sequence: Number of the request that it answers.
+        sent: Corrections of the three linear axes, and what they are worth.
+        k0: Corrections at the readings that were given, mm: those of `sent` once it has settled.
+        k1: How each changes with the reading of its own axis, mm/mm.
+        p0: Those readings, mm. Between two answers ``k0 + k1 (p - p0)`` goes on.
+        refused: Why the last readings were not understood; empty for none.
+    """
+
+    sequence: int
+    sent: Sent
+    k0: Point
+    k1: Point
+    p0: Point
+    refused: str
+
+
+class Service:
+    """Corrects one machine."""
+
+    def __init__(
+        self,
+        errors: MachineErrors,
+        length: float,
+        datum: Datum,
+        limits: OutputLimits | None = None,
+    ) -> None:
+        """Tabulate the errors.
+
+        Args:
+            errors: Of the machine, in the state in which the service begins.
+            length: Of the tool, mm.
+            datum: Pose at which the preset was taken: nothing is corrected there.
+            limits: What may be added.
+
+        Raises:
+            DesignError: Errors that cannot be corrected while the machine moves.
+        """
+        self.errors, self.length, self.datum = errors, length, datum
+        self.correction = PointCorrection(errors, length, datum)
+        self._history = History((errors.state,))
+        self._output = Output(limits or OutputLimits())
+        zero = (0.0, 0.0, 0.0)
+        self._sequence, self._refused, self._linear = 0, "", (zero, zero, zero)
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """Names of the sensors that the state has, in their order."""
+        return tuple(self.errors.state.temperature)
+
+    def move(
+        self,
+        sequence: int,
+        readings: Sequence[float],
+        now: float,
+        directions: Sequence[int] | None = None,
+    ) -> None:
+        """Readings of every axis in the chain's order, mm and degrees.
+
+        What is not understood is no reading: the last correction is held, and `Answer.refused`
+        says why.
+
+        Args:
+            sequence: Number of the request.
+            readings: As the control shows them.
+            now: s.
+            directions: Sign of the last motion of every axis, -1, 0 or 1.
+        """
+        self._sequence = sequence
+        try:
+            q, signs = self._understood(readings, directions)
+            wanted = self.correction.at(q, signs)
+            self._linear = self._line(q, signs, wanted)
+        except OutsideTravel as error:
+            self._refused = str(error)
+            return
+        self._refused = ""
+        self._output.want(wanted, now)
+
+    def drive(
+        self, time: float, temperature: Mapping[str, float], spindle_rpm: float | None = None
+    ) -> None:
+        """What drives the machine at a later moment; the tables that follow it are made again.
+
+        Args:
+            time: Since the machine was switched on, s.
+            temperature: degC of every sensor.
+            spindle_rpm: Speed, 1/min.
+
+        Raises:
+            DesignError: A moment that is not later, other sensors, a number that is none.
+        """
+        for name, value in temperature.items():
+            if not np.isfinite(value):
+                raise DesignError(f"temperature {name}: {value:g}, expected a number")
+        state = replace(
+            self._history.now,
+            time=time,
+            temperature=dict(temperature),
+            spindle_rpm=spindle_rpm,
+        )
+        self._history = self._history.then(state)
+        self.correction = self.correction.following(self._history)
+
+    def tick(self, now: float) -> Answer:
+        """What a control reads at this moment."""
+        k0, k1, p0 = self._linear
+        return Answer(
+            sequence=self._sequence,
+            sent=self._output.step(now),
+            k0=k0,
+            k1=k1,
+            p0=p0,
+            refused=self._refused,
+        )
+
+    def uncertainty(self, readings: Sequence[float]) -> Point:
+        """Standard uncertainty of the tool point that the model leaves there, x, y, z, mm.
+
+        Raises:
+            OutsideTravel: Readings that are not understood.
+        """
+        q, _ = self._understood(readings, None)
+        touches = self.errors.touches(np.array([q]), self.length)
+        spread = relative_columns(self.errors, touches, self.datum)[0] @ self.errors.root
+        x, y, z = np.sqrt((spread**2).sum(axis=1)).tolist()
+        return x, y, z
+
+    def _understood(
+        self, readings: Sequence[float], directions: Sequence[int] | None
+    ) -> tuple[list[float], list[int] | None]:
+        chain = self.errors.chain
+        for name, given in (("readings", readings), ("directions", directions)):
+            if given is not None and len(given) != len(chain.axes):
+                raise OutsideTravel(
+                    f"{len(given)} {name}, expected {len(chain.axes)}: {', '.join(chain.axes)}"
+                )
+        is_rotary = [chain.link(name).kind == "rotary" for name in chain.axes]
+        q = [v * DEG if r else float(v) for v, r in zip(readings, is_rotary, strict=True)]
+        return q, None if directions is None else [int(np.sign(d)) for d in directions]
+
+    def _line(
+        self, q: list[float], signs: list[int] | None, wanted: Point
+    ) -> tuple[Point, Point, Point]:
+        """Corrections as a straight line along every linear axis by itself."""
+        chain, slopes, at = self.errors.chain, [], []
+        for k, name in enumerate(self.correction.linear_axes):
+            column, (low, high) = chain.axis_index(name), chain.link(name).range
+            ends = max(q[column] - _BESIDE, low), min(q[column] + _BESIDE, high)
+            there = [[*q[:column], end, *q[column + 1 :]] for end in ends]
+            before, after = (self.correction.at(other, signs)[k] for other in there)
+            slopes.append((after - before) / max(ends[1] - ends[0], 1e-9))
+            at.append(q[column])
+        return wanted, (slopes[0], slopes[1], slopes[2]), (at[0], at[1], at[2])

@@ -1,0 +1,214 @@
+"""Component errors of a machine as tables over the readings that each depends on.
+
+At one moment nearly every error is a function of one reading, or of two, and of the direction in
+which an axis arrived. On which ones is found out by trying: an effect is asked at random poses with
+one reading changed. Tables are made finer until straight lines between their points leave less than
+a stated amount; a table that follows temperatures is made again on the same points.
+"""
+
+from dataclasses import dataclass, field, replace
+from itertools import product
+
+import numpy as np
+
+from compensation.field import MachineErrors, State
+from compensation.service.history import History
+from twin.errors import DesignError
+from twin.frames import Array
+from twin.model import Effect, contribution
+from twin.units import HOUR, NM
+
+CLOSE = 2.0 * NM
+"""What straight lines between the points of one table may leave at its middles, mm at the tip."""
+
+_POSES = 12  # random ones at which an effect is asked on what it depends
+_FEWEST = 17  # points of a table along a reading
+_MOST = {1: 4097, 2: 513}  # likewise, by the number of readings
+_SAME = 1e-15  # mm or rad: by which an error differs that does not depend on a reading
+
+Terms = list[tuple[Effect, Array]]
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorTable:
+    """Errors of links over the same readings, in the same direction.
+
+    Attributes:
+        errors: Of the machine, in its state.
+        terms: Effects that are in it, with their parameters.
+        length: Of the tool, mm.
+        axes: Numbers of the readings, none to two.
+        turns: Direction of some axes in which it holds, -1, 0 or 1 by the axis's number.
+        is_driven: Whether it changes with time, temperatures, speed or columns of the user's own.
+        counts: Points along each reading.
+        rows: Component errors of the links, (*points, L, 6), mm and rad.
+        left: What straight lines leave at the middles between the points, mm at the tip.
+    """
+
+    errors: MachineErrors
+    terms: Terms
+    length: float
+    axes: tuple[int, ...]
+    turns: dict[int, int]
+    is_driven: bool = False
+    counts: tuple[int, ...] = ()
+    rows: Array = field(default_factory=lambda: np.zeros((0, 6)))
+    left: float = np.inf
+
+    @property
+    def ends(self) -> Array:
+        """Smallest and largest reading along each axis, (D, 2), mm or rad."""
+        chain = self.errors.chain
+        return np.array([chain.link(chain.axes[k]).range for k in self.axes]).reshape(-1, 2)
+
+    @property
+    def step(self) -> Array:
+        """Between two points along each reading, (D,); all of an axis without travel is one."""
+        width = self.ends[:, 1] - self.ends[:, 0]
+        return np.where(width > 0.0, width, 1.0) / (np.array(self.counts) - 1)
+
+    def refined(self, close: float) -> "ErrorTable":
+        """Twice as fine until the middles between the points are close.
+
+        Raises:
+            DesignError: It would need more points than a table may have.
+        """
+        counts, table = np.full(len(self.axes), _FEWEST), self
+        while True:
+            table = replace(table, counts=tuple(map(int, counts))).following(None)
+            left = np.array([table._at_middles(k) for k in range(len(counts))])
+            if left.sum() <= close:
+                return replace(table, left=float(left.sum()))
+            if counts.max() >= _MOST[len(counts)]:
+                named = ", ".join(effect.name for effect, _ in self.terms[:3])
+                raise DesignError(
+                    f"{named}: {counts.max()} points leave {left.sum() / NM:.3g} nm between them "
+                    f"and {close / NM:g} nm are wanted: too steep for a table"
+                )
+            counts = np.where(left > 0.5 * close / len(counts), 2 * counts - 1, counts)
+
+    def following(self, history: History | None) -> "ErrorTable":
+        """The same points at the end of a history; None for the state of the errors."""
+        lines = [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
+        rows = self._at(lines, history)
+        return replace(self, rows=rows.reshape(*self.counts, *rows.shape[1:]))
+
+    def _at_middles(self, along: int) -> float:
+        """Largest difference to straight lines at the middles along one reading, mm at the tip."""
+        lines = [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
+        lines[along] = 0.5 * (lines[along][1:] + lines[along][:-1])
+        exact, rows = self._at(lines, None), np.moveaxis(self.rows, along, 0)
+        middle = np.moveaxis(0.5 * (rows[1:] + rows[:-1]), 0, along).reshape(exact.shape)
+        levers = np.r_[np.ones(3), np.full(3, _lever(self.errors, self.length))]
+        return float((np.abs(exact - middle) * levers).sum(axis=(1, 2)).max(initial=0.0))
+
+    def _at(self, lines: list[Array], history: History | None) -> Array:
+        """Errors of the links at a grid of readings, (N, L, 6); other axes in their middle."""
+        chain, count = self.errors.chain, int(np.prod([len(line) for line in lines]))
+        points = np.stack(np.meshgrid(*lines, indexing="ij"), -1) if lines else np.zeros(0)
+        q = np.tile([float(np.mean(chain.link(a).range)) for a in chain.axes], (count, 1))
+        q[:, list(self.axes)] = points.reshape(count, len(lines))
+        approach = np.zeros_like(q)
+        for axis, sign in self.turns.items():
+            approach[:, axis] = sign
+        return _twist(self.errors, self.terms, q, approach, self.length, history)
+
+
+def error_tables(errors: MachineErrors, length: float, close: float = CLOSE) -> list[ErrorTable]:
+    """Tables of everything that twists a link; displaced lines of axes are not in them.
+
+    Args:
+        errors: Of a machine in one state.
+        length: Of the tool, mm.
+        close: What straight lines between the points of one table may leave, mm at the tip.
+
+    Raises:
+        DesignError: An error depends on more than two readings or on the directions of several
+            axes, or is too steep for a table.
+    """
+    groups: dict[tuple[tuple[int, ...], tuple[int, ...], bool], Terms] = {}
+    for effect, theta in zip(errors.effects, errors.theta, strict=True):
+        if theta.any():
+            key = _dependence(errors, effect, theta, length)
+            groups.setdefault(key, []).append((effect, theta))
+    out = []
+    for (axes, turns, is_driven), terms in groups.items():
+        for signs in product((-1, 0, 1), repeat=len(turns)):
+            way = dict(zip(turns, signs, strict=True))
+            table = ErrorTable(
+                errors=errors, terms=terms, length=length, axes=axes, turns=way, is_driven=is_driven
+            )
+            table = table.refined(close)
+            if table.rows.any() or is_driven:
+                out.append(table)
+    return out
+
+
+def _dependence(
+    errors: MachineErrors, effect: Effect, theta: Array, length: float
+) -> tuple[tuple[int, ...], tuple[int, ...], bool]:
+    """Readings and directions on which an effect depends, and whether it changes with the state."""
+    chain, rng, terms = errors.chain, np.random.default_rng(0), [(effect, theta)]
+    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    q, other = rng.uniform(low, high, (2, _POSES, len(low)))
+    still = np.zeros_like(q)
+    at = _twist(errors, terms, q, still, length)
+    axes, turns = [], []
+    for k in range(len(low)):
+        changed, ways = q.copy(), still.copy()
+        changed[:, k], ways[:, k] = other[:, k], 1.0
+        if _differs(at, _twist(errors, terms, changed, still, length)):
+            axes.append(k)
+        if _differs(at, _twist(errors, terms, q, ways, length)):
+            turns.append(k)
+    if len(axes) > max(_MOST) or len(turns) > 1:
+        named = ", ".join(chain.axes[k] for k in (axes if len(axes) > max(_MOST) else turns))
+        raise DesignError(
+            f"{effect.name} depends on {named}: what corrects while the machine moves has tables "
+            "over two readings and one direction at most; --switch leaves the effect out"
+        )
+    later = replace(errors, state=_later(errors))
+    is_driven = _differs(at, _twist(later, terms, q, still, length))
+    return tuple(axes), tuple(turns), is_driven
+
+
+def _later(errors: MachineErrors) -> State:
+    """Another state: an hour later, everything warmer and faster."""
+    state = errors.state
+    return replace(
+        state,
+        time=state.time + HOUR,
+        temperature={name: value + 1.0 for name, value in state.temperature.items()},
+        value={name: value + 1.0 for name, value in state.value.items()},
+        spindle_rpm=None if state.spindle_rpm is None else state.spindle_rpm + 1000.0,
+    )
+
+
+def _differs(a: Array, b: Array) -> bool:
+    return bool(np.abs(a - b).max() > _SAME)
+
+
+def _twist(
+    errors: MachineErrors,
+    terms: Terms,
+    q: Array,
+    approach: Array,
+    length: float,
+    history: History | None = None,
+) -> Array:
+    """Component errors of the links at some poses, (N, L, 6); none of workpiece and tool."""
+    if history is None:
+        touches, before = errors.touches(q, length, approach), 0
+    else:
+        touches, before = history.touches(errors.chain, q, length, approach), len(history)
+    twist = contribution(terms, touches).twist[before:]
+    twist[:, [i for i, link in enumerate(errors.chain.links) if link.kind == "fixed"]] = 0.0
+    return np.asarray(twist)
+
+
+def _lever(errors: MachineErrors, length: float) -> float:
+    """Longest way from a point that angular errors turn about to the tip, mm."""
+    chain = errors.chain
+    travels = [np.ptp(chain.link(a).range) for a in chain.linear_axes]
+    points = [float(np.linalg.norm(link.point)) for link in chain.links]
+    return float(np.linalg.norm(travels)) + max(points) + length

@@ -1,0 +1,70 @@
+"""The machine of a serial arm as a run has it: lines of all joints in one gauge, to put to use.
+
+The lines of an arm's joints are known only together: one that is copied without the others is a
+displaced tracker or the zero of a neighbour. So all location errors of a fit become the places and
+directions of all lines at once. The zero of a joint, about its own line, turns everything that
+follows it; where the reflector sits after that is found anew by whoever imports the run.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.fit import Fit, fit_run
+from diagnosis.geometry.quantities import geometric_effects
+from twin.effects import LocationError
+from twin.frames import Array, apply, rotation
+from twin.machine import Chain
+from twin.model import Model
+
+
+@dataclass(frozen=True, eq=False)
+class FoundArm:
+    """An arm as a run has it.
+
+    Attributes:
+        chain: With points and directions of all joints.
+        before: Error of the run with nothing but the set-up in the model, mm.
+        after: The same with this machine in place of the stated one, to first order, mm.
+    """
+
+    chain: Chain
+    before: float
+    after: float
+
+
+def found_arm(fit: Fit) -> FoundArm | None:
+    """The arm that a fit has learnt; None where the machine is no arm, or nothing was learnt."""
+    chain = fit.model.chain
+    sizes = {
+        (e.symbol.link, e.symbol.component): (start, float(fit.theta[start]))
+        for start, e in geometric_effects(fit)
+        if isinstance(e, LocationError)
+    }
+    if not chain.is_serial_arm or not sizes:
+        return None
+    links, after = [], np.eye(4)  # what the zeros of the joints before do to everything behind
+    for link in chain.links:
+        if link.name in chain.arm_joints:
+            e = np.array([sizes.get((link.name, k), (0, 0.0))[1] for k in range(6)])
+            zero, e[link.own_component] = e[link.own_component], 0.0
+            point = apply(after, link.point + e[:3])
+            direction = after[:3, :3] @ rotation(e[3:]) @ link.direction
+            links.append(replace(link, point=point, direction=direction))
+            after = _about(point, direction, zero) @ after
+        else:
+            links.append(link)
+    linear = np.array([start for start, _ in sizes.values()])
+    moved = fit.model.columns(fit.run.touches)[:, linear] @ fit.theta[linear]
+    alone = Model(chain, ())
+    found = fit_run(replace(fit.run, deviation=fit.run.deviation - moved), alone, gross=fit.gross)
+    before = fit_run(fit.run, alone, gross=fit.gross)
+    return FoundArm(replace(chain, links=tuple(links)), before.rms, found.rms)
+
+
+def _about(point: Array, direction: Array, angle: float) -> Array:
+    """Turn about a line, (4, 4)."""
+    out = np.eye(4)
+    out[:3, :3] = rotation(angle * direction)
+    out[:3, 3] = point - out[:3, :3] @ point
+    return out

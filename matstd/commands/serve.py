@@ -1,0 +1,67 @@
+"""`matstd serve`: corrections while the machine moves, as an OPC UA server."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from matstd.compensation.options import add_state
+
+if TYPE_CHECKING:
+    from compensation.service import Service
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
+    parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
+    parser.add_argument(
+        "--endpoint",
+        metavar="URL",
+        default="opc.tcp://localhost:4840",
+        help="where clients connect (opc.tcp://localhost:4840: this computer alone)",
+    )
+    for name, unit, default, words in (
+        ("--most", "UM", 200.0, "added to an axis at most, µm"),
+        ("--rate", "UM_S", 1000.0, "by which it changes at most, µm/s"),
+        ("--patience", "S", 0.5, "without readings until a correction is no longer valid, s"),
+        ("--hold", "S", 5.0, "without readings until it goes to zero, s"),
+    ):
+        parser.add_argument(
+            name, metavar=unit, type=float, default=default, help=f"{words} ({default:g})"
+        )
+    add_state(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Answer until somebody stops it."""
+    import asyncio
+    import logging
+
+    from compensation.service import OutputLimits, Service, serve
+    from matstd.compensation.job import read_job
+    from matstd.console import say
+    from twin.units import UM
+
+    limits = OutputLimits(args.most * UM, args.rate * UM, args.patience, args.hold)
+    job = read_job(args)
+    service = Service(job.errors, args.tool_length, job.datum, limits)
+    logging.getLogger("asyncua").setLevel(logging.CRITICAL)  # what stops it is told by us
+
+    def ready() -> None:
+        say(f"{args.endpoint}: {_corrected(service)}; Ctrl-C stops it")
+
+    asyncio.run(serve(service, args.endpoint, ready))
+    return 0
+
+
+def _corrected(service: Service) -> str:
+    from twin.units import NM
+    from twin.words import listed
+
+    correction, sensors = service.correction, service.sensors
+    follows = f", following {listed(list(sensors))}" if sensors else ""
+    return (
+        f"corrects {listed(list(correction.linear_axes))}{follows}; tables leave at most "
+        f"{correction.interpolation / NM:.1f} nm"
+    )
