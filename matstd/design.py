@@ -11,7 +11,7 @@ import numpy as np
 
 from artefact.body import Standard, write_standard
 from artefact.brief import Project
-from artefact.certify import like_task
+from artefact.certify import dmis_program, like_task
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
 from cad_out.verify import export_standard
@@ -68,11 +68,9 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
     placement = _placement(project, workspace, rng.placement, progress, poses)
-    # refused here rather than after programs and CAD, where no touch is like the user's task
-    proving = placement.criterion.reach.touches(placement.touches)
-    like_task(project.task, placement.standard, proving)
     plan = _plan(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
+    write_whole(folder / "cmm.dmi", dmis_program(placement.standard), newline="\r\n")
     progress("what can be told apart", 0, 1)
     known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
     write_identifiability(folder / "identifiability.json", known)
@@ -130,7 +128,7 @@ def _placement(
     poses: Array | None = None,
 ) -> Placement:
     """Standard and touches for the project's machine."""
-    return design_standard(
+    placement = design_standard(
         probe_reach(project),
         blank(project),
         workspace,
@@ -140,6 +138,10 @@ def _placement(
         progress,
         poses,
     )
+    # refused here rather than after programs and CAD, where no touch is like the user's task
+    proving = placement.criterion.reach.touches(placement.touches)
+    like_task(project.task, placement.standard, proving)
+    return placement
 
 
 def _plan(project: Project, placement: Placement) -> TouchPlan:

@@ -11,6 +11,7 @@ from diagnosis.remarks.run_remarks import (
     FewTouches,
     FieldShares,
     HeldOutInDoubt,
+    LoadTooSmall,
     NoiseMisstated,
     NoiseRemembers,
     NotSignificant,
@@ -20,6 +21,7 @@ from diagnosis.remarks.run_remarks import (
     ReaderRemark,
     Remark,
     SearchEnded,
+    ShortBeam,
     WorseThanReplicates,
     remarks,
 )
@@ -31,6 +33,7 @@ __all__ = [
     "FewTouches",
     "FieldShares",
     "HeldOutInDoubt",
+    "LoadTooSmall",
     "NoiseMisstated",
     "NoiseRemembers",
     "NotSignificant",
@@ -40,6 +43,7 @@ __all__ = [
     "ReaderRemark",
     "Remark",
     "SearchEnded",
+    "ShortBeam",
     "WorseThanReplicates",
     "remarks",
 ]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.fit import MIN_POSES, Fit, UnitMistake, unit_mistake
+from twin.elastic import short_beams
 
 FEW_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""
@@ -18,6 +19,9 @@ DOUBTFUL = 2.0
 FELT = 1e-3
 """Effect of a parameter of its expected size on all touches together, over the noise, below which
 they do not feel it: a rotary axis that stands still."""
+
+LOADED = ("stiffness", "tool-point-stiffness")
+"""Kinds of effects of which a touch tells nothing but by its load."""
 
 FEWEST_REPLICATES = 10
 """Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
@@ -172,6 +176,27 @@ class NotSignificant:
     unit: str
 
 
+@dataclass(frozen=True, slots=True)
+class ShortBeam:
+    """A beam whose length is so few times its depth that the theory of beams is doubtful."""
+
+    effect: str
+    slenderness: float
+
+
+@dataclass(frozen=True, slots=True)
+class LoadTooSmall:
+    """An effect of loads of which all touches together tell less than is believed beforehand.
+
+    Attributes:
+        effect: Its name.
+        load: Largest recorded one, N.
+    """
+
+    effect: str
+    load: float
+
+
 Remark = (
     UnitMistake
     | NoiseRemembers
@@ -189,6 +214,8 @@ Remark = (
     | PriorWidened
     | SearchEnded
     | NotSignificant
+    | ShortBeam
+    | LoadTooSmall
 )
 
 
@@ -199,6 +226,7 @@ def remarks(fit: Fit) -> tuple[Remark, ...]:
     out += [ReaderRemark(text) for text in fit.run.remarks]
     out += _memory(fit)
     out += _touches(fit)
+    out += _elastic(fit)
     out += ([] if units else _noise(fit)) + _outliers(fit)
     if fit.widened > 1.0:
         out.append(PriorWidened(fit.widened))
@@ -222,6 +250,26 @@ def _touches(fit: Fit) -> list[Remark]:
     if poses < MIN_POSES:
         turns = bool(t.chain.rotary_axes) and not t.instrument.reads_angle
         out.append(FewPoses(poses, turns))
+    return out
+
+
+def _elastic(fit: Fit) -> list[Remark]:
+    """Beams that are none, and loads that bend nothing."""
+    touches = fit.run.touches
+    out: list[Remark] = [
+        ShortBeam(name, ratio) for name, ratio in short_beams(touches.chain, fit.model.effects)
+    ]
+    if touches.force is None:
+        return out
+    load = float(np.linalg.norm(touches.force, axis=1).max())
+    told = np.linalg.norm(fit.X[fit.used], axis=0)
+    for effect in dict.fromkeys(e for e, _ in fit.parameters):
+        rows = [
+            p for p, (e, q) in enumerate(fit.parameters)
+            if e is effect and (e.kind in LOADED or (e.kind == "beam" and q.name == "load"))
+        ]  # fmt: skip
+        if rows and float(told[rows].max()) < 1.0:
+            out.append(LoadTooSmall(effect.name, load))
     return out
 
 
