@@ -308,3 +308,22 @@ def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp
         rms[believed] = np.sqrt(np.mean(read_run(out).deviation ** 2)) / UM
     assert rms["standard"] > 5.0
     assert rms["real"] == pytest.approx(0.5, abs=0.15)
+
+
+def test_dust_is_left_out_and_told(nominal, tmp_path) -> None:
+    """A chip of 40 µm under a point of a face and of a ball: the same standard, two lines told."""
+    made = []
+    for chip in (0.0, 40 * UM):
+        rows = cmm_rows(nominal, np.random.default_rng(6))
+        at = [k for k, r in enumerate(rows) if r[0] in ("SPH2", "FF1_60")]
+        for k in (at[3], at[-1]):
+            rows[k] = (rows[k][0], *(np.add(rows[k][1:], [0.0, 0.0, chip])))
+        path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
+        made.append(calibrated(nominal, read_cmm_points(path, nominal), NOISE, NOISE))
+    clean, dusty = made
+    assert clean.remarks == ()
+    assert [r.split(":")[0] for r in dusty.remarks] == ["SPH2", "FF1"]
+    assert f"lines {at[-1] + 3} " in dusty.remarks[1]
+    face, other = (m.standard.patches[0] for m in made)
+    grid = face.grid(3.0)
+    assert np.abs(face.height(grid) - other.height(grid)).max() < 1.5 * UM
