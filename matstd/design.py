@@ -14,7 +14,7 @@ from artefact.brief import Project
 from artefact.certify import dmis_program, like_task
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
-from cad_out.verify import export_standard
+from cad_out.verify import Conformity, export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.files import write_uncertainty
 from diagnosis.fit import fit_run
@@ -34,6 +34,7 @@ from matstd.study_run import study_and_maps
 from probe_paths.campaign import Campaign, VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import TouchPlan, plan_touches
+from report.drawing import Issuer, write_drawing
 from report.identifiability import write_identifiability, write_identification
 from report.pages import Design, Proven
 from sensitivity.first_order import Workspace, latin_hypercube
@@ -78,12 +79,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         project, workspace, project.poses, folder / "sensitivity", rng, progress, workers
     )
     progress("STEP and STL", 0, 1)
-    conformity = export_standard(
-        placement.standard,
-        folder,
-        author=project.standard.author,
-        organisation=project.standard.organisation,
-    )
+    conformity = _cad(project, placement.standard, folder)
     progress("probing programs", 0, 1)
     programs = make_programs(plan, dialect(project), feeds(project))
     paths = programs.write(folder / "programs")
@@ -118,6 +114,14 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         budgets=budgets,
         visits=visits,
     )
+
+
+def _cad(project: Project, standard: Standard, folder: Path) -> Conformity:
+    """Models and drawing of a standard."""
+    who = project.standard
+    conformity = export_standard(standard, folder, author=who.author, organisation=who.organisation)
+    write_drawing(folder, standard, Issuer(who.author, who.organisation, conformity.mass))
+    return conformity
 
 
 def _placement(
