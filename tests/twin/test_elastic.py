@@ -182,7 +182,7 @@ def test_a_coupling_of_higher_degree_is_any_smooth_function_of_both_axes(chain):
     effect = parse_effect("coupling(EAX,Z,3)", chain)
     words = [p.name for p in effect.parameters]
     theta = np.zeros(9)
-    theta[words.index("X^2 Z^1")], theta[words.index("X^1 Z^3")] = 40e-6, 10e-6
+    theta[words.index("P2X P1Z")], theta[words.index("P1X P3Z")] = 40e-6, 10e-6
     x, z = 120.0, -50.0
     u, v = x / 300.0, (z + 200.0) / 200.0
     want = 40e-6 * (3 * u**2 - 1) / 2 * v + 10e-6 * u * (5 * v**3 - 3 * v) / 2

@@ -106,7 +106,7 @@ def _orders(axis: str, degree: int) -> list[int]:
 
 def _higher_names(axis: str, degree: int) -> list[str]:
     if not _turns(axis):
-        return [f"{axis}^{k}" for k in range(1, degree + 1)]
+        return [f"P{k}{axis}" for k in range(1, degree + 1)]
     return [f"{f} {k}{axis}" for k in range(1, degree + 1) for f in ("cos", "sin")]
 
 
