@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.fit import MIN_POSES, Fit, UnitMistake, unit_mistake
+from twin.effects import Again, Harmonic, HigherOrder, PositionTable
+from twin.frames import Array
 
 FEW_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""
@@ -172,6 +174,20 @@ class NotSignificant:
     unit: str
 
 
+@dataclass(frozen=True, slots=True)
+class HarmonicsAlike:
+    """Harmonics of a turn that read as a found one at evenly spaced targets, the lowest first.
+
+    Attributes:
+        found: 0 of a curve, whose harmonics are many.
+    """
+
+    axis: str
+    targets: int
+    found: int
+    others: tuple[int, ...]
+
+
 Remark = (
     UnitMistake
     | NoiseRemembers
@@ -189,7 +205,15 @@ Remark = (
     | PriorWidened
     | SearchEnded
     | NotSignificant
+    | HarmonicsAlike
 )
+
+
+EVEN = 2e-3
+"""Largest distance of a target from an even spacing, rad: a tenth of a degree."""
+
+FEWEST_TARGETS = 3
+"""Targets of a turn up to which no harmonic is told from another at all."""
 
 
 def remarks(fit: Fit) -> tuple[Remark, ...]:
@@ -198,7 +222,7 @@ def remarks(fit: Fit) -> tuple[Remark, ...]:
     out: list[Remark] = [] if units is None else [units]
     out += [ReaderRemark(text) for text in fit.run.remarks]
     out += _memory(fit)
-    out += _touches(fit)
+    out += _touches(fit) + _harmonics(fit)
     out += ([] if units else _noise(fit)) + _outliers(fit)
     if fit.widened > 1.0:
         out.append(PriorWidened(fit.widened))
@@ -223,6 +247,41 @@ def _touches(fit: Fit) -> list[Remark]:
         turns = bool(t.chain.rotary_axes) and not t.instrument.reads_angle
         out.append(FewPoses(poses, turns))
     return out
+
+
+def _harmonics(fit: Fit) -> list[Remark]:
+    """Harmonics that even targets cannot tell from a found one: n of them, k and every m n ± k.
+
+    Of a curve, which may be any of them, the number of targets alone.
+    """
+    out: list[Remark] = []
+    for effect in fit.model.effects:
+        one: object = effect.effect if isinstance(effect, Again) else effect
+        if not isinstance(one, Harmonic | HigherOrder | PositionTable):
+            continue
+        if one.symbol.link not in fit.run.touches.chain.rotary_axes:
+            continue
+        n = targets_a_turn(fit.run.touches.reading(one.symbol.link)[fit.used])
+        k = round(one.harmonic) if isinstance(one, Harmonic) else 0
+        around = {m * n + side * k for m in (1, 2) for side in (-1, 1)} if k else set()
+        others = tuple(h for h in sorted(around - {k}) if h > 0)
+        if n:
+            out.append(HarmonicsAlike(one.symbol.link, n, k, others))
+    return list(dict.fromkeys(out))
+
+
+def targets_a_turn(q: Array) -> int:
+    """Number of targets that stand evenly over a whole turn, rad; 0 where they do not.
+
+    Example:
+        >>> targets_a_turn(np.radians([0.0, 90.0, 180.0, 270.0, 360.0])), targets_a_turn(np.ones(3))
+        (4, 0)
+    """
+    turn = 2.0 * np.pi
+    places = np.unique(np.round(np.mod(q + EVEN, turn), 4))
+    n = len(places)
+    off = places - places[0] - turn / n * np.arange(n)
+    return n if n > FEWEST_TARGETS and np.abs(off).max() < EVEN else 0
 
 
 def _memory(fit: Fit) -> list[Remark]:
