@@ -151,7 +151,7 @@ def test_a_worm_is_found_where_targets_resolve_it():
 
 
 def test_harmonics_that_even_targets_confuse_are_listed():
-    """A harmonic of 45 at 120 targets may be one of 75, 165, 195 or 285; a curve may be anything."""
+    """A harmonic of 45 at 120 targets may be one of 75, 165, 195, 285; a curve may be anything."""
     (alike,) = told(turned(120, 45), "periodic(ECC)", 45.0)
     assert alike == HarmonicsAlike("C", 120, 45, (75, 165, 195, 285))
     assert "cannot tell harmonic 45 from 75, 165, 195 or 285" in remark_sentence(alike)
