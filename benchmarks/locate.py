@@ -3,7 +3,8 @@
     python benchmarks/locate.py OUT [--count 200] [--seed 1] [--errors]
 
 OUT is a folder of `matstd design`. Every placement is drawn evenly within the spread in all six
-directions. The machine has no errors but 10 µm of noise at a touch; with `--errors` every placement
+directions, the widest that the probe has room for. The machine has no errors but 10 µm of
+noise at a touch; with `--errors` every placement
 has a machine of its own, whose errors (0.1 to 0.3 mm of displacement by the default distributions)
 nobody can tell from a displaced standard, and which are in the figures then. The search is
 run from the text of its program on the exact twin, its log is read and evaluated as a control's.
@@ -21,9 +22,10 @@ from artefact.body import read_standard
 from probe_paths.campaign import VirtualMachine, ball_centres, simulate_search
 from probe_paths.control import Move, interpret, read_log, read_program
 from probe_paths.emit import make_search
-from probe_paths.locate import Spread, find_standard, plan_search
+from probe_paths.locate import SPREADS, find_standard, plan_search
 from probe_paths.plan import ToolClearance
 from sensitivity.population import Population, drawn_errors
+from twin.errors import NotReachable
 from twin.files import read_machine
 from twin.frames import fixed_xyz, inverse, pose
 from twin.model import contribution
@@ -56,8 +58,13 @@ def main() -> int:
     chain = read_machine(args.design / "machine.toml")
     standard = read_standard(args.design / "standard.toml")
     first = read_program(sorted((args.design / "programs").glob("*_1.*[Hc]"))[0], chain).heading
-    believed, probe, spread = first.setup, first.probe, Spread()
-    plan = plan_search(standard, chain, probe, believed, spread, first.workshop)
+    believed, probe = first.setup, first.probe
+    for spread in SPREADS:
+        try:
+            plan = plan_search(standard, chain, probe, believed, spread, first.workshop)
+            break
+        except NotReachable as error:
+            print(f"within {spread.distance:g} mm: {error}")
     made = make_search(plan, (spread.distance, spread.angle))
     text = made.programs[0]
     program = interpret(text.text.encode("ascii"), Path(text.file), made.masks.get, chain)

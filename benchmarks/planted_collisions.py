@@ -37,7 +37,7 @@ PROBE = Probe(stack=((40.0, 1.5), (60.0, 8.0), (160.0, 31.0)), nose_radius=50.0)
 PITCH = 1.5  # mm between points of a surface
 STEP = 0.5  # mm between places along a move
 _FARTHEST = 400.0  # mm that is pushed
-_COARSE = 8.0  # mm between the places that sort out which points matter
+_COARSE, _COARSEST = 8.0, 64.0  # mm between the places that sort out which points matter
 PIVOT, ORIGIN = np.array([0.0, 0.0, -420.0]), np.array([0.0, 0.0, -500.0])
 KINDS = ("sideways", "dip", "table", "clamp at a touch", "beyond a touch", "turn")
 
@@ -140,9 +140,20 @@ def way_gaps(points: Array, ways: list[Way], axis: Array, step: float) -> Array:
     return best
 
 
+def lower_bounds(points: Array, ways: list[Way], axis: Array) -> Array:
+    """What no point can be nearer than, (K,): few places for all, more for those that are near.
+
+    Between two places the gap of a point changes by no more than the way to the nearer one.
+    """
+    lower = way_gaps(points, ways, axis, _COARSEST) - 0.5 * _COARSEST
+    near = np.flatnonzero(lower < lower.min() + _COARSEST)
+    lower[near] = way_gaps(points[near], ways, axis, _COARSE) - 0.5 * _COARSE
+    return lower
+
+
 def smallest_gap(points: Array, ways: list[Way], axis: Array) -> float:
     """Of all points: coarse places say which of them need the fine ones."""
-    lower = way_gaps(points, ways, axis, _COARSE) - 0.5 * _COARSE
+    lower = lower_bounds(points, ways, axis)
     few = np.argsort(lower)[:500]
     gap = way_gaps(points[few], ways, axis, STEP).min()
     return float(min(gap, way_gaps(points[lower < gap], ways, axis, STEP).min(initial=np.inf)))
@@ -153,7 +164,7 @@ def pushed(points: Array, ways: list[Way], axis: Array, push: Array, wanted: flo
 
     Of every point it is known how near it can have come since it was looked at last.
     """
-    lower, way = way_gaps(points, ways, axis, _COARSE) - 0.5 * _COARSE, 0.0
+    lower, way = lower_bounds(points, ways, axis), 0.0
     for _ in range(200):
         there = [(begin + way * push, end + way * push) for begin, end in ways]
         few = np.argsort(lower)[:300]

@@ -1,19 +1,22 @@
 """From a standard to its CAD files, measured before they get their names.
 
 In: a `Standard` of `artefact.body`, whose limits the caller has checked. Out: `standard.step`
-(AP242, named faces) and `standard.stl` in a folder, and a `Conformity` of all that was measured on
-them; or a `NotBuildable` that names the figure out of its limit, and no file.
+(AP242: body, balls and screws, named faces), `standard.stl`, `.3mf` and `.glb` in a folder, and a
+`Conformity` of all that was measured on them; or a `NotBuildable` that names the figure out of its
+limit, and no file.
 
 The CAD kernel runs in a process of its own (`build`), because its faults end the process they run
 in. `verify` reads the files anew: by the kernel, by a reader of the STEP text that knows no kernel,
-and by two mesh libraries. Another file format is written in `build` beside `exchange` and gets its
-own figures in `verify.conformity`.
+and by two mesh libraries. What a workshop adds to the design (seats of the balls, pads,
+datum sides, lettering) follows by rule in `details`; `meshes` knows triangles. Another file format
+is written in `build` beside `exchange` and gets its own figures in `verify.conformity`.
 """
 
-from cad_out.build import Mesh, as_part, run_apart
+from cad_out.build import as_part, run_apart
+from cad_out.meshes import Mesh
 from cad_out.verify import Conformity, export_standard, measure
 
-PARTS = ("build", "verify")
+PARTS = ("details", "meshes", "build", "verify")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = ["Conformity", "Mesh", "as_part", "export_standard", "measure", "run_apart"]

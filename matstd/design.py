@@ -11,10 +11,10 @@ import numpy as np
 
 from artefact.body import Standard, write_standard
 from artefact.brief import Project
-from artefact.certify import like_task
+from artefact.certify import dmis_program, like_task
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
-from cad_out.verify import export_standard
+from cad_out.verify import Conformity, export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.files import write_uncertainty
 from diagnosis.fit import fit_run
@@ -34,6 +34,7 @@ from matstd.study_run import study_and_maps
 from probe_paths.campaign import Campaign, VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import TouchPlan, plan_touches
+from report.drawing import Issuer, write_drawing
 from report.identifiability import write_identifiability, write_identification
 from report.pages import Design, Proven
 from sensitivity.first_order import Workspace, latin_hypercube
@@ -68,11 +69,9 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
     placement = _placement(project, workspace, rng.placement, progress, poses)
-    # refused here rather than after programs and CAD, where no touch is like the user's task
-    proving = placement.criterion.reach.touches(placement.touches)
-    like_task(project.task, placement.standard, proving)
     plan = _plan(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
+    write_whole(folder / "cmm.dmi", dmis_program(placement.standard), newline="\r\n")
     progress("what can be told apart", 0, 1)
     known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
     write_identifiability(folder / "identifiability.json", known)
@@ -80,12 +79,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         project, workspace, project.poses, folder / "sensitivity", rng, progress, workers
     )
     progress("STEP and STL", 0, 1)
-    conformity = export_standard(
-        placement.standard,
-        folder,
-        author=project.standard.author,
-        organisation=project.standard.organisation,
-    )
+    conformity = _cad(project, placement.standard, folder)
     progress("probing programs", 0, 1)
     programs = make_programs(plan, dialect(project), feeds(project))
     paths = programs.write(folder / "programs")
@@ -122,6 +116,14 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     )
 
 
+def _cad(project: Project, standard: Standard, folder: Path) -> Conformity:
+    """Models and drawing of a standard."""
+    who = project.standard
+    conformity = export_standard(standard, folder, author=who.author, organisation=who.organisation)
+    write_drawing(folder, standard, Issuer(who.author, who.organisation, conformity.mass))
+    return conformity
+
+
 def _placement(
     project: Project,
     workspace: Workspace,
@@ -130,7 +132,7 @@ def _placement(
     poses: Array | None = None,
 ) -> Placement:
     """Standard and touches for the project's machine."""
-    return design_standard(
+    placement = design_standard(
         probe_reach(project),
         blank(project),
         workspace,
@@ -140,6 +142,10 @@ def _placement(
         progress,
         poses,
     )
+    # refused here rather than after programs and CAD, where no touch is like the user's task
+    proving = placement.criterion.reach.touches(placement.touches)
+    like_task(project.task, placement.standard, proving)
+    return placement
 
 
 def _plan(project: Project, placement: Placement) -> TouchPlan:

@@ -25,7 +25,11 @@ REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
 SHEET = "setup"
 """Folder of the set-up sheet, and of the programs that are run before the others."""
 
-SHEET_FILES = (f"{SHEET}/setup.pdf", f"{SHEET}/tables/*.csv", f"{SHEET}/*_LOC.*")
+SHEET_FILES = (
+    f"{SHEET}/setup.pdf",
+    f"{SHEET}/tables/*.csv",
+    *(f"{SHEET}/*_{ending}.*" for ending in ("LOC", "CAL", "COM")),
+)
 """Of it, what not every run leaves."""
 
 

@@ -14,6 +14,7 @@ is a number in a result.
     maps    sensitivities and volumetric error over a workspace or along a path
     plots   plans, proofs, residuals, effects
     scenes  pictures in three dimensions, rendered in a process of their own
+    drawing the sheet for the workshop, PDF and SVG
     pages   HTML, one template a page in `pages/templates`
     compensation
             what compensation corrects and leaves, with its page
@@ -53,6 +54,7 @@ PARTS = (
     "maps",
     "plots",
     "scenes",
+    "drawing",
     "pages",
     "compensation",
     "drift",

@@ -32,7 +32,17 @@ from twin.machine import Chain, Symbol, make_chain, tip
 from twin.model import Effect, Inner, Kind, Model, Parameter, Term, Where
 from twin.record import Run, Touches, at_poses
 
-PARTS = ("machine", "record", "model", "thermal", "effects", "library", "files", "foreign")
+PARTS = (
+    "machine",
+    "record",
+    "model",
+    "thermal",
+    "elastic",
+    "effects",
+    "library",
+    "files",
+    "foreign",
+)
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

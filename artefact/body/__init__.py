@@ -16,12 +16,13 @@ from artefact.body.limits import (
     max_slope,
     min_concave_radius,
 )
-from artefact.body.patch import Meeting, rows, unit
-from artefact.body.solids import Plate
+from artefact.body.patch import Meeting, unit
+from artefact.body.solids import BLEND, Plate
 from artefact.body.standard import Base, Core, Material, Standard
 from artefact.body.standard_file import read_standard, write_standard
 
 __all__ = [
+    "BLEND",
     "OVERHANG",
     "Base",
     "Core",
@@ -44,7 +45,6 @@ __all__ = [
     "min_concave_radius",
     "outline_distance",
     "read_standard",
-    "rows",
     "unit",
     "write_standard",
 ]

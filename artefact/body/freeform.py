@@ -84,6 +84,11 @@ class FreeformPatch:
         """The patch's own direction, +z of its frame, shape (3,)."""
         return self.T_artefact_patch[:3, 2]
 
+    @property
+    def is_upright(self) -> bool:
+        """Whether its column is upright and parallel to the sides of the base: a pillar."""
+        return bool(np.abs(self.T_artefact_patch[:3, :3] - np.eye(3)).max() < 1e-12)
+
     @cached_property
     def T_patch_artefact(self) -> Array:
         """Artefact coordinates to patch coordinates, shape (4, 4)."""

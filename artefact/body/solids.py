@@ -9,6 +9,9 @@ from artefact.body.datum import outline_distance
 from artefact.body.freeform import FreeformPatch
 from twin.frames import Array, apply
 
+BLEND = 3.0
+"""Radius of the inner edge round the foot of a pillar or a post, mm."""
+
 _STEPS = 60  # a bound: where a ball grazes a body, Newton but halves the gap at each
 _SECANT = 1e-5  # mm
 _SLIVER = 1e-9  # mm: distance at which a ball counts as touching
@@ -65,6 +68,7 @@ class Cone:
         high: Height of the upper face, mm.
         low_radius: Radius below, mm.
         high_radius: Radius above, mm.
+        blend: Whether its foot is rounded into the plane at its lower face.
     """
 
     x: float
@@ -73,12 +77,13 @@ class Cone:
     high: float
     low_radius: float
     high_radius: float
+    blend: bool = False
 
     @property
     def hull(self) -> tuple[Array, float]:
         """Centre half way up, and the way from there to the farther rim."""
         middle = np.array([self.x, self.y, 0.5 * (self.low + self.high)])
-        widest = max(self.low_radius, self.high_radius)
+        widest = max(self.low_radius + BLEND * self.blend, self.high_radius)
         return middle, float(np.hypot(0.5 * (self.high - self.low), widest))
 
     def distance(self, points: Array) -> Array:
@@ -94,7 +99,8 @@ class Cone:
         to_side = np.linalg.norm(from_low - along[:, None] * edge, axis=1)
         beside = from_low @ np.array([edge[1], -edge[0]])
         inside = (beside < 0.0) & (np.abs(z) < half)
-        return np.where(inside, -1.0, 1.0) * np.minimum(to_cap, to_side)
+        distance = np.where(inside, -1.0, 1.0) * np.minimum(to_cap, to_side)
+        return _blended(distance, points[:, 2] - self.low) if self.blend else distance
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,18 +137,21 @@ class Column:
         patch: The lid and its frame.
         top: Largest height of the lid above the patch plane, mm.
         steepest: Cosine of the largest slope of the lid.
+        foot: Height of a plane into which its foot is rounded, mm; None for a sharp edge.
     """
 
     patch: FreeformPatch
     top: float
     steepest: float
+    foot: float | None = None
 
     @property
     def hull(self) -> tuple[Array, float]:
         """Centre and radius of the ball through the corners of the box round it."""
         low, high = -self.patch.depth, self.top
         middle = apply(self.patch.T_artefact_patch, np.array([0.0, 0.0, 0.5 * (low + high)]))
-        return middle, float(np.linalg.norm([*self.patch.half_size, 0.5 * (high - low)]))
+        to_corner = float(np.linalg.norm([*self.patch.half_size, 0.5 * (high - low)]))
+        return middle, to_corner + (0.0 if self.foot is None else 2.0 * BLEND)
 
     def distance(self, points: Array) -> Array:
         """Signed distance from below, (N,), mm; its sign is exact."""
@@ -157,10 +166,10 @@ class Column:
         uv = np.clip(local[near, :2], -half, half)
         over = (local[near, 2] - patch.height(uv)) * self.steepest
         box[near] = np.maximum(box[near], over)
-        return box
+        return box if self.foot is None else _blended(box, points[:, 2] - self.foot)
 
 
-def column(patch: FreeformPatch) -> Column:
+def column(patch: FreeformPatch, foot: float | None = None) -> Column:
     """The column of a patch with its highest point and steepest slope found on a 1 mm grid."""
     uv = patch.grid(1.0)
     # Between the nodes of the grid the lid can be higher by slope times half a pitch at most,
@@ -169,6 +178,7 @@ def column(patch: FreeformPatch) -> Column:
         patch=patch,
         top=float(patch.height(uv).max()) + 0.1,
         steepest=float(np.cos(min(patch.slope(uv).max() + 0.035, 1.5))),
+        foot=foot,
     )
 
 
@@ -210,4 +220,15 @@ def _corner(a: Array, b: Array) -> Array:
     """Signed distance to the intersection of two half spaces at right angles."""
     out = np.hypot(np.maximum(a, 0.0), np.maximum(b, 0.0))
     distance: Array = out + np.minimum(np.maximum(a, b), 0.0)
+    return distance
+
+
+def _blended(distance: Array, above: Array) -> Array:
+    """Distance from a wall and its blend, of points at a height above the plane at its foot.
+
+    Exact at an upright wall, ``R - |(R - d, R - z)|``; too small where the wall leans back.
+    """
+    near = (distance < BLEND) & (above > 0.0) & (above < BLEND)
+    round_it = BLEND - np.hypot(BLEND - distance[near], BLEND - above[near])
+    distance[near] = np.minimum(distance[near], round_it)
     return distance

@@ -1,16 +1,16 @@
 """The whole standard: one body with freeform patches, datum spheres, datum plane and holes."""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from artefact.body.datum import DatumPlane, DatumSphere, MountingHole
+from artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
 from artefact.body.freeform import FreeformPatch
 from artefact.body.known import Known
 from artefact.body.patch import Surface
-from artefact.body.solids import Ball, Body, Column, Cone, Plate, column
+from artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
 from twin.errors import ShapeMismatch
 from twin.frames import Array
 
@@ -131,16 +131,36 @@ class Standard:
         surfaces: tuple[Surface, ...] = (*self.patches, *self.spheres, self.plane)
         return {surface.name: surface for surface in surfaces}
 
-    @property
-    def face_names(self) -> tuple[str, ...]:
-        """Names that faces of a solid of this standard carry: features, seat, holes, bores."""
-        holes = [name for hole in self.holes for name in (hole.name, f"{hole.name}_BORE")]
-        return (*self.features, "SEAT", *holes)
+    @cached_property
+    def blended(self) -> frozenset[str]:
+        """Patches and spheres whose pillar or post has a foot rounded into the plate.
+
+        All of an upright standard that leave room for the radius; none where columns lean, run
+        into each other or meet in a core.
+        """
+        if self.core is not None or not all(patch.is_upright for patch in self.patches):
+            return frozenset()
+        names = [p.name for p in self.patches] + [s.name for s in self.spheres]
+        middle = [p.T_artefact_patch[:2, 3] for p in self.patches]
+        middle += [s.centre[:2] for s in self.spheres]
+        half = [p.half_size for p in self.patches] + [(s.foot_radius,) * 2 for s in self.spheres]
+        p, a = np.array(middle).reshape(-1, 2), np.array(half).reshape(-1, 2)
+        apart = np.linalg.norm(np.maximum(np.abs(p[:, None] - p) - a[:, None] - a, 0.0), axis=-1)
+        np.fill_diagonal(apart, np.inf)
+        free = apart.min(axis=1, initial=np.inf) > 2.0 * BLEND
+        corners = np.array([[x, y] for x in (-1.0, 1.0) for y in (-1.0, 1.0)])
+        square = (np.arange(len(p)) < len(self.patches))[:, None, None]
+        ends = (p[:, None] + corners * a[:, None] * square).reshape(-1, 2)
+        rim = outline_distance(ends, self.base.half_size, self.base.corner_radius)
+        beyond = rim.reshape(-1, 4).max(axis=1) + np.where(square[:, 0, 0], 0.0, a[:, 0])
+        free &= beyond < -BLEND - 0.5
+        return frozenset(n for n, good in zip(names, free, strict=True) if good)
 
     @cached_property
     def columns(self) -> dict[str, Column]:
         """The column under each patch, by the patch's name."""
-        return {patch.name: column(patch) for patch in self.patches}
+        foot = {name: self.base.thickness for name in self.blended}
+        return {patch.name: column(patch, foot.get(patch.name)) for patch in self.patches}
 
     @cached_property
     def stems(self) -> dict[str, Cone]:
@@ -173,7 +193,8 @@ class Standard:
             )
         bodies.update(self.columns)
         bodies.update({s.name: Ball(s.centre, s.radius) for s in self.spheres})
-        bodies.update({f"{name} stem": stem for name, stem in self.stems.items()})
+        for name, stem in self.stems.items():
+            bodies[f"{name} stem"] = replace(stem, blend=name in self.blended)
         return bodies
 
     def distance(self, points: Array) -> Array:

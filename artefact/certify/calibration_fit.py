@@ -18,6 +18,7 @@ Reference:
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from artefact.body import FreeformPatch, Known, KnownFeature, Standard
 from artefact.certify.cmm_points_file import CmmPoints
@@ -32,6 +33,10 @@ MIN_BALL, MIN_FACE = 6, 20
 
 MIN_BALLS = 3
 """Balls that say where the CMM had the standard."""
+
+_GROSS = 6.0
+"""Robust standard deviations from which a point is dust or a slip and is left out: of a thousand
+good ones none is so far."""
 
 _ASTRAY = 0.5  # mm from its feature: a point of another feature, or a slip
 _UNITS = {"µm": 1e3, "m": 1e-3, "inches": 1.0 / 25.4, "cm": 0.1}
@@ -69,7 +74,8 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
         BadFile: Points in other units, or far from every feature.
         NotEnoughData: Too few points on a feature, or too few balls.
     """
-    balls = _balls(nominal, cmm, u_point)
+    slips: list[str] = []
+    balls = _balls(nominal, cmm, u_point, slips)
     T_artefact_cmm = _alignment(nominal, cmm, {n: b[0] for n, b in balls.items()})
     point = apply(T_artefact_cmm, cmm.point)
     known, moved, left, spheres, patches = {}, {}, {}, [], []
@@ -90,16 +96,21 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
             continue
         _check_face(patch, cmm, rows, point)
         found = corrected_face(patch, point[rows], u_point)
+        far = _gross(found.left, u_point)
+        if far.any():
+            slips.append(_slips(patch.name, cmm, rows[far]))
+            rows = rows[~far]
+            found = corrected_face(patch, point[rows], u_point)
         patches.append(found.patch)
         known[patch.name] = KnownFeature(len(rows), u_feature, found.u_tilt, found.u_form)
-        moved[patch.name], left[patch.name] = found.moved, found.left
+        moved[patch.name], left[patch.name] = found.moved, _rms(found.left)
     standard = replace(
         nominal,
         patches=tuple(patches),
         spheres=tuple(spheres),
         known=Known(cmm.path.name, nominal.fingerprint, known),
     )
-    return Calibrated(standard, moved, left, (*cmm.remarks, *_remarks(nominal, cmm, known)))
+    return Calibrated(standard, moved, left, (*cmm.remarks, *slips, *_remarks(nominal, cmm, known)))
 
 
 def _remarks(nominal: Standard, cmm: CmmPoints, known: dict[str, KnownFeature]) -> list[str]:
@@ -119,8 +130,24 @@ Ball = tuple[Array, float, float, float, int]
 """Centre, radius, standard uncertainty of a coordinate of the centre, rms left, points."""
 
 
-def _balls(nominal: Standard, cmm: CmmPoints, u_point: float) -> dict[str, Ball]:
-    """Every measured ball in the frame of the CMM."""
+def _gross(left: Array, u_point: float) -> NDArray[np.bool_]:
+    """Points that stand out of all others, (N,)."""
+    usual = max(u_point, float(np.median(np.abs(left))) / 0.6745)
+    return np.asarray(np.abs(left) > _GROSS * usual)
+
+
+def _slips(name: str, cmm: CmmPoints, rows: np.ndarray) -> str:
+    """What is told of points that were left out."""
+    lines = ", ".join(str(line) for line in cmm.line[rows])
+    return f"{name}: points that stand out are left out, lines {lines} of {cmm.path}"
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) -> dict[str, Ball]:
+    """Every measured ball in the frame of the CMM; what is left out goes to the slips."""
     out: dict[str, Ball] = {}
     for sphere in nominal.spheres:
         rows = np.flatnonzero(cmm.feature == sphere.name)
@@ -136,7 +163,13 @@ def _balls(nominal: Standard, cmm: CmmPoints, u_point: float) -> dict[str, Ball]
                 f"{cmm.path}: {sphere.name} has {len(rows)} points, expected at least {MIN_BALL}"
             )
         else:
-            out[sphere.name] = fitted_ball(cmm.point[rows], u_point)
+            ball = fitted_ball(cmm.point[rows], u_point)
+            left = np.linalg.norm(cmm.point[rows] - ball[0], axis=1) - ball[1]
+            far = _gross(left, u_point)
+            if far.any() and np.sum(~far) >= MIN_BALL:
+                slips.append(_slips(sphere.name, cmm, rows[far]))
+                ball = fitted_ball(cmm.point[rows[~far]], u_point)
+            out[sphere.name] = ball
     if len(out) < MIN_BALLS:
         raise NotEnoughData(
             f"{cmm.path}: points on {len(out)} balls, expected at least {MIN_BALLS}: they say "

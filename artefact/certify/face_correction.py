@@ -12,7 +12,7 @@ _ROUNDS = 3  # foot points move by slope times correction: micrometres, settled 
 _GRID = 3.0  # mm between the places over which the uncertainty of the surface is averaged
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CorrectedFace:
     """A face as it is.
 
@@ -21,14 +21,14 @@ class CorrectedFace:
         u_form: Root mean square standard uncertainty of the surface over the face, mm.
         u_tilt: Standard uncertainty of its rotations by the points, rad.
         moved: Largest deviation from the design along the normal, mm.
-        left: Root mean square that the points deviate from the corrected face, mm.
+        left: Deviation of every point from the corrected face, (N,), mm.
     """
 
     patch: FreeformPatch
     u_form: float
     u_tilt: float
     moved: float
-    left: float
+    left: Array
 
 
 def corrected_face(patch: FreeformPatch, points: Array, u_point: float) -> CorrectedFace:
@@ -96,8 +96,8 @@ def _bending(patch: FreeformPatch) -> Array:
     return np.asarray(R / np.sqrt(len(grid)) * max(patch.half_size) ** 2)
 
 
-def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Array, float]:
-    """Coefficients, root of their covariance, and what they leave (rms).
+def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Array, Array]:
+    """Coefficients, root of their covariance, and what they leave, (N,).
 
     Of all weights the one with the least ``n |d - H d|^2 / (n - tr H)^2``.
     """
@@ -117,4 +117,4 @@ def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Arr
     noise = max(u_point, float(np.sqrt(squares / max(n - used, 1.0))))
     # the Bayesian covariance of the penalised fit, which holds what the penalty may have hidden
     root = np.linalg.cholesky(np.linalg.inv(M)) * noise / np.sqrt(n)
-    return c, root, float(np.sqrt(squares / n))
+    return c, root, d - B @ c

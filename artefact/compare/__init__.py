@@ -17,7 +17,7 @@ from artefact.compare.identifiability import (
     IdentifiabilityReport,
     identifiability_report,
 )
-from artefact.compare.power import ERROR, RISK, WANTED, Power, proof_power
+from artefact.compare.power import ERROR, RISK, WANTED, Power, proof_power, task_normals
 
 __all__ = [
     "ERROR",
@@ -34,4 +34,5 @@ __all__ = [
     "prior_rms",
     "proof_power",
     "random_lots",
+    "task_normals",
 ]

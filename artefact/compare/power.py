@@ -3,8 +3,9 @@
 A model that lacks an effect of the library is fitted to the identifying touches by ``E``; part of
 the effect goes into the fitted parameters, the rest makes the model wrong in the volume of the
 standard and at the proving touches. The size of the effect is such that the model is wrong there by
-a stated root mean square. The proving touches find it if what they see beyond the prediction, d, is
-larger than noise, calibration and uncertainty of the prediction allow; in units of the noise
+a stated root mean square: in whatever direction, or along the normals of a measuring task, which is
+what a user would feel of it. The proving touches find it if what they see beyond the prediction, d,
+is larger than noise, calibration and uncertainty of the prediction allow; in units of the noise
 
     d^T V^-1 d > chi2(1 - risk, n)
     V = 1 + W_p E E^T W_p^T + W_p (1 - E W)(1 - E W)^T W_p^T + K K^T,   K = C_p - W_p E C
@@ -23,7 +24,7 @@ import numpy as np
 
 from artefact.reach import Requests
 from artefact.worth import Criterion
-from twin.frames import Array
+from twin.frames import Array, turn
 from twin.model import Effect, Model, columns
 from twin.units import UM
 
@@ -66,6 +67,7 @@ def proof_power(
     proving: Requests,
     effects: Sequence[Effect],
     rng: np.random.Generator,
+    normals: Array | None = None,
 ) -> Power:
     """Power of some touches against a model that lacks one effect at a time.
 
@@ -75,6 +77,8 @@ def proof_power(
         proving: Touches that had no part in it.
         effects: What the model may lack; those that move no tool point are left out.
         rng: Draws mixes of the parameters of an effect.
+        normals: At every pose of the volume, (M, 3), table frame: what is wrong across them is no
+            error of the task. None counts every direction.
     """
     from scipy.stats import chi2, ncx2
 
@@ -92,8 +96,7 @@ def proof_power(
         mixes = rng.normal(size=(len(effect.parameters), _MIXES))
         absorbed = estimate @ (columns([effect], before) @ mixes / criterion.noise)
         own = Model(reach.chain, (effect,)).tip_columns(poses) @ mixes
-        wrong = np.sqrt(np.mean(np.sum((own - tip @ absorbed) ** 2, axis=1), axis=0))
-        moved = np.sqrt(np.mean(np.sum(own**2, axis=1), axis=0))
+        wrong, moved = _rms(own - tip @ absorbed, normals), _rms(own, None)
         if np.all(moved == 0.0) or np.any(wrong < _SILENT * moved):
             continue
         seen = columns([effect], after) @ mixes / criterion.noise - Wp @ absorbed
@@ -103,6 +106,29 @@ def proof_power(
     n = len(proving)
     power = ncx2.sf(chi2.isf(RISK, n), n, np.array(noncentral).reshape(-1, _MIXES)).mean(axis=1)
     return Power(touches=n, effects=tuple(names), power=np.asarray(power))
+
+
+def task_normals(criterion: Criterion, like: Requests, rng: np.random.Generator) -> Array:
+    """Normals of surfaces as steep as those of some touches, in any azimuth, (M, 3), table frame.
+
+    Args:
+        criterion: With the poses of the volume, one normal each.
+        like: The touches.
+        rng: Draws slopes among theirs, and azimuths.
+    """
+    count = len(criterion.at_volume)
+    slope = np.arccos(np.clip(like.normal[rng.integers(0, len(like), count), 2], -1.0, 1.0))
+    azimuth = rng.uniform(-np.pi, np.pi, count)
+    across = np.sin(slope)
+    normal = np.stack([across * np.cos(azimuth), across * np.sin(azimuth), np.cos(slope)], axis=-1)
+    return turn(criterion.reach.setup.T_table_artefact, normal)
+
+
+def _rms(displaced: Array, normals: Array | None) -> Array:
+    """Of displacements (M, 3, K), or of what they are along normals (M, 3); (K,)."""
+    if normals is None:
+        return np.asarray(np.sqrt(np.mean(np.sum(displaced**2, axis=1), axis=0)))
+    return np.asarray(np.sqrt(np.mean(np.einsum("mi,mik->mk", normals, displaced) ** 2, axis=0)))
 
 
 def _estimator(W: Array, C: Array) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from artefact.body import (
+    BLEND,
     DatumSphere,
     FreeformPatch,
     Limits,
@@ -44,6 +45,7 @@ _HIGHEST = 0.45  # of the blank's height, the middle of a face at most
 _LEAN = (0.25, 0.8)  # of the steepest slope that the mean plane of a face takes
 _LOWEST_BALL = 15.0  # mm between the base and a ball, for the probe to come beside it
 _HIGHEST_BALL = 0.7  # of the blank's height, centre of a ball at most
+_LEDGE = 1.0  # mm of the plate that is left outside the blend of a foot
 _TO_HOLE = 6.0  # mm between a counterbore and a body: fillet of its foot, and the key
 _WALL = 5.0  # mm between a counterbore and the outline
 _APART = 60.0  # mm between two holes at least: nearer ones let a standard rock
@@ -91,7 +93,9 @@ def freeform_faces(
 
 def _inside(blank: Blank, half: Array, rng: np.random.Generator) -> Array | None:
     """A place for a rectangle within the outline and clear of the holes; None where none is."""
-    base, room = blank.base, np.array(blank.base.half_size) - half
+    base = blank.base
+    half = half + BLEND + _LEDGE  # the blend of its foot stands on the plate too
+    room = np.array(base.half_size) - half
     if room.min() < 0.0:
         return None
     corners = np.array(list(product((-1.0, 1.0), repeat=2))) * half
@@ -128,8 +132,13 @@ def balls_on_posts(blank: Blank, count: int, rng: np.random.Generator) -> list[D
         ball_on_post(blank, "", np.array([*xy, z])) for xy, z in zip(across, heights, strict=True)
     ]
     inset = -outline_distance(across, base.half_size, base.corner_radius)
-    balls = [b for b, room in zip(balls, inset, strict=True) if room >= _widest(b) + 1.0]
+    balls = [b for b, room in zip(balls, inset, strict=True) if room >= _to_rim(b)]
     return [ball_on_post(blank, f"{i}", b.centre) for i, b in enumerate(balls)]
+
+
+def _to_rim(ball: DatumSphere) -> float:
+    """From the axis of a post to the outline at least, mm."""
+    return max(ball.radius, ball.foot_radius + BLEND) + _LEDGE
 
 
 def _widest(ball: DatumSphere) -> float:

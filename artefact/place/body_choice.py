@@ -22,7 +22,7 @@ from artefact.layout import (
     with_spheres,
 )
 from artefact.reach import Requests, joined, spread_poses
-from artefact.worth import Criterion, each_at, face_grid
+from artefact.worth import BallPlaces, Criterion, each_at, face_grid
 from information.selection import best_groups
 from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array, inverse, turn
@@ -141,8 +141,39 @@ class BodyChoice:
                 )
             balls = balls[:-1]  # the last one chosen tells least
 
+    def rearranged(self, made: Standard, places: BallPlaces, touches: int) -> Standard | None:
+        """The same faces with the balls that tell most beside them; None where a limit is broken.
+
+        The faces were put where they hide few touches on the balls; now the balls move to where
+        fewest of theirs are hidden.
+
+        Args:
+            made: Standard with faces and balls.
+            places: That balls may have.
+            touches: That will be made on all balls together.
+        """
+        faces = list(made.patches)
+        free = [bool(faces_beside(faces, [ball], self.blank).all()) for ball in places.balls]
+        clear = np.array(free)[places.group]
+        clear &= ~self._in_the_way(faces, places.touches).any(axis=0)
+        if not clear.any():
+            return None
+        balls = places.best(len(made.spheres), touches, clear)
+        try:
+            holes = holes_on(self.blank, balls)
+        except NotBuildable:
+            return None
+        again = self._put_together(made.name, made.serial, faces, balls, holes)
+        is_whole = len(balls) == len(made.spheres)
+        broken = any(c.slack < 0.0 for c in constraints(again, self.blank.limits))
+        return again if is_whole and not broken else None
+
     def _hidden(self, touches: Requests) -> Array:
         """Share of some touches that every face stands in the way of, (F,)."""
+        return np.asarray(self._in_the_way(self.faces, touches).mean(axis=1))
+
+    def _in_the_way(self, faces: list[FreeformPatch], touches: Requests) -> Which:
+        """Whether a face stands in the way of the probe at a touch, (F, N)."""
         reach = self.criterion.reach
         frames = table_to_tool(reach.chain, reach.readings(touches))
         axis = turn(inverse(reach.setup.T_table_artefact), frames[:, :3, 2])
@@ -154,9 +185,9 @@ class BodyChoice:
                 radii.append(np.full(len(ball), radius + reach.room))
             begin = end
         where, least = np.concatenate(points), np.concatenate(radii)
-        bare = replace(with_spheres(self.blank, []), patches=tuple(self.faces))
+        bare = replace(with_spheres(self.blank, []), patches=tuple(faces))
         near = [column.distance(where) < least for column in bare.columns.values()]
-        return np.array([n.reshape(-1, len(ball)).any(axis=0).mean() for n in near])
+        return np.array([n.reshape(-1, len(ball)).any(axis=0) for n in near])
 
     def _side_by_side(self, count: int, take: int, fits: Which, free: Which) -> list[int]:
         """The faces worth most; if their neighbours run out, begun from some that all fit."""

@@ -24,6 +24,7 @@ from artefact.compare import (
     prior_rms,
     proof_power,
     random_lots,
+    task_normals,
 )
 from artefact.layout import Blank, with_spheres
 from artefact.place.body_choice import BodyChoice, body_choice
@@ -100,9 +101,11 @@ class Placement:
         rivals: This standard first, then other artefacts at as many identifying touches.
         certificate: How near the identifying touches are to the best choice among all that could be
             made on the standard at its table poses and that crowd no pose more.
-        power: How surely the proving touches find a model wrong in the probed volume.
-        power_of_balls: The same of as many further touches on the balls, which are no proof: what
-            is wrong with a ball went into the model.
+        power: How surely the proving touches find a model wrong over the task: along the normals
+            of surfaces as steep as the faces, anywhere in the probed volume.
+        power_in_volume: The same of a model that is wrong there in whatever direction.
+        power_of_balls: That of as many further touches on the balls, which are no proof: what is
+            wrong with a ball went into the model.
         unreachable: Artefacts that are not compared: this machine can make no touch on them.
     """
 
@@ -114,6 +117,7 @@ class Placement:
     rivals: tuple[Rival, ...]
     certificate: Certificate
     power: Power
+    power_in_volume: Power
     power_of_balls: Power
     unreachable: tuple[str, ...] = ()
 
@@ -183,10 +187,10 @@ def design_standard(
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", 4, 6)
     bases = _bases(criterion.plain, rivals, places, all_poses, options)
-    found = _identifying(criterion, bodies, bases, options)
+    first = _identifying(criterion, bodies, bases, options)
+    found = _rearranged(criterion, bodies, places, first, all_poses, choice)
     standard, tried, chosen = found.standard, found.tried, found.chosen
-    requests = tried[chosen]
-    here = criterion.on(replace(standard, patches=()))
+    requests, here = tried[chosen], criterion.on(replace(standard, patches=()))
     proof, powers = _proving(criterion.on(standard), found, choice.proof, library, rng)
     standard = _with_shares(criterion, standard, proof)
     progress("placement", 5, 6)
@@ -202,7 +206,8 @@ def design_standard(
         rivals=(own, *rivals),
         certificate=found.nearness,
         power=powers[0],
-        power_of_balls=powers[1],
+        power_in_volume=powers[1],
+        power_of_balls=powers[2],
         unreachable=unreachable,
     )
 
@@ -282,14 +287,46 @@ def _identifying(
     return best
 
 
+def _rearranged(
+    criterion: Criterion,
+    bodies: BodyChoice,
+    places: BallPlaces,
+    found: _Identifying,
+    all_poses: Array,
+    choice: TouchOptions,
+) -> _Identifying:
+    """The same faces with balls and table poses chosen anew beside them, if that tells more."""
+    standard = bodies.rearranged(found.standard, places, choice.touches)
+    if standard is None:
+        return found
+    bare = replace(standard, patches=())
+    plain, here = criterion.plain.on(bare), criterion.on(bare)
+    try:
+        poses = chosen_poses(plain, standard, standard.spheres, all_poses, choice)
+        tried = touches_to_choose_from(
+            here.reach, standard, standard.spheres, poses, choice.touches
+        )
+        chosen, nearness = chosen_touches_on(here, tried, choice)
+    except NotReachable:
+        return found
+    if nearness.value >= found.nearness.value:
+        return found
+    proof = touches_to_choose_from(here.reach, standard, standard.patches, poses, choice.proof)
+    if len(proof) < choice.proof:
+        return found
+    return _Identifying(
+        standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
+    )
+
+
 def _proving(
     criterion: Criterion,
     found: _Identifying,
     count: int,
     library: Visibility,
     rng: np.random.Generator,
-) -> tuple[Requests, tuple[Power, Power]]:
-    """Touches that prove, and their power beside that of as many further touches on the balls."""
+) -> tuple[Requests, tuple[Power, Power, Power]]:
+    """Touches that prove; their power over the task and in the volume, and that of the balls."""
     standard, requests = found.standard, found.tried[found.chosen]
     on_faces = touches_to_choose_from(
         criterion.reach, standard, standard.patches, found.poses, count
@@ -298,10 +335,12 @@ def _proving(
     others = found.tried[~found.chosen]
     others = others if len(others) >= count else found.tried  # the same ones once more
     more = proving_touches(criterion, others, requests, min(count, len(others)))
-    of_faces, of_balls = (
-        proof_power(criterion, requests, lot, library.effects, rng) for lot in (proof, more)
+    effects, normals = library.effects, task_normals(criterion, proof, rng)
+    return proof, (
+        proof_power(criterion, requests, proof, effects, rng, normals),
+        proof_power(criterion, requests, proof, effects, rng),
+        proof_power(criterion, requests, more, effects, rng),
     )
-    return proof, (of_faces, of_balls)
 
 
 def _check_blank(base: Base, reach: ProbeReach) -> None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Standard, rows, unit
+from artefact.body import Standard, unit
 from twin.errors import ShapeMismatch
 from twin.frames import Array
 
@@ -146,8 +146,8 @@ def clearance(
     Returns:
         Room and the nearest body.
     """
-    centre = rows(centre)
-    axis = unit(rows(tool_axis, len(centre)))
+    centre = np.atleast_2d(centre)
+    axis = unit(np.broadcast_to(tool_axis, centre.shape))
     room, nearest = _room(standard, centre, axis, *probe.rough_cover())
     tight = np.flatnonzero(room < enough)
     if len(tight):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from artefact.body import DatumSphere
 from artefact.layout import Blank, balls_fit, balls_on_posts
-from artefact.reach import joined, spread_poses
+from artefact.reach import Requests, joined, spread_poses
 from artefact.worth.touch_choice import each_at, sphere_grid
 from artefact.worth.touch_criterion import Criterion
 from information.selection import best_groups
@@ -33,7 +33,8 @@ class BallPlaces:
         balls: B of them.
         criterion: What they are chosen for.
         blank: On which they stand.
-        W: Rows of touches on them, (N, R).
+        touches: On them, N.
+        W: Their rows, (N, R).
         group: Ball of every row, (N,).
         fits: Which of them stand beside each other, (B, B).
     """
@@ -41,21 +42,22 @@ class BallPlaces:
     balls: list[DatumSphere]
     criterion: Criterion
     blank: Blank
+    touches: Requests
     W: Array
     group: IntArray
     fits: NDArray[np.bool_]
 
     def best(
-        self, count: int, touches: int, allowed: NDArray[np.bool_] | None = None
+        self, count: int, touches: int, clear: NDArray[np.bool_] | None = None
     ) -> list[DatumSphere]:
         """The balls whose touches together say most, the first the most; fewer without room.
 
         Args:
             count: Of balls, at most.
             touches: That will be made on all of them together.
-            allowed: Those that may be chosen, (B,); None for all.
+            clear: Touches that nothing stands in the way of, (N,); None for all.
         """
-        rows = slice(None) if allowed is None else allowed[self.group]
+        rows = slice(None) if clear is None else clear
         take = max(4, touches // count)
         chosen = best_groups(
             self.criterion.objective, self.W[rows], self.group[rows], count, take, apart=self.fits
@@ -87,6 +89,7 @@ def ball_places(
         balls=balls,
         criterion=criterion,
         blank=blank,
+        touches=wanted,
         W=criterion.rows(wanted),
         group=wanted.feature.astype(np.int64),
         fits=balls_fit(balls, blank),

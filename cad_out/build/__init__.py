@@ -5,36 +5,17 @@ here loads the kernel at import; `run_apart` serves any library that may crash.
 """
 
 from cad_out.build.kernel import run_kernel
-from cad_out.build.mesh import (
-    Mesh,
-    chord_errors,
-    face_areas,
-    is_watertight,
-    manifold_volume,
-    mesh_volume,
-    owners,
-    read_stl,
-    write_stl,
-)
 from cad_out.build.part import as_part
 from cad_out.build.process import run_apart
-from cad_out.build.worker import FACTS, MESH, STANDARD, STEP
+from cad_out.build.worker import FACTS, MESH, SCENES, STANDARD, STEP
 
 __all__ = [
     "FACTS",
     "MESH",
+    "SCENES",
     "STANDARD",
     "STEP",
-    "Mesh",
     "as_part",
-    "chord_errors",
-    "face_areas",
-    "is_watertight",
-    "manifold_volume",
-    "mesh_volume",
-    "owners",
-    "read_stl",
     "run_apart",
     "run_kernel",
-    "write_stl",
 ]

@@ -1,10 +1,11 @@
 """Questions to the kernel about a shape, and the names of its faces."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GeomAbs import GeomAbs_SurfaceType
@@ -14,6 +15,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
 from artefact.body import Standard
+from cad_out.details import Details
 from twin.errors import NotBuildable
 from twin.frames import Array
 
@@ -35,6 +37,26 @@ def faces_of(shape: Any) -> list[Any]:
         found.append(TopoDS.Face(explorer.Current()))
         explorer.Next()
     return found
+
+
+def edges_of(shape: Any) -> list[Any]:
+    """Edges of a shape, each once."""
+    found, seen = [], set()
+    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_EDGE)
+    while explorer.More():
+        edge = TopoDS.Edge(explorer.Current())
+        if edge not in seen and not BRep_Tool.Degenerated_s(edge):
+            seen.add(edge)
+            found.append(edge)
+        explorer.Next()
+    return found
+
+
+def ends_and_middle(edge: Any) -> Array:
+    """Five points along an edge, (5, 3), mm."""
+    curve = BRepAdaptor_Curve(edge)
+    t = np.linspace(curve.FirstParameter(), curve.LastParameter(), 5)
+    return np.array([_coordinates(curve.Value(float(at))) for at in t])
 
 
 def solids_of(shape: Any) -> list[Any]:
@@ -68,22 +90,49 @@ def is_closed(shape: Any) -> bool:
     return bool(shells) and all(bool(BRep_Tool.IsClosed_s(shell)) for shell in shells)
 
 
-def named_faces(standard: Standard, solid: Any, surfaces: dict[str, Any]) -> dict[str, Any]:
+@dataclass(frozen=True, eq=False)
+class Named:
+    """What faces are named after.
+
+    Attributes:
+        standard: Whose body it is.
+        details: Of it.
+        surfaces: The kernel's surfaces of the patches, by name.
+    """
+
+    standard: Standard
+    details: Details
+    surfaces: dict[str, Any]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names that faces of the body carry."""
+        return body_faces(self.standard, self.details)
+
+
+def body_faces(standard: Standard, details: Details) -> tuple[str, ...]:
+    """Names that faces of a standard's body carry."""
+    patches = tuple(patch.name for patch in standard.patches)
+    holes = [name for hole in standard.holes for name in (hole.name, f"{hole.name}_BORE")]
+    return (*patches, standard.plane.name, *details.face_names, *holes)
+
+
+def named_faces(wanted: Named, solid: Any) -> dict[str, Any]:
     """Names of the faces that matter, found by the identity or the place of their surface."""
     named: dict[str, Any] = {}
     for face in faces_of(solid):
-        name = _spline_name(face, surfaces) or _elementary_name(face, standard)
-        if name is not None and name in named and name[:2] in ("FF", "SP"):
-            raise NotBuildable(f"standard '{standard.name}': {name} is cut into several faces")
+        name = _spline_name(face, wanted.surfaces) or _elementary_name(face, wanted)
+        if name is not None and name in named and name.startswith("FF"):
+            raise NotBuildable(f"standard '{wanted.standard.name}': {name} is cut into pieces")
         # Of several pieces of one plane the largest carries the name.
         if name is not None and (name not in named or _area(face) > _area(named[name])):
             named[name] = face
-    missing = sorted(set(standard.face_names) - set(named))
+    missing = sorted(set(wanted.names) - set(named))
     if missing:
         raise NotBuildable(
-            f"standard '{standard.name}': {', '.join(missing)} got lost in the solid"
+            f"standard '{wanted.standard.name}': {', '.join(missing)} got lost in the solid"
         )
-    return {name: named[name] for name in standard.face_names}
+    return {name: named[name] for name in wanted.names}
 
 
 def _spline_name(face: Any, surfaces: dict[str, Any]) -> str | None:
@@ -91,40 +140,71 @@ def _spline_name(face: Any, surfaces: dict[str, Any]) -> str | None:
     return next((name for name, put_in in surfaces.items() if surface is put_in), None)
 
 
-def _elementary_name(face: Any, standard: Standard) -> str | None:
-    """Name of a sphere, a horizontal plane or a cylinder of a hole by its place."""
+def _elementary_name(face: Any, wanted: Named) -> str | None:
+    """Name of a plane, a cylinder or a cone by its place."""
     shape = BRepAdaptor_Surface(face)
     kind = shape.GetType()
-    if kind == GeomAbs_SurfaceType.GeomAbs_Sphere:
-        return _sphere_name(shape.Sphere(), standard)
     if kind == GeomAbs_SurfaceType.GeomAbs_Plane:
-        return _plane_name(shape.Plane(), standard)
+        return _plane_name(face, shape.Plane(), wanted)
     if kind == GeomAbs_SurfaceType.GeomAbs_Cylinder:
-        return _hole_name(shape.Cylinder(), standard)
+        return _hole_name(shape.Cylinder(), wanted)
+    if kind == GeomAbs_SurfaceType.GeomAbs_Cone:
+        return _seat_name(shape.Cone(), wanted)
     return None
 
 
-def _sphere_name(ball: Any, standard: Standard) -> str | None:
-    centre = _coordinates(ball.Location())
-    matches = (s.name for s in standard.spheres if np.abs(centre - s.centre).max() < _SAME)
-    return next(matches, None)
-
-
-def _plane_name(plane: Any, standard: Standard) -> str | None:
-    if abs(abs(plane.Axis().Direction().Z()) - 1.0) > 1e-12:
+def _plane_name(face: Any, plane: Any, wanted: Named) -> str | None:
+    axis = plane.Axis().Direction()
+    normal, place = _coordinates(axis), _coordinates(plane.Location())
+    standard = wanted.standard
+    if abs(abs(normal[2]) - 1.0) < 1e-12:
+        if abs(place[2] - standard.base.thickness) < _SAME:
+            return standard.plane.name
+        if abs(place[2]) < _SAME:
+            return _pad_name(centre(face), wanted.details)
         return None
-    height = plane.Location().Z()
-    places = {"SEAT": 0.0, standard.plane.name: standard.base.thickness}
-    return next((name for name, z in places.items() if abs(height - z) < _SAME), None)
+    for name in ("DATUM_B", "DATUM_C"):
+        side = wanted.details.sides[name]
+        out = np.array([*side.normal, 0.0])
+        if abs(abs(normal @ out) - 1.0) < 1e-12 and abs(place @ out - side.offset) < _SAME:
+            return name
+    return None
 
 
-def _hole_name(cylinder: Any, standard: Standard) -> str | None:
-    centre = _coordinates(cylinder.Location())
-    for hole in standard.holes:
-        if np.hypot(centre[0] - hole.x, centre[1] - hole.y) < _SAME:
+def _pad_name(place: Array, details: Details) -> str:
+    if not details.pads:
+        return "SEAT"
+    return min(details.pads, key=lambda pad: np.hypot(place[0] - pad.x, place[1] - pad.y)).name
+
+
+def _hole_name(cylinder: Any, wanted: Named) -> str | None:
+    place = _coordinates(cylinder.Location())
+    for bore in wanted.details.bores:
+        off = np.cross(place - bore.mouth, bore.direction)
+        if np.linalg.norm(off) < _SAME and abs(cylinder.Radius() - bore.radius) < _SAME:
+            return bore.name
+    for hole in wanted.standard.holes:
+        if np.hypot(place[0] - hole.x, place[1] - hole.y) < _SAME:
             bored = abs(cylinder.Radius() - hole.bore_radius) < _SAME
             return f"{hole.name}_BORE" if bored else hole.name
     return None
+
+
+def _seat_name(cone: Any, wanted: Named) -> str | None:
+    """A countersink, which is wider than any post tapers."""
+    tip = _coordinates(cone.Apex())
+    for sphere in wanted.standard.spheres:
+        seat = wanted.details.seats[sphere.name]
+        if np.linalg.norm(tip - [*sphere.centre[:2], seat.bottom]) < 1e-5:
+            return f"{sphere.name}_SEAT"
+    return None
+
+
+def centre(face: Any) -> Array:
+    """Centroid of a face, (3,), mm."""
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(face, properties)
+    return _coordinates(properties.CentreOfMass())
 
 
 def _area(face: Any) -> float:

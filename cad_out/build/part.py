@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 def as_part(standard: Standard) -> tuple[build123d.Solid, dict[str, build123d.Face]]:
-    """The standard and its named faces as objects of build123d.
+    """The standard's body and its named faces as objects of build123d.
 
-    The solid is the one that `export_standard` writes. It is built in this process, where a crash
+    The solid is the body that `export_standard` writes. It is built in this process, where a crash
     of the CAD kernel is a crash of the caller's.
 
     Returns:
-        The solid, labelled with the standard's name, and its faces by name: FF1 ..., SPH1 ...,
-        DATUM_A, SEAT, bores and holes.
+        The solid, labelled with the standard's name, and its faces by name: FF1 ..., DATUM_A,
+        seats, bores and holes.
 
     Raises:
         NotBuildable: The kernel's result is not one valid solid.
@@ -29,8 +29,9 @@ def as_part(standard: Standard) -> tuple[build123d.Solid, dict[str, build123d.Fa
     from build123d import Face, Solid
 
     from cad_out.build.solid import build_solid
+    from cad_out.details import details_of
 
-    built = build_solid(standard)
+    built = build_solid(standard, details_of(standard))
     solid = Solid(built.shape)
     solid.label = standard.name
     faces = {name: Face(face) for name, face in built.faces.items()}

@@ -1,57 +1,70 @@
-"""The standard as one boundary-representation solid, faces found by the surfaces put in."""
+"""The standard's body as one solid of the CAD kernel, faces found by the surfaces put in."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common, BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
-from OCP.BRepBuilderAPI import (
-    BRepBuilderAPI_MakeEdge,
-    BRepBuilderAPI_MakeFace,
-    BRepBuilderAPI_MakeSolid,
-    BRepBuilderAPI_MakeWire,
-)
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeSolid
 from OCP.BRepClass3d import BRepClass3d
-from OCP.BRepPrimAPI import (
-    BRepPrimAPI_MakeBox,
-    BRepPrimAPI_MakeCone,
-    BRepPrimAPI_MakeCylinder,
-    BRepPrimAPI_MakePrism,
-    BRepPrimAPI_MakeSphere,
-)
-from OCP.collections import Array1_double, Array1_int, Array2_gp_Pnt, List_TopoDS_Shape
+from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakePrism
+from OCP.collections import Array1_double, Array1_int, Array2_gp_Pnt
 from OCP.Geom import Geom_BSplineSurface
-from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec
+from OCP.gp import gp_Ax2, gp_Pnt, gp_Vec
 from OCP.ShapeCustom import ShapeCustom
 from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 
-from artefact.body import Base, DatumSphere, FreeformPatch, MountingHole, Standard
-from cad_out.build.faces import is_valid, named_faces, shells_of, solids_of, volume
+from artefact.body import BLEND, Base, DatumSphere, FreeformPatch, MountingHole, Standard
+from cad_out.build.faces import (
+    Named,
+    edges_of,
+    ends_and_middle,
+    is_valid,
+    named_faces,
+    shells_of,
+    solids_of,
+    volume,
+)
+from cad_out.build.letters import engraved
+from cad_out.build.primitives import (
+    boolean,
+    box,
+    cone,
+    direction,
+    drilled,
+    plate,
+    point,
+    turned,
+)
+from cad_out.details import RELIEF, Details, Pad, Seat, Side, relief_profile
 from twin.errors import NotBuildable
 from twin.frames import Array, apply
 
 _FACE_TOLERANCE = 1e-7  # mm, of the kernel's own edges
-_SAME = 1e-7  # mm: two points or radii are one
-_ROOT = 2.0  # mm a stem goes on into the base, so that no two faces coincide
+_ROOT = 2.0  # mm a post goes on into the base, so that no two faces coincide
+_ON = 1e-5  # mm: an edge lies on an outline
 
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A finished solid of the kernel.
+    """A finished body of the kernel.
 
     Attributes:
         shape: The solid.
-        faces: Named faces: FF1 ..., SPH1 ..., DATUM_A, SEAT, bores and holes.
-        volume: In mm^3.
+        plain: The same without its lettering, which needs a hundred times as many triangles.
+        faces: Named faces: FF1 ..., DATUM_A, DATUM_B, DATUM_C, seats, bores and holes.
+        plain_faces: The same of the plain body.
     """
 
     shape: Any
+    plain: Any
     faces: dict[str, Any]
-    volume: float
+    plain_faces: dict[str, Any]
 
 
-def build_solid(standard: Standard) -> Solid:
-    """One valid closed solid: columns, one fuse, one cut, faces named by identity.
+def build_solid(standard: Standard, details: Details) -> Solid:
+    """One valid closed solid: columns and posts, one fuse, blends, one cut, lettering.
 
     Every column is the prism of its spline face (6 mm larger than the pad) cut out by the pad's
     own box, so its walls are planes and its lid is the spline itself, not an approximation.
@@ -64,28 +77,33 @@ def build_solid(standard: Standard) -> Solid:
     """
     surfaces = {patch.name: spline_surface(patch) for patch in standard.patches}
     parts = [_column(patch, surfaces[patch.name], standard.base) for patch in standard.patches]
-    parts += [_stem(sphere) for sphere in standard.spheres]
-    parts += [_ball(sphere) for sphere in standard.spheres]
+    parts += [_post(sphere, details.seats[sphere.name]) for sphere in standard.spheres]
     if standard.core is not None:
-        parts.append(
-            _cone(
-                0.0,
-                0.0,
-                0.5 * standard.base.thickness,
-                standard.core.height,
-                standard.core.low_radius,
-                standard.core.high_radius,
-            )
-        )
-    body = _boolean(BRepAlgoAPI_Fuse(), [_plate(standard.base)], parts, "joining the columns")
-    tools = [tool for hole in standard.holes for tool in _hole(hole, standard.base)]
-    if tools:
-        body = _boolean(BRepAlgoAPI_Cut(), [body], tools, "drilling the holes")
+        core, low = standard.core, 0.5 * standard.base.thickness
+        parts.append(cone(0.0, 0.0, low, core.height, core.low_radius, core.high_radius))
+    body = boolean(BRepAlgoAPI_Fuse(), [plate(standard.base)], parts, "joining the columns")
     merged = ShapeUpgrade_UnifySameDomain(body, True, True, False)
     merged.Build()
-    # Faces on left-handed or located primitives would lose their names in the STEP file.
-    solid = _only_solid(ShapeCustom.DirectFaces_s(merged.Shape()), standard.name)
-    return Solid(solid, named_faces(standard, solid, surfaces), volume(solid))
+    body = _blended(_only_solid(merged.Shape(), standard.name), standard)
+    tools = [tool for hole in standard.holes for tool in _hole(hole, standard.base)]
+    tools += [_flat(side, standard.base) for side in details.sides.values() if side.flat]
+    tools += [drilled(bore) for bore in details.bores]
+    tools += [_relief(details.pads, standard.base)] if details.pads else []
+    if tools:
+        body = boolean(BRepAlgoAPI_Cut(), [body], tools, "drilling the holes")
+    plain = _finished(body, standard.name)
+    letters = engraved(details.lettering)
+    solid = plain
+    if letters:
+        body = boolean(BRepAlgoAPI_Cut(), [plain], letters, "engraving")
+        solid = _finished(body, standard.name)
+    wanted = Named(standard, details, surfaces)
+    return Solid(solid, plain, named_faces(wanted, solid), named_faces(wanted, plain))
+
+
+def _finished(body: Any, name: str) -> Any:
+    """One valid solid; faces on left-handed primitives would lose their names in the STEP file."""
+    return _only_solid(ShapeCustom.DirectFaces_s(body), name)
 
 
 def spline_surface(patch: FreeformPatch) -> Any:
@@ -120,94 +138,109 @@ def _column(patch: FreeformPatch, surface: Any, base: Base) -> Any:
     a, b = patch.half_size
     T = patch.T_artefact_patch
     corner = T[:3, 3] - a * T[:3, 0] - b * T[:3, 1] - patch.depth * T[:3, 2]
-    frame = gp_Ax2(_point(corner), _direction(T[:3, 2]), _direction(T[:3, 0]))
+    frame = gp_Ax2(point(corner), direction(T[:3, 2]), direction(T[:3, 0]))
     height = patch.depth + float(patch.heights.max()) + 5.0
-    box = BRepPrimAPI_MakeBox(frame, 2.0 * a, 2.0 * b, height).Shape()
-    column = _boolean(BRepAlgoAPI_Common(), [prism], [box], f"trimming {patch.name}")
+    trim = BRepPrimAPI_MakeBox(frame, 2.0 * a, 2.0 * b, height).Shape()
+    column = boolean(BRepAlgoAPI_Common(), [prism], [trim], f"trimming {patch.name}")
     end = [[x, y, -patch.depth] for x in (-a, a) for y in (-b, b)]
     if apply(T, np.array(end))[:, 2].min() > 0.5 * base.thickness:
         return column
     far = 1000.0
-    above = BRepPrimAPI_MakeBox(
-        gp_Pnt(-far, -far, 0.5 * base.thickness), 2.0 * far, 2.0 * far, far
-    ).Shape()
-    return _boolean(BRepAlgoAPI_Common(), [column], [above], f"cutting off {patch.name}")
+    above = box([-far, -far, 0.5 * base.thickness], [far, far, far])
+    return boolean(BRepAlgoAPI_Common(), [column], [above], f"cutting off {patch.name}")
 
 
-def _plate(base: Base) -> Any:
-    """The base: an extruded rectangle with rounded corners, down to a disc."""
-    a, b = base.half_size
-    r = base.corner_radius
-    wire = BRepBuilderAPI_MakeWire()
-    corners = ((a - r, b - r, 0), (r - a, b - r, 1), (r - a, r - b, 2), (a - r, r - b, 3))
-    starts: list[tuple[float, float]] = []
-    ends: list[tuple[float, float]] = []
-    for x, y, quarter in corners:
-        angle = quarter * np.pi / 2.0
-        for points, turned in ((starts, angle), (ends, angle + np.pi / 2.0)):
-            points.append((x + r * np.cos(turned), y + r * np.sin(turned)))
-    for k, (x, y, _) in enumerate(corners):
-        circle = gp_Circ(gp_Ax2(gp_Pnt(x, y, 0.0), gp_Dir(0.0, 0.0, 1.0)), r)
-        start, end = gp_Pnt(*starts[k], 0.0), gp_Pnt(*ends[k], 0.0)
-        wire.Add(BRepBuilderAPI_MakeEdge(circle, start, end).Edge())
-        following = starts[(k + 1) % 4]
-        if np.hypot(following[0] - ends[k][0], following[1] - ends[k][1]) > _SAME:
-            wire.Add(BRepBuilderAPI_MakeEdge(end, gp_Pnt(*following, 0.0)).Edge())
-    outline = BRepBuilderAPI_MakeFace(wire.Wire()).Face()
-    return BRepPrimAPI_MakePrism(outline, gp_Vec(0.0, 0.0, base.thickness)).Shape()
+def _post(sphere: DatumSphere, seat: Seat) -> Any:
+    """Cone up to the land round the seat, and on downwards into the base by the same taper."""
+    taper = (sphere.foot_radius - sphere.stem_radius) / (sphere.centre[2] - sphere.foot)
+    low = sphere.foot - _ROOT
+    profile = [
+        (0.0, low),
+        (sphere.foot_radius + _ROOT * taper, low),
+        (seat.top_radius, seat.top),
+        (seat.rim_radius, seat.top),
+        (0.0, seat.bottom),
+    ]
+    return turned(float(sphere.centre[0]), float(sphere.centre[1]), profile)
 
 
-def _cone(
-    x: float, y: float, low: float, high: float, low_radius: float, high_radius: float
-) -> Any:
-    axis = gp_Ax2(gp_Pnt(float(x), float(y), float(low)), gp_Dir(0.0, 0.0, 1.0))
-    if abs(low_radius - high_radius) < _SAME:
-        return BRepPrimAPI_MakeCylinder(axis, float(low_radius), float(high - low)).Shape()
-    return BRepPrimAPI_MakeCone(
-        axis, float(low_radius), float(high_radius), float(high - low)
-    ).Shape()
+def _blended(body: Any, standard: Standard) -> Any:
+    """The body with its feet rounded into the plate."""
+    edges = [edge for edge in edges_of(body) if _is_foot(ends_and_middle(edge), standard)]
+    if not edges:
+        return body
+    maker = BRepFilletAPI_MakeFillet(body)
+    for edge in edges:
+        maker.Add(BLEND, edge)
+    maker.Build()
+    if not maker.IsDone():
+        raise NotBuildable(
+            f"standard '{standard.name}': the CAD kernel cannot round {len(edges)} inner edges "
+            f"with {BLEND:g} mm"
+        )
+    return _only_solid(maker.Shape(), standard.name)
 
 
-def _stem(sphere: DatumSphere) -> Any:
-    """Stem up to the ball's centre, and on downwards into the base by the same taper."""
-    top = sphere.centre[2]
-    taper = (sphere.foot_radius - sphere.stem_radius) / (top - sphere.foot)
-    foot_radius = sphere.foot_radius + _ROOT * taper
-    return _cone(
-        sphere.centre[0],
-        sphere.centre[1],
-        sphere.foot - _ROOT,
-        top,
-        foot_radius,
-        sphere.stem_radius,
-    )
-
-
-def _ball(sphere: DatumSphere) -> Any:
-    axis = gp_Ax2(_point(sphere.centre), gp_Dir(0.0, 0.0, 1.0))
-    return BRepPrimAPI_MakeSphere(axis, float(sphere.radius)).Shape()
+def _is_foot(points: Array, standard: Standard) -> bool:
+    """Whether an edge runs round the foot of a pillar or a post that gets a blend."""
+    if np.abs(points[:, 2] - standard.base.thickness).max() > _ON:
+        return False
+    for patch in standard.patches:
+        beyond = np.abs(points[:, :2] - patch.T_artefact_patch[:2, 3]) - patch.half_size
+        if patch.name in standard.blended and np.abs(beyond.max(axis=1)).max() < _ON:
+            return True
+    for s in standard.spheres:
+        off = np.hypot(*(points[:, :2] - s.centre[:2]).T) - s.foot_radius
+        if s.name in standard.blended and np.abs(off).max() < _ON:
+            return True
+    return False
 
 
 def _hole(hole: MountingHole, base: Base) -> list[Any]:
-    through = _cone(hole.x, hole.y, -1.0, base.thickness + 1.0, hole.radius, hole.radius)
+    through = cone(hole.x, hole.y, -1.0, base.thickness + 1.0, hole.radius, hole.radius)
     floor = base.thickness - hole.bore_depth
-    bore = _cone(hole.x, hole.y, floor, base.thickness + 1.0, hole.bore_radius, hole.bore_radius)
+    bore = cone(hole.x, hole.y, floor, base.thickness + 1.0, hole.bore_radius, hole.bore_radius)
     return [through, bore]
 
 
-def _boolean(operation: Any, arguments: list[Any], tools: list[Any], what: str) -> Any:
-    """Result of one boolean operation, refused unless it is done and valid."""
-    first, second = List_TopoDS_Shape(), List_TopoDS_Shape()
-    for shape in arguments:
-        first.Append(shape)
-    for shape in tools:
-        second.Append(shape)
-    operation.SetArguments(first)
-    operation.SetTools(second)
-    operation.Build()
-    if not operation.IsDone() or not solids_of(operation.Shape()):
-        raise NotBuildable(f"the CAD kernel failed at {what}")
-    return operation.Shape()
+def _flat(side: Side, base: Base) -> Any:
+    """What is taken off a round side for a plane."""
+    far = 2.0 * max(base.half_size)
+    low, high = np.array([-far, -far, -1.0]), np.array([far, far, base.thickness])
+    axis = 0 if side.normal[0] else 1
+    if side.normal[axis] > 0:
+        low[axis] = side.offset
+    else:
+        high[axis] = -side.offset
+    return box(low.tolist(), high.tolist())
+
+
+def _relief(pads: tuple[Pad, ...], base: Base) -> Any:
+    """What is taken off the underside so that it stands on its pads alone."""
+    a, b = (half + 1.0 for half in base.half_size)
+    slab = box([-a, -b, -1.0], [a, b, RELIEF])
+    standing = []
+    for pad in pads:
+        wide, below = relief_profile(pad)
+        radius = RELIEF - below
+        # of the arc from the flank's lower end to the floor, seen from the middle of its circle
+        half = 0.5 * float(np.arccos(-below / radius))
+        middle = wide - radius * np.sin(half), below + radius * np.cos(half)
+        standing.append(
+            turned(
+                pad.x,
+                pad.y,
+                [
+                    (0.0, -2.0),
+                    (pad.radius, -2.0),
+                    (pad.radius, 0.0),
+                    (wide, RELIEF, *middle),
+                    (wide, RELIEF + 1.0),
+                    (0.0, RELIEF + 1.0),
+                ],
+            )
+        )
+    return boolean(BRepAlgoAPI_Cut(), [slab], standing, "relieving the underside")
 
 
 def _only_solid(shape: Any, name: str) -> Any:
@@ -232,11 +265,3 @@ def without_pockets(solid: Any) -> Any:
     if len(shells_of(solid)) == 1:
         return solid
     return BRepBuilderAPI_MakeSolid(BRepClass3d.OuterShell_s(solid)).Solid()
-
-
-def _point(p: Array) -> Any:
-    return gp_Pnt(float(p[0]), float(p[1]), float(p[2]))
-
-
-def _direction(d: Array) -> Any:
-    return gp_Dir(float(d[0]), float(d[1]), float(d[2]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,15 +12,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from artefact.body import Standard, read_standard
-from cad_out.build.mesh import Mesh, chord_errors, welded
+from cad_out.details import details_of
+from cad_out.meshes import (
+    Mesh,
+    Piece,
+    ball_mesh,
+    chord_errors,
+    joined,
+    welded,
+    write_3mf,
+    write_glb,
+)
 from twin.errors import NotBuildable
 
 if TYPE_CHECKING:
+    from cad_out.build.assembly import Product
     from cad_out.build.solid import Solid
 
 STANDARD, STEP, MESH, FACTS = "standard.toml", "standard.step", "mesh.npz", "facts.json"
+SCENES = ("standard.3mf", "standard.glb")
 """Names of the files through which the two processes speak."""
 
+_SCREW_CHORD = 0.05  # mm
 _ROUNDS = 5  # of refinement before the mesh is refused
 _FIRST = 0.75  # of the chord asked for at once: on spheres the kernel overshoots by a quarter
 _FINER = 0.7  # of the last: five rounds end at a sixth of the first
@@ -34,37 +48,68 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
         author: For the header of the STEP file.
         organisation: The same.
     """
+    from cad_out.build.assembly import products_of
     from cad_out.build.exchange import Origin, write_step
-    from cad_out.build.solid import build_solid
 
     place = Path(folder)
     standard = read_standard(place / STANDARD)
-    solid = build_solid(standard)
+    solid, products = products_of(standard, details_of(standard))
     design = hashlib.sha256((place / STANDARD).read_bytes()).hexdigest()
-    write_step(place / STEP, solid, standard, Origin(design, author, organisation))
+    write_step(place / STEP, products, standard, Origin(design, author, organisation))
     mesh = _mesh(standard, solid, chord)
     np.savez(place / MESH, corners=mesh.corners, triangles=mesh.triangles, owner=mesh.owner)
-    (place / FACTS).write_text(json.dumps({"volume": solid.volume}), encoding="utf-8")
+    pieces = _pieces(standard, products, mesh)
+    write_3mf(place / SCENES[0], standard.name, pieces)
+    write_glb(place / SCENES[1], pieces)
+    volumes = {product.name: product.volume for product in products}
+    (place / FACTS).write_text(json.dumps({"volumes": volumes}), encoding="utf-8")
+
+
+def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list[Piece]:
+    """Triangles of every product, the screws as coarse as a picture needs."""
+    from cad_out.build.assembly import COLOURS
+    from cad_out.build.reader import tessellate
+
+    balls, out = {sphere.name for sphere in standard.spheres}, []
+    for product in products:
+        if product.name in balls:
+            mine = mesh.of(mesh.owner == product.name)
+        elif product.faces:
+            mine = mesh.of(~np.isin(mesh.owner, list(balls)))
+        else:
+            corners, triangles, numbers = tessellate(product.shape, _SCREW_CHORD)
+            mine = welded(corners, triangles, np.full(len(numbers), ""))
+        role = {
+            name: next((c for start, c in COLOURS.items() if name.startswith(start)), None)
+            for name in np.unique(mine.owner)
+        }
+        colours = [product.colour if role[name] is None else role[name] for name in mine.owner]
+        out.append(Piece(product.name, mine, np.array(colours), product.places))
+    return out
 
 
 def reread(folder: str) -> None:
     """Read the STEP file of a folder anew and write down what the kernel finds in it."""
-    from cad_out.build.exchange import read_step
+    from cad_out.build.reader import read_step
 
     facts = asdict(read_step(Path(folder) / STEP))
     (Path(folder) / FACTS).write_text(json.dumps(facts), encoding="utf-8")
 
 
 def _mesh(standard: Standard, solid: Solid, chord: float) -> Mesh:
-    """Mesh with the chord error kept, which the kernel takes for a wish: measured and refined."""
-    from cad_out.build.exchange import face_numbers, tessellate
+    """Mesh of body and balls with the chord error kept.
 
-    names = {number: name for name, number in face_numbers(solid).items()}
+    The kernel takes the chord for a wish: it is measured, and the mesh refined.
+    """
+    from cad_out.build.reader import face_numbers, tessellate
+
+    names = {number: name for name, number in face_numbers(solid.plain, solid.plain_faces).items()}
+    balls = [ball_mesh(sphere, chord) for sphere in standard.spheres]
     asked = _FIRST * chord
     for _ in range(_ROUNDS):
-        corners, triangles, numbers = tessellate(solid, asked)
+        corners, triangles, numbers = tessellate(solid.plain, asked)
         owner = np.array([names.get(number, "") for number in range(numbers.max() + 1)])[numbers]
-        mesh = welded(corners, triangles, owner)
+        mesh = joined([welded(corners, triangles, owner), *balls])
         errors = chord_errors(standard, mesh.corners, mesh.triangles, mesh.owner)
         worst = max(errors.values())
         if worst <= chord:

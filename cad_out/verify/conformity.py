@@ -1,25 +1,38 @@
 """What was built, measured: the files are read anew and compared with the design."""
 
 import json
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from artefact.body import Standard
-from cad_out.build import (
-    FACTS,
-    STEP,
+from artefact.body import BLEND, Standard
+from cad_out.build import FACTS, STEP, run_kernel
+from cad_out.details import BALL, Details, Screw, Tolerance, details_of, notes_of, tolerances_of
+from cad_out.meshes import (
     chord_errors,
     face_areas,
+    inner_folds,
     is_watertight,
     manifold_volume,
     mesh_volume,
     read_stl,
-    run_kernel,
 )
-from cad_out.verify.part21 import SphereFace, SplineFace, file_unit_is_millimetre, read_faces
+from cad_out.verify.part21 import (
+    Instance,
+    SphereFace,
+    SplineFace,
+    file_unit_is_millimetre,
+    read_entities,
+    read_faces,
+    read_instances,
+)
+from cad_out.verify.part21_tolerances import read_notes, read_tolerances
 from twin.errors import NotBuildable
+from twin.files import write_whole
+from twin.frames import Array
 from twin.units import NM, UM
 
 FACE_LIMIT = 0.01 * UM
@@ -31,6 +44,10 @@ VOLUME_LIMIT = 1e-7
 AREA_LIMIT = 1e-3
 """Relative: a face that a neighbour's column cuts into, or that is trimmed elsewhere, is found."""
 
+SHARP_LIMIT = 0.1
+"""Length of sharp inner edges on an upright standard, mm."""
+
+_SHARP = 0.6  # rad between two triangles; those of a blend are half as far apart
 _SAMPLES = 61  # points along each side of a face that is compared
 
 
@@ -40,20 +57,26 @@ class Conformity:
 
     Attributes:
         solids: In the STEP file.
+        expected: Solids that should be there: the body, balls and screws.
+        products: Parts that the text of the STEP file names, with the number of their instances.
+        displaced: Instances of body or balls that do not stand where they were designed.
         is_valid: The kernel finds no fault in the solid it has read.
         is_closed: All its shells are closed.
-        shells: One, or more where the solid has closed pockets inside.
+        shells: One a solid, or more where one has closed pockets inside.
         is_millimetre: The file's length unit.
-        volume: Of the solid that was read, mm^3.
-        volume_built: Of the solid that was built, mm^3.
-        mass: From volume and density, kg.
+        volume: Of body and balls as read, mm^3.
+        volume_built: Of them as built, mm^3.
+        mass: Of body and balls, kg; the screws stay with the table.
         names: Faces that carry a name in the file.
         missing: Faces that should and do not.
+        missing_details: What of the workshop's additions found no room, in words.
+        untold: Tolerances and notes that not both readers find as they were meant.
         face_deviation: Largest distance from the design by face, without any CAD kernel.
         area_error: Of every patch's trimmed face in the mesh against the design, relative.
         is_watertight: Of the STL file, by trimesh.
         mesh_volume: By the divergence theorem, mm^3.
         manifold_volume: By manifold3d, mm^3; nan where it refuses the mesh.
+        sharp: Length of inner edges that no ball-end cutter makes, bores left out, mm.
         triangles: In the STL file.
         chord: Asked for, mm.
         chord_error: Largest distance of the mesh from the exact surface by feature.
@@ -62,6 +85,9 @@ class Conformity:
     """
 
     solids: int
+    expected: int
+    products: dict[str, int]
+    displaced: tuple[str, ...]
     is_valid: bool
     is_closed: bool
     shells: int
@@ -71,11 +97,14 @@ class Conformity:
     mass: float
     names: tuple[str, ...]
     missing: tuple[str, ...]
+    missing_details: tuple[str, ...]
+    untold: tuple[str, ...]
     face_deviation: dict[str, float]
     area_error: dict[str, float]
     is_watertight: bool
     mesh_volume: float
     manifold_volume: float
+    sharp: float
     triangles: int
     chord: float
     chord_error: dict[str, float]
@@ -104,15 +133,20 @@ class Conformity:
         bulge = abs(self.mesh_volume / self.volume - 1.0)
         split = abs(self.manifold_volume / self.mesh_volume - 1.0)
         checks = (
-            (self.solids == 1, f"{self.solids} solids in the STEP file, expected 1"),
-            (self.is_valid, "the solid in the STEP file is not valid"),
-            (self.is_closed, "the shell in the STEP file is not closed"),
+            (
+                self.solids == self.expected == sum(self.products.values()),
+                f"{self.solids} solids in the STEP file, expected {self.expected}",
+            ),
+            (not self.displaced, f"not in its place: {', '.join(self.displaced)}"),
+            (self.is_valid, "a solid in the STEP file is not valid"),
+            (self.is_closed, "a shell in the STEP file is not closed"),
             (
                 self.shells == self.solids,
-                f"{self.shells} shells in {self.solids} solid: closed pockets inside",
+                f"{self.shells} shells in {self.solids} solids: closed pockets inside",
             ),
             (self.is_millimetre, "the STEP file is not in millimetres"),
             (not self.missing, f"faces without their name: {', '.join(self.missing)}"),
+            (not self.untold, f"not in the STEP file as meant: {', '.join(self.untold)}"),
             (drift <= VOLUME_LIMIT, f"the volume changes by {drift:.1e} on re-reading"),
             (
                 deviation <= FACE_LIMIT,
@@ -122,6 +156,10 @@ class Conformity:
             (self.is_watertight, "trimesh finds the STL file not watertight"),
             # Written so that nan, manifold3d's refusal, is a fault.
             (split <= 1e-5, "manifold3d does not agree with trimesh about the STL file"),
+            (
+                self.sharp <= SHARP_LIMIT,
+                f"{self.sharp:.1f} mm of inner edges without a radius of {BLEND:g} mm",
+            ),
             (bulge <= 1e-3, f"the mesh has {bulge:.1e} less or more volume than the solid"),
             (
                 chord <= self.chord + NM,
@@ -132,7 +170,12 @@ class Conformity:
 
 
 def measure(
-    standard: Standard, folder: Path, stl: Path, owner: np.ndarray, built: float, chord: float
+    standard: Standard,
+    folder: Path,
+    stl: Path,
+    owner: np.ndarray,
+    built: dict[str, float],
+    chord: float,
 ) -> Conformity:
     """Read the STEP and STL files anew and compare them with the design.
 
@@ -141,7 +184,7 @@ def measure(
         folder: With the STEP file; the kernel's second process answers through it.
         stl: The STL file.
         owner: Feature of each of its triangles, (F,).
-        built: Volume of the solid before it was written, mm^3.
+        built: Volume of every product before it was written, mm^3.
         chord: Asked for, mm.
 
     Returns:
@@ -149,30 +192,91 @@ def measure(
     """
     run_kernel("reread", folder)
     found = json.loads((folder / FACTS).read_text(encoding="utf-8"))
-    faces = read_faces(folder / STEP)
+    entities, details = read_entities(folder / STEP), details_of(standard)
+    faces, instances = read_faces(folder / STEP, entities), read_instances(entities)
     corners, triangles = read_stl(stl)
     named = set(faces) & set(found["names"])
+    screws = {kind.name: kind for kind in details.screws}
+    bought = sum(len(kind.holes) * built[name] for name, kind in screws.items())
+    volume = found["volume"] - bought
+    balls = sum(built[sphere.name] for sphere in standard.spheres)
     return Conformity(
         solids=found["solids"],
+        expected=1 + len(standard.spheres) + sum(len(kind.holes) for kind in screws.values()),
+        products=dict(Counter(instance.product for instance in instances.values())),
+        displaced=_displaced(standard, instances, details.screws),
         is_valid=found["is_valid"],
         is_closed=found["is_closed"],
         shells=found["shells"],
         is_millimetre=file_unit_is_millimetre(folder / STEP),
-        volume=found["volume"],
-        volume_built=built,
-        mass=standard.material.density * found["volume"],
+        volume=volume,
+        volume_built=sum(v for name, v in built.items() if name not in screws),
+        mass=standard.material.density * (volume - balls) + BALL.density * balls,
         names=tuple(sorted(named)),
-        missing=tuple(name for name in standard.face_names if name not in named),
+        missing=tuple(name for name in face_names(standard, details) if name not in named),
+        missing_details=details.missing,
+        untold=_untold(standard, details, entities, found),
         face_deviation=face_deviations(standard, faces),
         area_error=_area_errors(standard, face_areas(corners, triangles, owner)),
         is_watertight=is_watertight(corners, triangles),
         mesh_volume=mesh_volume(corners, triangles),
         manifold_volume=manifold_volume(corners, triangles),
+        sharp=_sharp(standard, details, corners, triangles),
         triangles=len(triangles),
         chord=chord,
         chord_error=chord_errors(standard, corners, triangles, owner),
         step_bytes=(folder / STEP).stat().st_size,
         stl_bytes=stl.stat().st_size,
+    )
+
+
+def _untold(
+    standard: Standard, details: Details, entities: dict[int, str], found: dict[str, Any]
+) -> tuple[str, ...]:
+    """Tolerances and notes that the text's reader or the kernel's does not find."""
+    of_kernel = {Tolerance(*values) for values in found["tolerances"]}
+    both = of_kernel & set(read_tolerances(entities))
+    wanted = tolerances_of(standard, details)
+    lost = [f"{t.kind} of {t.face}" for t in wanted if t not in both]
+    notes = set(found["notes"]) & set(read_notes(entities))
+    lost += [
+        f"note {n}" for n, note in enumerate(notes_of(standard, details), 1) if note not in notes
+    ]
+    return tuple(lost)
+
+
+def _sharp(standard: Standard, details: Details, corners: Array, triangles: np.ndarray) -> float:
+    """Length of sharp inner edges outside bores, mm; 0 where columns lean and have no blends."""
+    everything = {*(p.name for p in standard.patches), *(s.name for s in standard.spheres)}
+    if not standard.blended or standard.blended < everything:
+        return 0.0
+    middle, length = inner_folds(corners, triangles, _SHARP)
+    inside = np.zeros(len(middle), dtype=bool)
+    for hole in standard.holes:
+        inside |= np.hypot(middle[:, 0] - hole.x, middle[:, 1] - hole.y) < hole.bore_radius + 0.1
+    for bore in details.bores:
+        off = np.linalg.norm(np.cross(middle - bore.mouth, bore.direction), axis=1)
+        inside |= off < bore.radius + 0.1
+    return float(length[~inside].sum())
+
+
+def face_names(standard: Standard, details: Details) -> tuple[str, ...]:
+    """Names that faces of body and balls carry."""
+    holes = [name for hole in standard.holes for name in (hole.name, f"{hole.name}_BORE")]
+    return (*standard.features, *details.face_names, *holes)
+
+
+def _displaced(
+    standard: Standard, instances: dict[str, Instance], screws: tuple[Screw, ...]
+) -> tuple[str, ...]:
+    """Instances that are not there, or not where the design has them."""
+    wanted = dict.fromkeys(("BODY", *(s.name for s in standard.spheres)), (0.0, 0.0, 0.0))
+    for kind in screws:
+        wanted |= {f"SCREW_{name}": (x, y, z) for name, x, y, z in kind.holes}
+    return tuple(
+        name
+        for name, place in wanted.items()
+        if name not in instances or np.abs(np.subtract(instances[name].moved, place)).max() > NM
     )
 
 
@@ -216,6 +320,24 @@ def _area_errors(standard: Standard, areas: dict[str, float]) -> dict[str, float
         area = float(weight @ np.sqrt(1.0 + j.hu**2 + j.hv**2))
         errors[patch.name] = abs(areas.get(patch.name, 0.0) / area - 1.0)
     return errors
+
+
+def write_conformity(path: Path, conformity: Conformity) -> None:
+    """Every figure and every limit as JSON; what could not be measured is null."""
+    limits = {
+        "face_deviation_mm": FACE_LIMIT,
+        "volume_change": VOLUME_LIMIT,
+        "area_error": AREA_LIMIT,
+        "chord_error_mm": conformity.chord,
+        "sharp_mm": SHARP_LIMIT,
+    }
+    table = {
+        "format": "conformity/1",
+        "limits": limits,
+        "faults": conformity.faults(),
+        "measured": asdict(conformity),
+    }
+    write_whole(path, json.dumps(table, indent=1, sort_keys=True, allow_nan=False) + "\n")
 
 
 def refuse_faults(name: str, conformity: Conformity) -> None:

@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from artefact.body import Standard, write_standard
-from cad_out.build import FACTS, MESH, STANDARD, STEP, Mesh, run_kernel, write_stl
-from cad_out.verify.conformity import Conformity, measure, refuse_faults
+from cad_out.build import FACTS, MESH, SCENES, STANDARD, STEP, run_kernel
+from cad_out.meshes import Mesh, write_stl
+from cad_out.verify.conformity import Conformity, measure, refuse_faults, write_conformity
 from twin.errors import DesignError
 
-STL = "standard.stl"
+STL, CONFORMITY = "standard.stl", "conformity.json"
 NOT_STATED = "not stated"
 
 
@@ -23,14 +24,14 @@ def export_standard(
     author: str = NOT_STATED,
     organisation: str = NOT_STATED,
 ) -> Conformity:
-    """Build the standard, write standard.step and standard.stl, and prove both against the design.
+    """Build the standard, write STEP, STL, 3MF and glTF, and prove them against the design.
 
-    Both files are built and measured in a folder of their own beside the goal and moved there
+    All files are built and measured in a folder of their own beside the goal and moved there
     together, so a refusal or a crash leaves what was there before.
 
     Args:
         standard: To be built; its limits are the caller's to check.
-        out_dir: Folder for the two files.
+        out_dir: Folder for the files.
         chord: Largest distance of the mesh from the exact faces, mm.
         author: Who is responsible for the design, for the header of the STEP file.
         organisation: Whom the author works for.
@@ -51,7 +52,8 @@ def export_standard(
     try:
         conformity, _ = build_and_measure(standard, place, chord, author, organisation)
         refuse_faults(standard.name, conformity)
-        for name in (STEP, STL):
+        write_conformity(place / CONFORMITY, conformity)
+        for name in (STEP, STL, *SCENES, CONFORMITY):
             (place / name).replace(out_dir / name)
     finally:
         shutil.rmtree(place, ignore_errors=True)
@@ -78,7 +80,7 @@ def build_and_measure(
     """
     write_standard(place / STANDARD, standard)
     run_kernel("build", place, chord, author, organisation)
-    built = json.loads((place / FACTS).read_text(encoding="utf-8"))["volume"]
+    built = json.loads((place / FACTS).read_text(encoding="utf-8"))["volumes"]
     with np.load(place / MESH) as arrays:
         mesh = Mesh(arrays["corners"], arrays["triangles"], arrays["owner"])
     write_stl(place / STL, mesh)

@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from twin.frames import Array
 _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);\s*(?=#\d+\s*=|ENDSEC)", re.S)
 _FACE = re.compile(r"ADVANCED_FACE\('([^']*)',\(([^)]*)\),#(\d+),\.([TF])\.\)")
 _SPLINE = "B_SPLINE_SURFACE_WITH_KNOTS("
+_BREAK = re.compile(r"('(?:[^']|'')*')|\s*\n\s*")
 _REFERENCE = re.compile(r"#(\d+)")
 
 
@@ -40,11 +42,42 @@ class SphereFace:
     radius: float
 
 
-def read_faces(path: Path) -> dict[str, SplineFace | SphereFace | None]:
+class Instance(NamedTuple):
+    """One part of the assembly where it stands."""
+
+    product: str
+    about: str
+    moved: tuple[float, float, float]  # from the part's own origin, mm
+
+
+def read_entities(path: Path) -> dict[int, str]:
+    """Entities of a STEP file by their numbers, without breaks.
+
+    Raises:
+        BadFile: No data section.
+    """
+    text = path.read_text(encoding="utf-8")
+    entities = {int(key): _in_one_line(value) for key, value in _ENTITY.findall(text)}
+    if not entities:
+        raise BadFile(path, "DATA", "no entities", "a STEP file")
+    return entities
+
+
+def _in_one_line(value: str) -> str:
+    """An entity without its breaks; blanks within a text are kept."""
+    if "\n" not in value:
+        return value
+    return _BREAK.sub(lambda match: (match[1] or "").replace("\n", ""), value)
+
+
+def read_faces(
+    path: Path, known: dict[int, str] | None = None
+) -> dict[str, SplineFace | SphereFace | None]:
     """Named faces of a STEP file with the surface under each.
 
     Args:
         path: ISO 10303-21 text.
+        known: Its entities where they were read already.
 
     Returns:
         Spline and sphere faces by name; None for a named face on any other surface.
@@ -52,10 +85,7 @@ def read_faces(path: Path) -> dict[str, SplineFace | SphereFace | None]:
     Raises:
         BadFile: No data section, a face that refers to nothing, or two faces of one name.
     """
-    text = path.read_text(encoding="utf-8")
-    entities = {int(key): re.sub(r"\s*\n\s*", "", value) for key, value in _ENTITY.findall(text)}
-    if not entities:
-        raise BadFile(path, "DATA", "no entities", "a STEP file")
+    entities = read_entities(path) if known is None else known
     faces: dict[str, SplineFace | SphereFace | None] = {}
     for number, entity in entities.items():
         match = _FACE.match(entity)
@@ -68,6 +98,40 @@ def read_faces(path: Path) -> dict[str, SplineFace | SphereFace | None]:
             raise BadFile(path, f"#{number}", f"a reference to #{match[3]}", "an entity")
         faces[match[1]] = _surface(entities, surface)
     return faces
+
+
+def read_instances(entities: dict[int, str]) -> dict[str, Instance]:
+    """Product structure: every instance by its name, with its part and where that stands."""
+    products = _of_kind(entities, "PRODUCT")
+    formations = _of_kind(entities, "PRODUCT_DEFINITION_FORMATION")
+    definitions = _of_kind(entities, "PRODUCT_DEFINITION")
+    shapes = _of_kind(entities, "PRODUCT_DEFINITION_SHAPE")
+    placed = {}
+    for fields in _of_kind(entities, "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION").values():
+        usage = _number(shapes[_number(fields[1])][2])
+        relation = entities[_number(fields[0])]
+        transformation = re.search(r"WITH_TRANSFORMATION\(#(\d+)\)", relation)
+        assert transformation is not None
+        ends = _REFERENCE.findall(entities[int(transformation[1])])
+        origins = [_REFERENCE.findall(entities[int(end)])[0] for end in ends]
+        placed[usage] = np.subtract(*(_point(entities[int(o)]) for o in origins[::-1]))
+    found = {}
+    for number, fields in _of_kind(entities, "NEXT_ASSEMBLY_USAGE_OCCURRENCE").items():
+        product = products[_number(formations[_number(definitions[_number(fields[4])][2])][2])]
+        x, y, z = placed[number]
+        moved = (float(x), float(y), float(z))
+        found[fields[1].strip("'")] = Instance(product[1].strip("'"), product[2].strip("'"), moved)
+    return found
+
+
+def _of_kind(entities: dict[int, str], kind: str) -> dict[int, list[str]]:
+    """Fields of all simple entities of a kind."""
+    start = f"{kind}("
+    return {k: _fields(e[len(start) : -1]) for k, e in entities.items() if e.startswith(start)}
+
+
+def _number(reference: str) -> int:
+    return int(reference.lstrip("#"))
 
 
 def file_unit_is_millimetre(path: Path) -> bool:
@@ -111,9 +175,12 @@ def _spline(entities: dict[int, str], text: str) -> SplineFace:
 
 
 def _fields(text: str) -> list[str]:
-    """Split at the commas outside all parentheses."""
-    fields, depth, begin = [], 0, 0
+    """Split at the commas outside all parentheses and quotes."""
+    fields, depth, begin, quoted = [], 0, 0, False
     for i, letter in enumerate(text):
+        quoted ^= letter == "'"
+        if quoted:
+            continue
         depth += (letter == "(") - (letter == ")")
         if letter == "," and depth == 0:
             fields.append(text[begin:i])

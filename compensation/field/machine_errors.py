@@ -102,6 +102,17 @@ class MachineErrors:
             left_out=tuple(e.name for (e, _), kept in zip(known, is_kept, strict=True) if not kept),
         )
 
+    def with_known(self, errors: Sequence[tuple[Effect, Array]]) -> "MachineErrors":
+        """The same with further errors that are known without uncertainty."""
+        count = sum(len(e.parameters) for e, _ in errors)
+        return replace(
+            self,
+            effects=(*self.effects, *(e for e, _ in errors)),
+            theta=(*self.theta, *(t for _, t in errors)),
+            root=np.vstack([self.root, np.zeros((count, self.root.shape[1]))]),
+            tool_root=np.vstack([self.tool_root, np.zeros((count, self.tool_root.shape[1]))]),
+        )
+
     def touches(
         self,
         q: Array,

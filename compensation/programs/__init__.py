@@ -8,6 +8,7 @@ machine makes it without and with compensation. A new language is a module with 
 
 from compensation.programs.compensation import TOLERANCE, Compensated, compensated, passed
 from compensation.programs.frame import Frame
+from compensation.programs.loads import Load, read_loads
 from compensation.programs.motion import Arc, Keep, Motion
 from compensation.programs.program import Program, read_part_program
 from compensation.programs.shares_file import write_shares
@@ -19,10 +20,12 @@ __all__ = [
     "Compensated",
     "Frame",
     "Keep",
+    "Load",
     "Motion",
     "Program",
     "compensated",
     "passed",
+    "read_loads",
     "read_part_program",
     "write_shares",
     "write_trajectory",

@@ -1,11 +1,12 @@
 """A part program compensated by the inverse of the exact twin, and what that does on the twin."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from compensation.field import MachineErrors, actual_tip, aligned, correction, shifted
+from compensation.programs.loads import forces
 from compensation.programs.motion import Keep, Motion, places
 from compensation.programs.program import Program
 from compensation.tables import Header, point_spacing
@@ -76,6 +77,9 @@ class _Path:
         self.kind = np.array([self.kinds.index(kind) for kind in kinds])
         self.aim = self.frame.datum.deviation(errors)
         self.last = self._last_moves() if _feels_approach(errors) else None
+        usual = np.array(errors.state.force or (0.0, 0.0, 0.0))
+        lines = [m.line for m in self.motions]
+        self.force = forces(lines, program.loads, usual) if program.loads else None
 
     def readings(self, which: IntArray, at: Array) -> Array:
         """Readings of program coordinates on some motions, (N, A)."""
@@ -101,7 +105,8 @@ class _Path:
         length = np.array([length for _, length in self.kinds])[self.kind[which]]
         approach = None if self.last is None else self._approach(which, share)
         elapsed = self.begins[which] + share * self.seconds[which]
-        return self.errors.touches(q, length, approach, elapsed)
+        touches = self.errors.touches(q, length, approach, elapsed)
+        return touches if self.force is None else replace(touches, force=self.force[which])
 
     def needed(self, which: IntArray, share: Array) -> Array:
         """Program coordinates that bring the tool point where it should be, (N, A)."""

@@ -9,6 +9,7 @@ import numpy as np
 from compensation.programs import gcode, klartext
 from compensation.programs.frame import Frame
 from compensation.programs.language import Reading
+from compensation.programs.loads import Load
 from compensation.programs.motion import Item, Motion
 from twin.errors import BadFile
 from twin.files import read_any_text
@@ -28,12 +29,14 @@ class Program:
         frame: Where its zero stands.
         items: Blocks and motions in their order.
         language: Module that writes its blocks.
+        loads: Force of the process on the tool, block by block; elsewhere that of the state.
     """
 
     path: Path
     frame: Frame
     items: tuple[Item, ...]
     language: ModuleType
+    loads: tuple[Load, ...] = ()
 
     @property
     def motions(self) -> list[Motion]:

@@ -119,6 +119,8 @@ def state_text(state: State) -> str:
     words = [f"t={state.time / MINUTE:.6g}min"]
     if state.spindle_rpm is not None:
         words.append(f"rpm={state.spindle_rpm:.6g}")
+    if state.force is not None and any(state.force):
+        words += [f"F{axis}={value:.6g}N" for axis, value in zip("xyz", state.force, strict=True)]
     words += [f"T_{name}={value:.6g}" for name, value in state.temperature.items()]
     return " ".join([*words, *(f"V_{name}={value:.6g}" for name, value in state.value.items())])
 

@@ -10,8 +10,8 @@ from diagnosis.remarks.run_remarks import (
     FewPoses,
     FewTouches,
     FieldShares,
-    HarmonicsAlike,
     HeldOutInDoubt,
+    LoadTooSmall,
     NoiseMisstated,
     NoiseRemembers,
     NotSignificant,
@@ -21,9 +21,11 @@ from diagnosis.remarks.run_remarks import (
     ReaderRemark,
     Remark,
     SearchEnded,
+    ShortBeam,
     WorseThanReplicates,
     remarks,
 )
+from diagnosis.remarks.turns import HarmonicsAlike
 
 __all__ = [
     "ChosenByPrediction",
@@ -33,6 +35,7 @@ __all__ = [
     "FieldShares",
     "HarmonicsAlike",
     "HeldOutInDoubt",
+    "LoadTooSmall",
     "NoiseMisstated",
     "NoiseRemembers",
     "NotSignificant",
@@ -42,6 +45,7 @@ __all__ = [
     "ReaderRemark",
     "Remark",
     "SearchEnded",
+    "ShortBeam",
     "WorseThanReplicates",
     "remarks",
 ]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.fit import MIN_POSES, Fit, UnitMistake, unit_mistake
-from twin.effects import Again, Harmonic, HigherOrder, PositionTable
-from twin.frames import Array
+from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
+from twin.elastic import short_beams
 
 FEW_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""
@@ -20,6 +20,9 @@ DOUBTFUL = 2.0
 FELT = 1e-3
 """Effect of a parameter of its expected size on all touches together, over the noise, below which
 they do not feel it: a rotary axis that stands still."""
+
+LOADED = ("stiffness", "tool-point-stiffness")
+"""Kinds of effects of which a touch tells nothing but by its load."""
 
 FEWEST_REPLICATES = 10
 """Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
@@ -175,17 +178,24 @@ class NotSignificant:
 
 
 @dataclass(frozen=True, slots=True)
-class HarmonicsAlike:
-    """Harmonics of a turn that read as a found one at evenly spaced targets, the lowest first.
+class ShortBeam:
+    """A beam whose length is so few times its depth that the theory of beams is doubtful."""
+
+    effect: str
+    slenderness: float
+
+
+@dataclass(frozen=True, slots=True)
+class LoadTooSmall:
+    """An effect of loads of which all touches together tell less than is believed beforehand.
 
     Attributes:
-        found: 0 of a curve, whose harmonics are many.
+        effect: Its name.
+        load: Largest recorded one, N.
     """
 
-    axis: str
-    targets: int
-    found: int
-    others: tuple[int, ...]
+    effect: str
+    load: float
 
 
 Remark = (
@@ -206,14 +216,9 @@ Remark = (
     | SearchEnded
     | NotSignificant
     | HarmonicsAlike
+    | ShortBeam
+    | LoadTooSmall
 )
-
-
-EVEN = 2e-3
-"""Largest distance of a target from an even spacing, rad: a tenth of a degree."""
-
-FEWEST_TARGETS = 3
-"""Targets of a turn up to which no harmonic is told from another at all."""
 
 
 def remarks(fit: Fit) -> tuple[Remark, ...]:
@@ -222,7 +227,9 @@ def remarks(fit: Fit) -> tuple[Remark, ...]:
     out: list[Remark] = [] if units is None else [units]
     out += [ReaderRemark(text) for text in fit.run.remarks]
     out += _memory(fit)
-    out += _touches(fit) + _harmonics(fit)
+    out += _touches(fit)
+    out += harmonics_alike(fit)
+    out += _elastic(fit)
     out += ([] if units else _noise(fit)) + _outliers(fit)
     if fit.widened > 1.0:
         out.append(PriorWidened(fit.widened))
@@ -249,39 +256,24 @@ def _touches(fit: Fit) -> list[Remark]:
     return out
 
 
-def _harmonics(fit: Fit) -> list[Remark]:
-    """Harmonics that even targets cannot tell from a found one: n of them, k and every m n ± k.
-
-    Of a curve, which may be any of them, the number of targets alone.
-    """
-    out: list[Remark] = []
-    for effect in fit.model.effects:
-        one: object = effect.effect if isinstance(effect, Again) else effect
-        if not isinstance(one, Harmonic | HigherOrder | PositionTable):
-            continue
-        if one.symbol.link not in fit.run.touches.chain.rotary_axes:
-            continue
-        n = targets_a_turn(fit.run.touches.reading(one.symbol.link)[fit.used])
-        k = round(one.harmonic) if isinstance(one, Harmonic) else 0
-        around = {m * n + side * k for m in (1, 2) for side in (-1, 1)} if k else set()
-        others = tuple(h for h in sorted(around - {k}) if h > 0)
-        if n:
-            out.append(HarmonicsAlike(one.symbol.link, n, k, others))
-    return list(dict.fromkeys(out))
-
-
-def targets_a_turn(q: Array) -> int:
-    """Number of targets that stand evenly over a whole turn, rad; 0 where they do not.
-
-    Example:
-        >>> targets_a_turn(np.radians([0.0, 90.0, 180.0, 270.0, 360.0])), targets_a_turn(np.ones(3))
-        (4, 0)
-    """
-    turn = 2.0 * np.pi
-    places = np.unique(np.round(np.mod(q + EVEN, turn), 4))
-    n = len(places)
-    off = places - places[0] - turn / n * np.arange(n)
-    return n if n > FEWEST_TARGETS and np.abs(off).max() < EVEN else 0
+def _elastic(fit: Fit) -> list[Remark]:
+    """Beams that are none, and loads that bend nothing."""
+    touches = fit.run.touches
+    out: list[Remark] = [
+        ShortBeam(name, ratio) for name, ratio in short_beams(touches.chain, fit.model.effects)
+    ]
+    if touches.force is None:
+        return out
+    load = float(np.linalg.norm(touches.force, axis=1).max())
+    told = np.linalg.norm(fit.X[fit.used], axis=0)
+    for effect in dict.fromkeys(e for e, _ in fit.parameters):
+        rows = [
+            p for p, (e, q) in enumerate(fit.parameters)
+            if e is effect and (e.kind in LOADED or (e.kind == "beam" and q.name == "load"))
+        ]  # fmt: skip
+        if rows and float(told[rows].max()) < 1.0:
+            out.append(LoadTooSmall(effect.name, load))
+    return out
 
 
 def _memory(fit: Fit) -> list[Remark]:

@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of the place of a feature by what its points share (scales, squareness and stylus of "
         "the CMM), as its certificate has it, µm (0.3)",
     )
-    add_output(parser, "OUT")
+    add_output(parser, "FILE")
 
 
 def run(args: argparse.Namespace) -> int:

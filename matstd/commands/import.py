@@ -96,6 +96,12 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
     circle = parser.add_argument_group("with --circle")
     circle.add_argument("--radius", type=float, help="nominal radius, mm")
     circle.add_argument("--feed", type=float, help="mm/min, from which times and speeds follow")
+    circle.add_argument(
+        "--bar-force",
+        metavar="N",
+        type=float,
+        help="of a loaded bar, which pushes the tool outwards (negative: pulls)",
+    )
     place: dict[str, Any] = {"metavar": ("X", "Y", "Z"), "type": float, "nargs": 3}
     circle.add_argument(
         "--centre", default=(0.0, 0.0, 0.0), help="readings at its centre, mm (0 0 0)", **place
@@ -294,7 +300,9 @@ def _circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         say("- without --feed nothing is known of speeds: a servo lag cannot be told")
     chain = read_machine(args.machine) if args.machine else circle_machine(plane, args.radius)
     u = _uncertainty(args, "u_um", UM)
-    return circle_run(test, chain, u, args.centre, args.feed), chain
+    if args.bar_force is not None and not abs(args.bar_force) <= 1e5:
+        raise DesignError(f"--bar-force {args.bar_force:g}: expected at most 100000 N")
+    return circle_run(test, chain, u, args.centre, args.feed, args.bar_force), chain
 
 
 def _arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:

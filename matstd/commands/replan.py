@@ -82,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
     with results_folder(args.output, args.force, ours) as folder:
         for name in ("machine.toml", "standard.toml"):
             shutil.copyfile(design / name, folder / name)
-        feeds = _feeds(programs)
+        feeds = feeds_of(programs, chain)
         made = make_programs(plan, dialect, feeds)
         made.write(folder / "programs")
         others = companions(plan, dialect, feeds)
@@ -157,9 +157,25 @@ def _dialect(control: str | None, program: Path) -> Dialect:
     return dialect
 
 
-def _feeds(programs: list[ReadProgram]) -> Feeds:
-    """The feed of the touches; the others are those that programs usually have."""
-    from probe_paths.emit import Feeds
-    from twin.units import MINUTE
+def feeds_of(programs: list[ReadProgram], chain: Chain) -> Feeds:
+    """Feeds of programs: of touches, of moves down to them, of the last turn to a pose."""
+    from dataclasses import replace
+    from itertools import pairwise
 
-    return Feeds(probing=programs[0].touches[0].feed * MINUTE)
+    import numpy as np
+
+    from probe_paths.control import Move, ProbeStep
+    from probe_paths.emit import Feeds
+    from twin.units import DEG, MINUTE
+
+    rotary = [chain.axis_index(a) for a in chain.rotary_axes]
+    feeds = Feeds(probing=programs[0].touches[0].feed * MINUTE)
+    steps = [s for program in programs for s in program.steps if isinstance(s, (Move, ProbeStep))]
+    for before, step in pairwise(steps):
+        if isinstance(step, ProbeStep) or step.feed is None:
+            continue
+        if np.any(step.q[rotary] != before.q[rotary]):
+            feeds = replace(feeds, turning=round(step.feed * MINUTE / DEG))
+        else:
+            feeds = replace(feeds, approach=round(step.feed * MINUTE))
+    return feeds

@@ -24,6 +24,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "programs", metavar="PROGRAM", nargs="+", help="in the order in which they are run"
     )
     parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="what is probed")
+    parser.add_argument(
+        "--real-standard",
+        metavar="STANDARD.toml",
+        help="the piece as it really is, a calibrated one, say, where --standard is what is "
+        "believed of it",
+    )
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
     add_planted(parser)
     parser.add_argument(
@@ -61,6 +67,7 @@ def run(args: argparse.Namespace) -> int:
     checked_noise(args)
     refuse_to_overwrite(args.output, args.force)
     standard = read_standard(args.standard)
+    real = read_standard(args.real_standard) if args.real_standard else standard
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     record = read_sensors(args.sensors) if args.sensors else None
     dialect = read_dialect(args.control)
@@ -68,9 +75,9 @@ def run(args: argparse.Namespace) -> int:
     probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
     first = read_program(args.programs[0], machine.chain, probe, dialect)
     if first.is_search or first.is_first:
-        return _search(args, first, standard, machine, for_noise)
+        return _search(args, first, real, machine, for_noise)
     with stages() as show:
-        campaign = simulate(args.programs, standard, machine, for_noise, probe, show)
+        campaign = simulate(args.programs, real, machine, for_noise, probe, show, standard)
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
     for name, text in campaign.logs.items() if args.logs else ():
         write_whole(Path(args.logs) / name, text, newline="\r\n")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.options import add_output
+from matstd.options import add_effects, add_output, load_effects
 
 if TYPE_CHECKING:
     from diagnosis.fit import Prior
@@ -28,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--model", metavar="MODEL.toml", help="of an earlier run, with which results are corrected"
     )
+    add_effects(parser)
     add_output(parser, "OUT.json")
 
 
@@ -44,6 +45,7 @@ def run(args: argparse.Namespace) -> int:
     from twin.files import read_run, refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
+    load_effects(args.effects)
     task = read_task(args.task) if args.task else Task()
     standard = read_standard(args.standard)
     runs = [read_run(path) for path in args.run_files]

@@ -38,6 +38,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="lengths of tools of the program; others have that of the datum",
     )
     parser.add_argument(
+        "--loads",
+        metavar="LOADS.csv",
+        help="with --program: process forces by its lines; elsewhere --load",
+    )
+    parser.add_argument(
         "--control",
         metavar="NAME",
         action="append",
@@ -61,6 +66,8 @@ def run(args: argparse.Namespace) -> int:
 
     if (args.tables is None) == (args.program is None):
         raise DesignError("expected one of --tables DIR and --program FILE -o OUT")
+    if args.loads and args.program is None:
+        raise DesignError("expected --program with --loads")
     if (args.program is None) != (args.output is None):
         raise DesignError("expected -o OUT with --program, and only there")
     job = read_job(args)
@@ -69,10 +76,13 @@ def run(args: argparse.Namespace) -> int:
 
 def _program(args: argparse.Namespace, job: Job) -> int:
     """A compensated program, its points as a table, its picture."""
+    from dataclasses import replace
+
     from compensation.programs import (
         TOLERANCE,
         Frame,
         compensated,
+        read_loads,
         read_part_program,
         write_trajectory,
     )
@@ -88,6 +98,8 @@ def _program(args: argparse.Namespace, job: Job) -> int:
         refuse_to_overwrite(path, args.force)
     frame = Frame(job.errors.chain, job.datum)
     program = read_part_program(args.program, frame, tool_lengths(args.tool))
+    if args.loads:
+        program = replace(program, loads=read_loads(args.loads))
     tolerance = TOLERANCE if args.tolerance is None else args.tolerance * UM
     done = compensated(program, job.errors, job.header(1), tolerance)
     write_trajectory(beside[0], done)

@@ -22,6 +22,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
     parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
     parser.add_argument("--program", metavar="IN", help="a part program (.H, .ngc)")
+    parser.add_argument(
+        "--loads", metavar="LOADS.csv", help="process forces by the lines of the program"
+    )
     parser.add_argument("--poses", metavar="POSES.csv", help="axis readings, one row per pose")
     add_state(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
@@ -54,11 +57,15 @@ def run(args: argparse.Namespace) -> int:
 
 def _poses(args: argparse.Namespace, job: Job) -> Touches:
     """Poses that the program passes, or those of the file."""
-    from compensation.programs import Frame, passed, read_part_program
+    from dataclasses import replace
+
+    from compensation.programs import Frame, passed, read_loads, read_part_program
     from twin.files import read_poses
 
     if args.program is not None:
         frame = Frame(job.errors.chain, job.datum)
-        return passed(read_part_program(Path(args.program), frame), job.errors)
+        program = read_part_program(Path(args.program), frame)
+        loads = read_loads(args.loads) if args.loads else ()
+        return passed(replace(program, loads=loads), job.errors)
     q, length = read_poses(args.poses, job.errors.chain)
     return job.errors.touches(q, length)

@@ -10,10 +10,14 @@ import numpy as np
 from compensation.field import Datum, MachineErrors, State, datum_of, workspace
 from compensation.tables import Header, hashed, header_of
 from diagnosis.files import read_model
+from diagnosis.remarks import ShortBeam
+from matstd.console import say_each
+from report.words import remark_sentence
+from twin.elastic import short_beams
 from twin.errors import DesignError, UnknownEffect
 from twin.files import parse_toml, read_errors, read_machine, read_text
 from twin.frames import Array
-from twin.library import load_installed_effects, load_user_effects
+from twin.library import load_installed_effects, load_user_effects, parse_sized_effect
 from twin.machine import Chain
 from twin.units import DEG, MINUTE
 
@@ -53,9 +57,12 @@ def read_job(args: argparse.Namespace) -> Job:
         temperature=dict(_numbers("--temperature", args.temperature)),
         spindle_rpm=args.rpm,
         value=dict(_numbers("--value", args.value)),
+        force=tuple(args.load),
     )
     try:
         errors = _errors(args, state)
+        added = [parse_sized_effect(text, errors.chain) for text in args.add]
+        errors = errors.with_known([(a.effect, a.theta) for a in added])
     except UnknownEffect as error:
         expected = "expected --temperature, --rpm or --value for all that the model follows"
         raise DesignError(f"{args.model}: {error}; {expected}") from error
@@ -63,6 +70,8 @@ def read_job(args: argparse.Namespace) -> Job:
     if not any(theta.any() for theta in errors.theta):
         raise DesignError(f"{args.model}: no error of an axis is known and switched on")
     chain = errors.chain
+    doubtful = short_beams(chain, errors.effects)
+    say_each(remark_sentence(ShortBeam(*found)) for found in doubtful)
     files = [args.model] if args.errors is None else [args.model, args.errors]
     job = Job(
         errors=errors,

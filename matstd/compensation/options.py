@@ -29,17 +29,7 @@ def add_state(parser: argparse.ArgumentParser) -> None:
         "AXIS=LOW:HIGH",
         "workspace that is judged (mm, degrees); others over their travel",
     )
-    parser.add_argument(
-        "--after", metavar="MIN", type=float, default=0.0, help="minutes since switching on"
-    )
-    _several(
-        parser,
-        "--temperature",
-        "SENSOR=DEGC",
-        "of sensors that the model follows; what lags behind one has settled at it",
-    )
-    _several(parser, "--value", "COLUMN=NUMBER", "columns of your own")
-    parser.add_argument("--rpm", type=float, help="spindle speed since switching on")
+    _add_driven(parser)
     _several(
         parser,
         "--switch",
@@ -55,4 +45,35 @@ def add_state(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
+    )
+
+
+def _add_driven(parser: argparse.ArgumentParser) -> None:
+    """State of the machine, and errors that are added to its model."""
+    parser.add_argument(
+        "--after", metavar="MIN", type=float, default=0.0, help="minutes since switching on"
+    )
+    _several(
+        parser,
+        "--temperature",
+        "SENSOR=DEGC",
+        "of sensors that the model follows; what lags behind one has settled at it",
+    )
+    _several(parser, "--value", "COLUMN=NUMBER", "columns of your own")
+    parser.add_argument("--rpm", type=float, help="spindle speed since switching on")
+    parser.add_argument(
+        "--load",
+        metavar=("FX", "FY", "FZ"),
+        nargs=3,
+        type=float,
+        default=(0.0, 0.0, 0.0),
+        help="force on the tool in table-frame directions, N (0 0 0)",
+    )
+    parser.add_argument(
+        "--add",
+        metavar="EFFECT=SIZE",
+        action="append",
+        default=[],
+        help="a further error, such as 'beam(Z,cantilever,180x180,at:420,sense:-1,mass:80)="
+        "weight=1,load=1'",
     )

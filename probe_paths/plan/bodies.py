@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import FreeformPatch, Plate, Standard
+from artefact.body import BLEND, FreeformPatch, Plate, Standard
 from artefact.reach import Workshop, table_face
 from probe_paths.plan.separation import CORNERS, Hulls
 from twin.frames import Array, apply, pose, turn
@@ -48,15 +48,27 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
         core, low = standard.core, 0.5 * base.thickness
         ends = np.array([[0.0, 0.0, low], [0.0, 0.0, core.height]])
         lots.append(("CORE", "", _hull(ends, [core.low_radius, core.high_radius])))
-    for s in standard.spheres:
-        ends = np.array([[*s.centre[:2], s.foot], s.centre])
-        lots.append((s.name, "", _hull(s.centre[None], [0.0], s.radius)))
-        lots.append((f"{s.name} stem", "", _hull(ends, [s.foot_radius, s.stem_radius])))
     parts = {}
+    for s in standard.spheres:
+        lots.append((s.name, "", _hull(s.centre[None], [0.0], s.radius)))
+        ends = np.array([[*s.centre[:2], s.foot], s.centre])
+        post = _hull(ends, [s.foot_radius, s.stem_radius])
+        if s.name in standard.blended:
+            wide = s.foot_radius + BLEND
+            chamfer = np.array([[*s.centre[:2], s.foot], [*s.centre[:2], s.foot + BLEND]])
+            foot = _hull(chamfer, [wide, s.foot_radius])
+            parts[len(lots)] = _moved(_joined([post, foot]), T_table_artefact)
+            post = _hull(ends, [wide, s.stem_radius])
+        lots.append((f"{s.name} stem", "", post))
     for patch in standard.patches:
         column = standard.columns[patch.name]
         box = Plate(patch.half_size, 0.0, -patch.depth, column.top)
-        parts[len(lots)] = _moved(_prisms(patch), T_table_artefact)
+        prisms = _prisms(patch)
+        if patch.name in standard.blended:
+            a, b = (half + BLEND for half in patch.half_size)
+            box = Plate((a, b), 0.0, -patch.depth, column.top)
+            prisms = _joined([prisms, _chamfer(patch, base.thickness)])
+        parts[len(lots)] = _moved(prisms, T_table_artefact)
         lots.append((patch.name, "", _plate(box, patch.T_artefact_patch)))
     lots = [(name, on, _moved(hull, T_table_artefact)) for name, on, hull in lots]
     T_table_face = table_face(T_table_artefact)
@@ -69,6 +81,18 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
         on=np.array([on for _, on, _ in lots]),
         parts=parts,
     )
+
+
+def _chamfer(patch: FreeformPatch, foot: float) -> Hulls:
+    """What holds the blend round the foot of an upright pillar: it is hollow, so a chamfer."""
+    x, y = patch.T_artefact_patch[:2, 3]
+    corners = [
+        [x + s * (patch.half_size[0] + more), y + t * (patch.half_size[1] + more), foot + up]
+        for more, up in ((BLEND, 0.0), (0.0, BLEND))
+        for s in (-1.0, 1.0)
+        for t in (-1.0, 1.0)
+    ]
+    return _hull(np.array(corners), [0.0] * CORNERS)
 
 
 def _hull(corners: Array, discs: list[float], ball: float = 0.0) -> Hulls:

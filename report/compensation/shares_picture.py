@@ -11,6 +11,9 @@ from report.style import INK, NEUTRAL, SOFT, figure, plain, save, series
 from twin.frames import Array
 from twin.units import MINUTE, UM
 
+LONGEST = 32
+"""Letters of a label."""
+
 LINES, BARS = 6, 16
 """Errors that are drawn along the path, and as bars, at most."""
 
@@ -32,7 +35,7 @@ def draw_shares_along(path: str | Path, time: Array, whole: Array, shares: Seque
     left.plot(x, np.linalg.norm(whole, axis=1) / UM, color=INK, lw=1.6, label="all together")
     for k, share in enumerate(shown[:LINES]):
         size = np.linalg.norm(share.field, axis=1) / UM
-        left.plot(x, size, color=series(k), lw=1.1, label=share.name)
+        left.plot(x, size, color=series(k), lw=1.1, label=_short(share.name))
     left.set_xlabel("time in min" if is_timed else "pose")
     left.set_ylabel("deviation of the tool point in µm")
     left.legend(fontsize=8, frameon=False)
@@ -42,12 +45,17 @@ def draw_shares_along(path: str | Path, time: Array, whole: Array, shares: Seque
     right.barh(y, sizes, color=colours, height=0.7)
     errors = [s.u / UM for s in shown]
     right.errorbar(sizes, y, xerr=errors, fmt="none", ecolor=SOFT, capsize=2)
-    right.set_yticks(y, [s.name for s in shown])
+    right.set_yticks(y, [_short(s.name) for s in shown])
     right.set_xlim(0.0, None)
     right.set_xlabel("µm, rms along the path, each by itself")
     plain(left)
     plain(right, "x")
     save(drawn, path)
+
+
+def _short(name: str) -> str:
+    """A name as a label: a beam is known by its axis."""
+    return name if len(name) <= LONGEST else f"{name[:LONGEST].rpartition(',')[0]},...)"
 
 
 def share_lines(whole: Array, shares: Sequence[Share], most: int = 8) -> Iterator[str]:

@@ -9,6 +9,7 @@ from probe_paths.locate import Companions
 from probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, TouchPlan, calibration_hash
 from report.pages.page import write_page
 from report.plots import write_setup_picture
+from report.scenes import PLAYBACK, write_playback
 from twin.frames import fixed_xyz_angles
 from twin.units import DEG, MINUTE
 
@@ -35,7 +36,7 @@ def write_setup_page(
     others: Companions,
     dialect: Dialect,
 ) -> Path:
-    """Write the sheet with its drawing; the path of the page.
+    """Write the sheet with its drawing and the playback of the programs; the path of the page.
 
     Args:
         folder: To be made.
@@ -46,6 +47,7 @@ def write_setup_page(
     """
     folder.mkdir(parents=True, exist_ok=True)
     write_setup_picture(folder / PICTURE, plan)
+    write_playback(folder, plan, programs, dialect)
     T = plan.setup.T_table_artefact
     tests = interlocks(LANGUAGES[dialect.language], ProgramFrame(plan.chain, plan.probe))
     heading = Heading(
@@ -74,6 +76,7 @@ def write_setup_page(
         refused=[str(refusal) for refusal in plan.refused],
         alarms=[(int(t.label), t.what, f"{t.limit:g}", _REMEDY[t.label]) for t in tests],
         others=others,
+        playback=PLAYBACK,
         within_deg=round(others.spread.angle / DEG, 3),
         start=int(Q.START),
         missed=int(Label.NO_CONTACT),

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch, Standard, read_standard
-from cad_out.build import owners, read_stl
+from cad_out.meshes import owners, read_stl
 from report.scenes.renderer import STL, screenshot
 from report.scenes.standard_scene import PICTURE, STANDARD
 from report.style import series

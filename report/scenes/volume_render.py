@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from cad_out.build import read_stl
+from cad_out.meshes import read_stl
 from report.scenes.renderer import FACTS, STL, screenshot
 from report.scenes.volume_scene import COLOURS, IMAGE, PIXELS, eye
 from report.style import INK, LINE

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cad_out.build import read_stl
+from cad_out.meshes import read_stl
 from report.scenes.renderer import render, shared_folder
 from report.style import INK, RED, WIDTH, figure, save
 from twin.errors import DesignError, ShapeMismatch

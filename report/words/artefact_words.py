@@ -50,15 +50,18 @@ def identification_sentence(placement: Placement) -> str:
 
 def proof_sentence(placement: Placement) -> str:
     """What the freeform faces buy in proof, beside what the balls would."""
-    faces, balls = placement.power, placement.power_of_balls
+    faces, anywhere = placement.power, placement.power_in_volume
+    balls, of_all = placement.power_of_balls, percent(float(anywhere.power.mean()))
     return (
         f"Proof: {faces.touches} touches on the {len(placement.standard.patches)} freeform faces, "
         f"held back from the identification, find a model that is wrong by {digits(ERROR / UM)} µm "
-        f"rms in the probed volume with a power of {percent(float(faces.power.mean()))} on average "
-        f"at {percent(RISK)} risk ({percent(WANTED)} or more for {faces.found} of "
-        f"{len(faces.effects)} effects of the library). As many further touches on the balls would "
-        f"for {balls.found}, but they share the calibration that went into the model, and no ball "
-        f"is like the surface of a workpiece."
+        f"rms over surfaces as steep as theirs, anywhere in the probed volume, with a power of "
+        f"{percent(float(faces.power.mean()))} on average at {percent(RISK)} risk "
+        f"({percent(WANTED)} or more for {faces.found} of {len(faces.effects)} effects of the "
+        f"library); wrong by as much in whatever direction, with {of_all} "
+        f"({anywhere.found} of {len(anywhere.effects)}). As many further touches on the balls "
+        f"would find the latter for {balls.found}, but they share the calibration that went into "
+        f"the model, and no ball is like the surface of a workpiece."
     )
 
 

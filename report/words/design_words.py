@@ -17,8 +17,11 @@ from report.words.artefact_words import identification_sentence, proof_sentence
 from twin.units import DEG, UM
 from twin.words import listed
 
-COVERED = 0.5
-"""Least share of the workspace of an axis that touches read, for nothing to be said."""
+COVERED, FAR = 0.5, 3.0
+"""Least share of the workspace of an axis that touches read for nothing to be said; where the
+workspace is known so many times worse than the probed volume, nearly all of it has to be read."""
+
+_NEARLY_ALL = 0.9
 
 EQUAL = 1.05
 """Ratio of two predicted errors up to which they are called equal: no user would notice it."""
@@ -69,18 +72,19 @@ def _left_unknown(placement: Placement) -> str:
 
 
 def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> str:
-    """Which axes the touches read over less than half of the workspace; empty for none.
+    """Which axes the touches read over a small part of the workspace; empty for none.
 
     Beyond its touches a model only carries on the shapes that were assumed for the errors.
     """
     if not workspace:
         return ""
     reach, parts = placement.criterion.reach, []
-    q = reach.readings(placement.requests)
+    q, own = reach.readings(placement.requests), placement.own
+    least = _NEARLY_ALL if own.rms_user > FAR * own.rms else COVERED
     for name, (low, high) in workspace.items():
         link, read = reach.chain.link(name), q[:, reach.chain.axis_index(name)]
         first, last = max(low, float(read.min())), min(high, float(read.max()))
-        if last - first < COVERED * (high - low):
+        if last - first < least * (high - low):
             unit, sign = (1.0, " mm") if link.kind == "linear" else (DEG, "°")
             ends = [f"{round(v / unit) + 0.0:.0f}" for v in (read.min(), read.max(), low, high)]
             parts.append(f"{name} {ends[0]} to {ends[1]}{sign} (workspace {ends[2]} to {ends[3]})")

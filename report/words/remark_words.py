@@ -165,6 +165,10 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.OutliersLeftOut: _outliers_left_out,
     noticed.PriorWidened: "the machine's errors are about {r.factor:.1f} times their stated "
     "distributions; the prior was widened by that",
+    noticed.ShortBeam: "{r.effect} is {r.slenderness:.1f} times as long as deep at most: the "
+    "theory of beams is doubtful there, what holds the body counts as much",
+    noticed.LoadTooSmall: "loads of up to {r.load:.3g} N bend too little to identify {r.effect}: "
+    "its numbers are what was believed beforehand; load the tool with some 100 N",
     noticed.SearchEnded: "the search was ended after {r.sets:.0f} sets of effects: what is named "
     "passed every test, but another set may explain more",
     noticed.NotSignificant: _not_significant,

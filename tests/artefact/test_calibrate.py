@@ -280,3 +280,50 @@ def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
     assert moved > 200
     opened, closed = text.count("MEAS/") - text.count("PTMEAS/"), text.count("ENDMES")
     assert opened == closed == text.count("OUTPUT/")
+
+
+def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp_path) -> None:
+    """`simulate --real-standard`: the balls that stand off are told by their deviations."""
+    from twin.files.run_file import read_run
+
+    write_standard(tmp_path / "standard.toml", nominal)
+    write_standard(tmp_path / "real.toml", found.standard)
+    chain = golden.machine()
+    lines = [f'format = "machine/1"\nname = "{chain.name}"\nchain = "{chain.notation}"']
+    for letter in chain.programmed_axes:
+        link = chain.link(letter)
+        unit = 1.0 if link.kind == "linear" else np.pi / 180.0
+        lines.append(f"[axis.{letter}]\nrange = {[v / unit for v in link.range]}")
+        lines.append(f"point = {[float(v) for v in link.point]}")
+    lines.append("[workpiece]\norigin = [0.0, 0.0, -500.0]\n")
+    (tmp_path / "machine.toml").write_text("\n".join(lines))
+    programs = sorted(map(str, golden.FOLDER.glob("*_[0-9].H")))
+    rms = {}
+    for believed in ("standard", "real"):
+        out = tmp_path / f"{believed}.csv"
+        common = ["--machine", str(tmp_path / "machine.toml"), "--noise-um", "0.5", "-o", str(out)]
+        real = ["--real-standard", str(tmp_path / "real.toml")]
+        standard = ["--standard", str(tmp_path / f"{believed}.toml")]
+        assert main(["simulate", *programs, *standard, *real, *common]) == 0
+        rms[believed] = np.sqrt(np.mean(read_run(out).deviation ** 2)) / UM
+    assert rms["standard"] > 5.0
+    assert rms["real"] == pytest.approx(0.5, abs=0.15)
+
+
+def test_dust_is_left_out_and_told(nominal, tmp_path) -> None:
+    """A chip of 40 µm under a point of a face and of a ball: the same standard, two lines told."""
+    made = []
+    for chip in (0.0, 40 * UM):
+        rows = cmm_rows(nominal, np.random.default_rng(6))
+        at = [k for k, r in enumerate(rows) if r[0] in ("SPH2", "FF1_60")]
+        for k in (at[3], at[-1]):
+            rows[k] = (rows[k][0], *(np.add(rows[k][1:], [0.0, 0.0, chip])))
+        path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
+        made.append(calibrated(nominal, read_cmm_points(path, nominal), NOISE, NOISE))
+    clean, dusty = made
+    assert clean.remarks == ()
+    assert [r.split(":")[0] for r in dusty.remarks] == ["SPH2", "FF1"]
+    assert f"lines {at[-1] + 3} " in dusty.remarks[1]
+    face, other = (m.standard.patches[0] for m in made)
+    grid = face.grid(3.0)
+    assert np.abs(face.height(grid) - other.height(grid)).max() < 1.5 * UM

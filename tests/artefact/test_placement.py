@@ -9,7 +9,7 @@ from artefact.body.first_contact import contact
 from artefact.body.limits import Limits, check
 from artefact.body.patch import Meeting
 from artefact.body.standard import Base
-from artefact.compare.power import proof_power
+from artefact.compare.power import proof_power, task_normals
 from artefact.layout.sites import Blank
 from artefact.place.placement import PlacementOptions, design_standard
 from artefact.reach.probe_clearance import ProbeShape, clearance
@@ -125,7 +125,8 @@ def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
     assert own.rms_user < 1.05 * min(spheres)  # the benchmark has the mean over seeds
 
 
-def test_the_power_of_the_faces_is_that_of_a_drawn_test(placement, reach):
+@pytest.mark.parametrize("of_task", [False, True])
+def test_the_power_of_the_faces_is_that_of_a_drawn_test(placement, reach, of_task):
     """Whole experiments drawn at random with one effect, decided by their own scatter."""
     from scipy.stats import chi2
 
@@ -151,6 +152,11 @@ def test_the_power_of_the_faces_is_that_of_a_drawn_test(placement, reach):
     tip = criterion.tip_volume * criterion.prior_sd
     own = Model(reach.chain, (effect,)).tip_columns(criterion.at_volume) @ mix
     wrong = own - tip @ (estimate @ rows[0])
+    normals = task_normals(criterion, after, rng) if of_task else None
+    if of_task:  # no steeper than the faces, and unit vectors
+        assert normals[:, 2].min() > after.normal[:, 2].min() - 1e-9
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
+        wrong = np.sum(wrong * normals, axis=1, keepdims=True)
     size = 2.0 * UM / np.sqrt(np.mean(np.sum(wrong**2, axis=1)))
     drawn = left(size * rows[0], size * rows[1], 2000)
     statistic = np.sum(drawn * np.linalg.solve(scatter, drawn.T).T, axis=1)
@@ -160,7 +166,7 @@ def test_the_power_of_the_faces_is_that_of_a_drawn_test(placement, reach):
         def normal(self, size):
             return np.tile(mix[:, None], (1, size[1]))
 
-    power = proof_power(criterion, before, after, [effect], Fixed())
+    power = proof_power(criterion, before, after, [effect], Fixed(), normals)
     assert power.effects == ("periodic(EXX)",)
     assert power.power[0] == pytest.approx(found, abs=0.05)
 

@@ -1,6 +1,7 @@
 """STEP and STL of built standards, read anew; refusals and crashes leave nothing behind."""
 
 import hashlib
+import json
 import re
 from dataclasses import fields, replace
 from importlib.metadata import version
@@ -11,8 +12,11 @@ import pytest
 import cad_out
 from artefact.body.datum import DatumSphere
 from cad_out.build import kernel
-from cad_out.build.exchange import in_ascii, with_unit_of_density
-from cad_out.build.mesh import (
+from cad_out.build.exchange import in_ascii
+from cad_out.build.process import run_apart
+from cad_out.build.settled import with_units_of_density
+from cad_out.details.detail_list import details_of
+from cad_out.meshes.mesh import (
     chord_errors,
     is_watertight,
     manifold_volume,
@@ -20,44 +24,44 @@ from cad_out.build.mesh import (
     owners,
     read_stl,
 )
-from cad_out.build.process import run_apart
-from cad_out.verify.conformity import FACE_LIMIT, face_deviations
+from cad_out.verify.conformity import FACE_LIMIT, face_deviations, face_names
 from cad_out.verify.part21 import SphereFace, SplineFace, read_faces
 from twin.errors import BadFile, NotBuildable
 from twin.units import NM, UM
+
+FILES = ("3mf", "glb", "step", "stl")
 
 
 @pytest.mark.slow
 def test_ten_patches_conform_and_stay_below_their_limits(standard, tmp_path):
     conformity = cad_out.verify.export_standard(standard, tmp_path, chord=0.02)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["standard.step", "standard.stl"]
+    files = ["conformity.json", *(f"standard.{end}" for end in FILES)]
+    assert sorted(p.name for p in tmp_path.iterdir()) == files
     assert conformity.faults() == []
-    assert conformity.solids == 1
+    assert conformity.solids == 1 + len(standard.spheres) + len(standard.holes)
     assert conformity.worst_face[1] < 1e-3 * FACE_LIMIT  # 14 digits of text leave 1e-8 um
     assert conformity.worst_chord[1] <= 0.02
-    assert set(conformity.names) == set(standard.face_names)
-    assert conformity.volume == pytest.approx(standard.volume(2.0), rel=1e-3)
+    assert set(conformity.names) == set(face_names(standard, details_of(standard)))
+    assert conformity.volume == pytest.approx(standard.volume(2.0), rel=0.01)  # no recesses
     assert conformity.stl_bytes == (tmp_path / "standard.stl").stat().st_size < 6_000_000
 
 
-def test_step_text_carries_units_schema_names_and_a_fixed_time(small, built):
+def test_step_text_carries_units_schema_names_and_a_fixed_time(upright, built):
     place, conformity, _ = built
     text = (place / "standard.step").read_text()
     assert "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF" in text
     assert "'2000-01-01T00:00:00'" in text
     assert "PRODUCT('small 0007'" in text
-    assert text.count("MANIFOLD_SOLID_BREP(") == 1
-    assert "NEXT_ASSEMBLY_USAGE_OCCURRENCE" not in text
-    for name in small.face_names:
+    for name in face_names(upright, details_of(upright)):
         assert text.count(f"ADVANCED_FACE('{name}'") == 1
-    assert small.material.name in text
+    assert upright.material.name in text
     assert conformity.is_millimetre
     assert conformity.faults() == []
 
 
-def test_poles_and_knots_in_the_file_are_those_of_the_design(small, built):
+def test_poles_and_knots_in_the_file_are_those_of_the_design(upright, built):
     faces = read_faces(built[0] / "standard.step")
-    for patch in small.patches:
+    for patch in upright.patches:
         face = faces[patch.name]
         assert isinstance(face, SplineFace)
         assert face.degree == patch.degree
@@ -65,14 +69,14 @@ def test_poles_and_knots_in_the_file_are_those_of_the_design(small, built):
         assert np.abs(face.poles - patch.poles).max() < NM
         assert np.abs(face.knots[0] - patch.knots_u).max() < NM
         assert np.abs(face.knots[1] - patch.knots_v).max() < NM
-    for sphere in small.spheres:
+    for sphere in upright.spheres:
         face = faces[sphere.name]
         assert isinstance(face, SphereFace)
         assert np.abs(face.centre - sphere.centre).max() < NM
         assert face.radius == sphere.radius
 
 
-def test_the_header_says_where_the_file_comes_from(small, built):
+def test_the_header_says_where_the_file_comes_from(upright, built):
     place, _, _ = built
     header = re.sub(r"\s*\n\s*", "", (place / "standard.step").read_text().split("ENDSEC;")[0])
     design = hashlib.sha256((place / "standard.toml").read_bytes()).hexdigest()
@@ -82,13 +86,13 @@ def test_the_header_says_where_the_file_comes_from(small, built):
     assert in_ascii("Müller & Søn") == r"M\X2\00FC\X0\ller & S\X2\00F8\X0\n"
 
 
-def test_density_has_the_dimension_of_a_density(small, built):
+def test_density_has_the_dimension_of_a_density(upright, built):
     """Exponents of gram and centimetre, read from the text; the kernel's own are 3 and 2."""
     text = (built[0] / "standard.step").read_text()
     value, unit = re.search(
         r"'density',POSITIVE_RATIO_MEASURE\(\s*([\d.]+)\s*\),#(\d+)\)", text
     ).groups()
-    assert float(value) == pytest.approx(small.material.density * 1e6)
+    assert float(value) == pytest.approx(upright.material.density * 1e6)
     elements = re.search(rf"\n#{unit} = DERIVED_UNIT\(\(#(\d+),#(\d+)\)\)", text).groups()
     found = [
         re.search(rf"\n#{e} = DERIVED_UNIT_ELEMENT\(#(\d+),([-\d.]+)\)", text).groups()
@@ -98,13 +102,13 @@ def test_density_has_the_dimension_of_a_density(small, built):
     assert "SI_UNIT($,.GRAM.)" in bases[0]
     assert "SI_UNIT(.CENTI.,.METRE.)" in bases[1]
     assert [float(power) for _, power in found] == [1.0, -3.0]
-    with pytest.raises(NotBuildable, match="no density"):
-        with_unit_of_density("DATA;")
+    with pytest.raises(NotBuildable, match="0 densities"):
+        with_units_of_density("DATA;", 1)
     with pytest.raises(NotBuildable, match="another unit"):
-        with_unit_of_density(text)
+        with_units_of_density(text, 3)
 
 
-def test_a_pole_moved_by_a_tenth_of_a_micrometre_is_found(small, built, tmp_path):
+def test_a_pole_moved_by_a_tenth_of_a_micrometre_is_found(upright, built, tmp_path):
     text = (built[0] / "standard.step").read_text()
     entity = re.search(r"ADVANCED_FACE\('FF2',\([^)]*\),\s*#(\d+)", text)
     surface = re.search(rf"\n#{entity[1]} = B_SPLINE_SURFACE_WITH_KNOTS\(([^;]*);", text)
@@ -114,7 +118,7 @@ def test_a_pole_moved_by_a_tenth_of_a_micrometre_is_found(small, built, tmp_path
     moved = point[0].replace(point[1], f"{x},{y},{z + 0.1 * UM!r}")
     path = tmp_path / "moved.step"
     path.write_text(text.replace(point[0], moved))
-    apart = face_deviations(small, read_faces(path))
+    apart = face_deviations(upright, read_faces(path))
     # a pole in the middle of the net moves the face by a sixth of its own way
     assert apart["FF2"] > FACE_LIMIT
     assert apart["FF1"] < 1e-3 * FACE_LIMIT
@@ -124,12 +128,12 @@ def test_a_pole_moved_by_a_tenth_of_a_micrometre_is_found(small, built, tmp_path
     )
 
 
-def test_faces_lost_or_of_another_kind_are_infinitely_far(small, built):
+def test_faces_lost_or_of_another_kind_are_infinitely_far(upright, built):
     faces = dict(read_faces(built[0] / "standard.step"))
     faces["FF1"], faces["SPH1"] = None, faces["FF2"]
-    del faces["FF3"]
-    apart = face_deviations(small, faces)
-    assert [name for name, value in apart.items() if np.isinf(value)] == ["FF1", "FF3", "SPH1"]
+    del faces["SPH3"]
+    apart = face_deviations(upright, faces)
+    assert [name for name, value in apart.items() if np.isinf(value)] == ["FF1", "SPH1", "SPH3"]
 
 
 def test_part21_reader_refuses_what_is_no_step_file(tmp_path):
@@ -142,7 +146,7 @@ def test_part21_reader_refuses_what_is_no_step_file(tmp_path):
         read_faces(path)
 
 
-def test_stl_is_closed_for_both_libraries_and_knows_its_faces(small, built):
+def test_stl_is_closed_for_both_libraries_and_knows_its_faces(upright, built):
     place, conformity, mesh = built
     corners, triangles = read_stl(place / "standard.stl")
     assert len(triangles) == len(mesh.triangles) == conformity.triangles
@@ -151,9 +155,9 @@ def test_stl_is_closed_for_both_libraries_and_knows_its_faces(small, built):
         mesh_volume(corners, triangles), rel=1e-6
     )
     # what the kernel knew and what the surfaces tell agree
-    found = owners(small, corners, triangles)
+    found = owners(upright, corners, triangles)
     named = np.isin(
-        mesh.owner, [*(p.name for p in small.patches), *(s.name for s in small.spheres)]
+        mesh.owner, [*(p.name for p in upright.patches), *(s.name for s in upright.spheres)]
     )
     assert np.mean(found[named] == mesh.owner[named]) > 0.999
     assert set(found[~named]) == {""}
@@ -165,10 +169,10 @@ def test_a_mesh_with_a_triangle_missing_is_refused_by_both(built):
     assert np.isnan(manifold_volume(corners, triangles[1:]))
 
 
-def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(small):
+def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(upright):
     # a regular triangle with its corners on a ball of radius r: its middle lies
     # r - sqrt(r^2 - s^2/3) below the ball
-    sphere = small.spheres[0]
+    sphere = upright.spheres[0]
     assert isinstance(sphere, DatumSphere)
     up = np.array([0.0, 0.0, 1.0])
     angle = 2.0 * np.pi * np.arange(3) / 3.0
@@ -177,7 +181,7 @@ def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(small):
         [np.sin(lean) * np.cos(angle), np.sin(lean) * np.sin(angle), np.full(3, np.cos(lean))]
     )
     sagitta = sphere.radius * (1.0 - np.cos(lean))
-    one = replace(small, patches=small.patches[:1], spheres=(sphere,))
+    one = replace(upright, patches=upright.patches[:1], spheres=(sphere,))
     owner = np.array([sphere.name])
     errors = chord_errors(one, corners, np.array([[0, 1, 2]]), owner)
     # the lattice of measured points has none exactly in the middle: a little less is found
@@ -185,20 +189,27 @@ def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(small):
     assert up @ (corners.mean(axis=0) - sphere.centre) == pytest.approx(sphere.radius - sagitta)
 
 
-def test_same_standard_gives_the_same_bytes(small, built, tmp_path, monkeypatch):
+def test_same_standard_gives_the_same_bytes(upright, built, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONHASHSEED", "77")
-    cad_out.verify.export_standard(small, tmp_path, chord=0.02)
-    for name in ("standard.step", "standard.stl"):
+    cad_out.verify.export_standard(upright, tmp_path, chord=0.02)
+    for name in (f"standard.{end}" for end in FILES):
         assert (tmp_path / name).read_bytes() == (built[0] / name).read_bytes()
+    told = json.loads((tmp_path / "conformity.json").read_text())
+    assert told["faults"] == []
+    assert told["measured"]["mass"] == built[1].mass
+    assert told["limits"]["face_deviation_mm"] == FACE_LIMIT
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"solids": 2}, "2 solids in the STEP file, expected 1"),
+        ({"solids": 2}, "2 solids in the STEP file, expected 7"),
+        ({"displaced": ("SPH1",)}, "not in its place: SPH1"),
+        ({"untold": ("note 1",)}, "not in the STEP file as meant: note 1"),
+        ({"sharp": 3.0}, "3.0 mm of inner edges without a radius of 3 mm"),
         ({"is_valid": False}, "not valid"),
         ({"is_closed": False}, "not closed"),
-        ({"shells": 2}, "2 shells in 1 solid: closed pockets inside"),
+        ({"shells": 8}, "8 shells in 7 solids: closed pockets inside"),
         ({"is_millimetre": False}, "not in millimetres"),
         ({"missing": ("FF2",)}, "faces without their name: FF2"),
         ({"volume": 1.0}, "the volume changes"),
@@ -213,15 +224,15 @@ def test_every_figure_out_of_its_limit_is_named(built, change, words):
     assert any(words in fault for fault in replace(built[1], **change).faults())
 
 
-def spoilt(small, **what):
-    patches = (replace(small.patches[0], **what), *small.patches[1:])
-    return replace(small, patches=patches)
+def spoilt(upright, **what):
+    patches = (replace(upright.patches[0], **what), *upright.patches[1:])
+    return replace(upright, patches=patches)
 
 
-def test_a_refused_design_leaves_the_files_of_the_last_one(small, tmp_path):
+def test_a_refused_design_leaves_the_files_of_the_last_one(upright, tmp_path):
     for name in ("standard.step", "standard.stl"):
         (tmp_path / name).write_text("of the last run")
-    adrift = spoilt(small, depth=8.0)
+    adrift = spoilt(upright, depth=8.0)
     with pytest.raises(
         NotBuildable, match=r"'small' falls into 2 solids .* does not reach the body"
     ):
@@ -230,7 +241,7 @@ def test_a_refused_design_leaves_the_files_of_the_last_one(small, tmp_path):
     assert (tmp_path / "standard.step").read_text() == "of the last run"
 
 
-def test_a_crash_of_the_kernel_is_one_clear_error(small, tmp_path, monkeypatch):
+def test_a_crash_of_the_kernel_is_one_clear_error(upright, tmp_path, monkeypatch):
     def crashing(module, task, folder, *arguments, timeout):
         return run_apart("faulthandler", "_sigsegv() or print", folder, timeout=timeout)
 
@@ -238,7 +249,7 @@ def test_a_crash_of_the_kernel_is_one_clear_error(small, tmp_path, monkeypatch):
     with pytest.raises(
         NotBuildable, match=r"CAD kernel crashed \(SIGSEGV, exit code -11\).*nothing was written"
     ) as caught:
-        cad_out.verify.export_standard(small, tmp_path)
+        cad_out.verify.export_standard(upright, tmp_path)
     assert "\n" not in str(caught.value)
     assert caught.value.facts["exit_code"] == -11
     assert list(tmp_path.iterdir()) == []

@@ -271,7 +271,7 @@ def test_compare_with_a_model_of_the_same_machine(folder, tmp_path) -> None:
         (tmp_path / f"{name}.csv").write_text("\n".join([*head, columns, *kept]) + "\n")
     (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text())
     a, b, m, c = (str(tmp_path / n) for n in ("a.csv", "b.csv", "m", "c"))
-    add = ["--add", "backlash(Y)"]
+    add = ["--add", "backlash(Y)", "--only", "backlash"]
     assert main(["diagnose", a, *add, "-o", m, "--no-report"]) == 0
     assert main(["compare", b, "--model", f"{m}/model.toml", "-o", c, "--no-report"]) == 0
     told = json.loads((tmp_path / "c" / "comparison.json").read_text(encoding="utf-8"))
@@ -329,6 +329,7 @@ def test_named_effects_and_effects_of_ones_own(folder, tmp_path, monkeypatch) ->
     assert 'name = "tested-hose"' in (out / "model.toml").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_the_page_stands_with_the_files(tmp_path, changed) -> None:
     """With pictures: a comparison of a part of the run."""
     out = tmp_path / "out"

@@ -191,7 +191,7 @@ def test_the_same_machine_keeps_what_was_known(spring) -> None:
 def test_a_run_held_out_is_predicted_with_its_setups_fitted(knocked) -> None:
     runs = made(4, [{}, {}, {}])
     runs["c"] = replace(runs["c"], split=np.full(len(runs["c"]), "test"))
-    found = diagnose(joined(runs))
+    found = diagnose(joined(runs), candidates=[])
     last = found.trend.runs[-1]
     assert last.is_held_out
     assert last.left_out == pytest.approx(found.fit.test_rms)
@@ -232,7 +232,7 @@ def test_the_command_tells_what_changed_and_saves_the_machine_as_it_is_now(
 ) -> None:
     files = [str(folder / f"{n}.csv") for n in ("spring", "autumn")]
     out = tmp_path / "out"
-    assert main(["diagnose", *files, "-o", str(out)]) == 0
+    assert main(["diagnose", *files, "--only", "backlash", "-o", str(out)]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "from spring to autumn squareness of Y to X (EC0Y) changed from" in printed
     table = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
@@ -257,7 +257,17 @@ def test_the_command_tells_what_changed_and_saves_the_machine_as_it_is_now(
 def test_a_run_is_held_out_by_its_name(folder, tmp_path, capsys) -> None:
     files = [str(folder / f"{n}.csv") for n in ("spring", "autumn")]
     out = tmp_path / "out"
-    command = ["diagnose", *files, "--hold-out", "autumn", "-o", str(out), "--no-report"]
+    command = [
+        "diagnose",
+        *files,
+        "--hold-out",
+        "autumn",
+        "--only",
+        "backlash",
+        "-o",
+        str(out),
+        "--no-report",
+    ]
     assert main(command) == 0
     capsys.readouterr()
     table = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))

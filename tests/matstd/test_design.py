@@ -38,6 +38,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: int = 10) -> Path:
     """The example project with fewer poses, draws and touches."""
     (folder / "machine.toml").write_text((EXAMPLES / "hsm600u-machine.toml").read_text())
+    (folder / "task.toml").write_text((EXAMPLES / "task.toml").read_text())
     text = (EXAMPLES / "hsm600u.toml").read_text()
     for old, new in (
         ("hsm600u-machine.toml", "machine.toml"),
@@ -59,7 +60,8 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The whole command with fewer candidates, one rival of spheres and no maps but the path.
+    """The whole command with fewer candidates, one rival of spheres, one of another shape, no maps
+    but the path.
 
     `make proof` has them all; maps are those of `matstd sensitivity`, which has its own test.
     """
@@ -70,6 +72,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(design, "placement_options", fewer)
         patch.setattr(ball_choice, "_PLACES", 60)
         patch.setattr(comparison, "COUNTS", (4,))
+        bodies = comparison.rivals
+        patch.setattr(comparison, "rivals", lambda *of: dict([*bodies(*of).items()][:1]))
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
@@ -85,6 +89,7 @@ def test_every_file_is_there(made: Path) -> None:
         "run.csv",
         "identification.json",
         "uncertainty.json",
+        "cmm.dmi",
         "identifiability.json",
         "report.html",
         "setup/setup.html",

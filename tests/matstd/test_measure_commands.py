@@ -24,6 +24,9 @@ BAD = 2
 SAME_U = 0.1
 """Touches that count twice would make an uncertainty smaller by 30 %."""
 
+NARROW = ["--only", "backlash", "--no-report"]
+"""Where it does not matter what else might be found: half the time of a diagnosis."""
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
@@ -38,7 +41,7 @@ def folder(tmp_path_factory):
     out.mkdir()
     (out / "next_measurement_1.csv").write_text("of another day")
     (out / "notes.txt").write_text("mine")
-    words = ["diagnose", str(place / "run.csv"), "--add", "backlash(Y)", "--no-report"]
+    words = ["diagnose", str(place / "run.csv"), "--add", "backlash(Y)", *NARROW]
     assert main([*words, "-o", str(out), "--force"]) == 0
     return place
 
@@ -86,7 +89,7 @@ def test_no_touch_counts_twice(folder, tmp_path, capsys) -> None:
     """Begun with a model of the same run, the same estimates come out, not surer ones."""
     run, model = str(folder / "run.csv"), folder / "added" / "model.toml"
     again = tmp_path / "again"
-    assert main(["diagnose", run, "--model", str(model), "-o", str(again), "--no-report"]) == 0
+    assert main(["diagnose", run, "--model", str(model), "-o", str(again), *NARROW]) == 0
     assert "learnt from this very run" in capsys.readouterr().out
     first, second = read_model(model), read_model(again / "model.toml")
     u = [float(np.linalg.norm(m.estimates.root[-1])) for m in (first, second)]  # of the reversal
@@ -106,7 +109,7 @@ def test_a_model_says_what_it_rests_upon(folder, tmp_path) -> None:
     (tmp_path / "half.csv").write_text("\n".join(kept) + "\n", encoding="utf-8")
     (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text(encoding="utf-8"))
     model = folder / "added" / "model.toml"
-    words = ["diagnose", str(tmp_path / "half.csv"), "--model", str(model), "--no-report"]
+    words = ["diagnose", str(tmp_path / "half.csv"), "--model", str(model), *NARROW]
     assert main([*words, "-o", str(tmp_path / "o")]) == 0
     source = read_model(tmp_path / "o" / "model.toml").source
     assert source.revision == 2
@@ -135,7 +138,7 @@ def test_effects_that_cannot_be_added(folder, tmp_path, capsys, effects, expecte
 
 
 def test_a_named_effect_is_not_called_missing(folder, tmp_path, capsys) -> None:
-    words = ["diagnose", str(folder / "run.csv"), "--add", "probe-radius", "--no-report"]
+    words = ["diagnose", str(folder / "run.csv"), "--add", "probe-radius", *NARROW]
     assert main([*words, "-o", str(tmp_path / "o")]) == 0
     told = capsys.readouterr().out
     assert "The model lacks one effect: reversal of Y" in told

@@ -9,6 +9,7 @@ import pytest
 
 from artefact.body import contact, write_standard
 from matstd.cli import main
+from matstd.commands.replan import feeds_of
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.evaluation import ball_centres
@@ -16,7 +17,8 @@ from probe_paths.campaign.simulation import simulate_search
 from probe_paths.campaign.virtual_run import run_program
 from probe_paths.control.interpreter import interpret, read_program
 from probe_paths.control.log import read_log
-from probe_paths.emit.program import make_search
+from probe_paths.emit.program import make_programs, make_search
+from probe_paths.emit.writer import Feeds
 from probe_paths.locate.find import find_standard
 from probe_paths.locate.relief import Relief
 from probe_paths.locate.search_plan import Spread, plan_search
@@ -172,6 +174,16 @@ def test_programs_are_planned_again_where_the_standard_stands(
     assert sum(len(one.touches) for one in read) > 0.9 * before
     assert (out / "setup" / "setup.html").exists()
     assert (out / "setup" / "MS_A_DRY.H").exists()
+
+
+def test_programs_keep_their_feeds_when_planned_again(plan, chain):
+    feeds = Feeds(probing=120.0, approach=1500.0, turning=700.0)
+    made = make_programs(plan, feeds=feeds)
+    read = [
+        interpret(p.text.encode("ascii"), Path(p.file), made.masks.get, chain)
+        for p in made.programs
+    ]
+    assert feeds_of(read, chain) == feeds
 
 
 def test_a_log_of_another_standard_is_refused(log, design, tmp_path, capsys):

@@ -27,7 +27,12 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
     power = SimpleNamespace(touches=160, power=np.array([0.9, 1.0]), found=1, effects=("a", "b"))
     body = SimpleNamespace(patches=("FF1", "FF2"))
     return SimpleNamespace(
-        own=rivals[0], rivals=rivals, power=power, power_of_balls=power, standard=body
+        own=rivals[0],
+        rivals=rivals,
+        power=power,
+        power_in_volume=power,
+        power_of_balls=power,
+        standard=body,
     )
 
 
@@ -89,5 +94,9 @@ def test_a_workspace_beyond_the_touches_is_told_by_axis(chain: Chain) -> None:
         "The touches read only X -100 to 90 mm (workspace -400 to 400) and "
         "B 0 to 10° (workspace -90 to 0): beyond, the model extrapolates" in words
     )
-    inside = {"X": (-100.0, 100.0), "Y": (-80.0, 80.0)}
+    most = {"X": (-120.0, 120.0)}
+    assert verdict_of_design(made, most) == verdict_of_design(made, {})
+    made.own.rms = made.own.rms_user / 10.0  # far worse known than what was probed
+    assert "only X -100 to 90 mm (workspace -120 to 120)" in verdict_of_design(made, most)
+    inside = {"X": (-100.0, 90.0), "Y": (-80.0, 120.0)}
     assert verdict_of_design(made, inside) == verdict_of_design(made, {})

@@ -119,12 +119,12 @@ def test_a_renderer_that_fails_names_the_package_and_nothing_is_written(tmp_path
 # the standard by itself
 
 
-def test_faces_spheres_and_plane_are_in_the_picture(small, built, tmp_path):
+def test_faces_spheres_and_plane_are_in_the_picture(upright, built, tmp_path):
     from matplotlib.image import imread
 
     path = tmp_path / "standard.png"
     try:
-        draw_standard(small, built[0] / "standard.stl", path)
+        draw_standard(upright, built[0] / "standard.stl", path)
     except MissingLibrary:  # on a machine without OpenGL; what it says is tested below
         return
     image = imread(path)[..., :3]
@@ -136,11 +136,11 @@ def test_faces_spheres_and_plane_are_in_the_picture(small, built, tmp_path):
 
 
 def test_without_opengl_the_package_is_named_and_nothing_written(
-    small, built, tmp_path, monkeypatch
+    upright, built, tmp_path, monkeypatch
 ):
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
     with pytest.raises(MissingLibrary, match="apt-get install libegl1") as caught:
-        draw_standard(small, built[0] / "standard.stl", tmp_path / "standard.png")
+        draw_standard(upright, built[0] / "standard.stl", tmp_path / "standard.png")
     assert "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
 

@@ -122,3 +122,21 @@ def test_a_circle_beside_the_travel_is_refused(table):
     test = read_circle(table(), "XY", RADIUS)
     with pytest.raises(DesignError, match="--centre"):
         circle_run(test, circle_machine("XY", RADIUS), 0.2 * UM, (50.0, 0.0, 0.0))
+
+
+def test_a_loaded_bar_pushes_the_tool_outwards(tmp_path):
+    """40 nm/N of X under 300 N: the circle is 12 um wider along X, whatever X reads."""
+    path = tmp_path / "bar.csv"
+    angles = np.arange(0.0, 360.0, 5.0)
+    wider = 12.0 * np.cos(np.radians(angles)) ** 2
+    rows = [f"{a:g},{w:.4f}" for a, w in zip(angles, wider, strict=True)]
+    path.write_text("angle_deg,deviation_um\n" + "\n".join(rows) + "\n")
+    out = tmp_path / "run.csv"
+    asked = ["import", str(path), "--circle", "XY", "--radius", "150", "--u-um", "0.5"]
+    asked += ["--bar-force", "300"]
+    assert main([*asked, "-o", str(out)]) == 0
+    run = read_run(out)
+    stiff = parse_effect("tool-point-stiffness", run.touches.chain)
+    C = columns([stiff], run.touches)
+    found = np.linalg.lstsq(C[:, :1], run.deviation)[0]
+    assert found[0] == pytest.approx(40e-6, rel=1e-3)

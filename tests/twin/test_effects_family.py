@@ -28,6 +28,27 @@ def on_a_path(touches):
     return replace(touches, instrument=Instrument.BALL_BAR, value=speeds)
 
 
+def elastic(touches):
+    """Beams that nobody proposes: sections are the user's to say."""
+    chain = touches.chain
+    axis = next(a for a in chain.linear_axes if not carried_by_rotary(chain, a))
+    low, high = chain.link(axis).range
+    at, span = 50.0 - low, high - low + 100.0
+    texts = (
+        f"beam({axis},cantilever,220x180x20,at:{at:g},mass:80,offset:0:60:-100)",
+        f"beam({axis},clamped,d160,at:{at:g},span:{span:g},mass:120,material:cast-iron)",
+        f"beam({axis},supported,200x300,at:{high + 50.0:g},sense:-1,span:{span:g},down:+Y)",
+    )
+    return [parse_effect(text, chain) for text in texts]
+
+
+def carried_by_rotary(chain, axis):
+    i = chain.link_index(axis)
+    ground = chain.links[i + 1 :] if chain.link(axis).carries_workpiece else chain.links[:i]
+    same = [k for k in ground if k.carries_workpiece == chain.link(axis).carries_workpiece]
+    return any(k.kind == "rotary" for k in same)
+
+
 RUNS = {label: made_up(label) for label in MACHINES} | {"arm": arm_poses()}
 ALL = [
     (label, e)
@@ -38,6 +59,7 @@ ALL = [
         *proposals(replace(touches, instrument=Instrument.LASER), ["position-table"]),
         *proposals(on_a_path(touches), ["servo-lag"]),
         field(touches),  # weighed against what is proposed
+        *elastic(touches),  # sections are the user's
     )
 ]
 ALL += [("arm", e) for e in proposals(RUNS["arm"], ["joint-sag"])]

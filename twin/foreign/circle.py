@@ -213,6 +213,7 @@ def circle_run(
     u: float,
     centre: Sequence[float] = (0.0, 0.0, 0.0),
     feed: float | None = None,
+    bar_force: float | None = None,
 ) -> Run:
     """Run of a circular test: a row a reading, along the radius outwards.
 
@@ -222,6 +223,7 @@ def circle_run(
         u: Standard uncertainty of one reading, mm.
         centre: Readings of X, Y and Z at the centre of the circle, mm.
         feed: Along the path, mm/min: times of the rows follow from it; None leaves them 0.
+        bar_force: Of a loaded bar that pushes the tool away from the centre, N; negative pulls.
 
     Raises:
         UnknownAxis: The machine does not have the axes.
@@ -251,18 +253,20 @@ def circle_run(
     D = linear_directions(chain, at_centre)
     columns = [chain.linear_axes.index(letter) for letter in test.plane]
     normal = np.einsum("nij,nj->ni", D[:, :, columns], around)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
     touches = Touches(
         chain=chain,
         q=q,
         length=np.zeros(n),
         radius=np.zeros(n),
         point=apply(table_to_tool(chain, q), np.zeros((n, 3))),
-        normal=normal / np.linalg.norm(normal, axis=1)[:, None],
+        normal=normal,
         setups=(Setup("a"),),
         setup=np.zeros(n, dtype=np.int64),
         time=_times(test, feed),
         approach=approach,
         feature=test.run,
+        force=None if bar_force is None else bar_force * normal,
         instrument=Instrument.BALL_BAR,
     )
     return Run(touches, -test.deviation, np.full(n, u), line=test.line)

@@ -31,6 +31,7 @@ from twin.effects import (
     servo_lag,
     stiffness,
 )
+from twin.elastic import body, tool_point
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.library.trial import users_fault
 from twin.machine import Chain
@@ -316,6 +317,8 @@ for _kind in (
     joint_sag.KIND,
     servo_lag.KIND,
     stiffness.KIND,
+    body.KIND,
+    tool_point.KIND,
     probe.LOBING,
     probe.RADIUS,
     probe.BENDING,

@@ -1,5 +1,6 @@
 """Triangles of the standard: joined to a closed mesh, measured against the exact surfaces."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,6 +40,11 @@ class Mesh:
     triangles: np.ndarray
     owner: np.ndarray
 
+    def of(self, which: np.ndarray) -> "Mesh":
+        """Some triangles with the corners that they have."""
+        used, back = np.unique(self.triangles[which], return_inverse=True)
+        return Mesh(self.corners[used], back.reshape(-1, 3), self.owner[which])
+
 
 def welded(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> Mesh:
     """Join the corners of neighbouring faces and drop what collapses.
@@ -65,6 +71,62 @@ def welded(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> Mesh:
     a, b, c = joined.T
     whole = (a != b) & (b != c) & (c != a)
     return Mesh(corners[first], joined[whole], owner[whole])
+
+
+def ball_mesh(sphere: DatumSphere, chord: float) -> Mesh:
+    """A ball of nearly equal triangles: an icosahedron whose sides are cut and blown up.
+
+    Args:
+        sphere: The ball.
+        chord: Largest distance of a triangle from the ball, mm.
+    """
+    corners, faces = _icosahedron()
+    # the middle of a triangle of edge e lies e^2 / 6 R below; the largest is a fifth wider
+    edge = np.sqrt(6.0 * sphere.radius * chord) / 1.25
+    side = sphere.radius * np.linalg.norm(np.subtract(*corners[faces[0, :2]]))
+    n = max(int(np.ceil(side / edge)), 2)
+    lattice = [(i, j) for i in range(n + 1) for j in range(n + 1 - i)]
+    at = {place: k for k, place in enumerate(lattice)}
+    up = [(at[i, j], at[i + 1, j], at[i, j + 1]) for i, j in lattice if i + j < n]
+    down = [(at[i + 1, j], at[i + 1, j + 1], at[i, j + 1]) for i, j in lattice if i + j < n - 1]
+    share = np.array([(n - i - j, i, j) for i, j in lattice]) / n
+    points = np.einsum("lk,fki->fli", share, corners[faces])
+    points = points / np.linalg.norm(points, axis=-1, keepdims=True)
+    triangles = np.array(up + down) + len(lattice) * np.arange(len(faces))[:, None, None]
+    flat = triangles.reshape(-1, 3)
+    where = sphere.centre + sphere.radius * points.reshape(-1, 3)
+    return welded(where, flat, np.full(len(flat), sphere.name))
+
+
+def _icosahedron() -> tuple[Array, np.ndarray]:
+    """Corners (12, 3) on the unit ball, faces (20, 3) with outward winding."""
+    from scipy.spatial import ConvexHull
+
+    golden = 0.5 * (1.0 + np.sqrt(5.0))
+    corners = np.array(
+        [
+            np.roll([0.0, s, t * golden], shift)
+            for shift in range(3)
+            for s in (-1.0, 1.0)
+            for t in (-1.0, 1.0)
+        ]
+    )
+    faces = np.sort(ConvexHull(corners).simplices, axis=1)
+    faces = faces[np.lexsort(faces.T[::-1])]
+    a, b, c = (corners[faces[:, k]] for k in range(3))
+    inwards = np.einsum("ni,ni->n", np.cross(b - a, c - a), a) < 0.0
+    faces[inwards] = faces[inwards][:, ::-1]
+    return corners / np.linalg.norm(corners[0]), faces
+
+
+def joined(meshes: Sequence[Mesh]) -> Mesh:
+    """Several meshes as one, each a shell of its own."""
+    before = np.cumsum([0, *(len(mesh.corners) for mesh in meshes)])
+    return Mesh(
+        np.concatenate([mesh.corners for mesh in meshes]),
+        np.concatenate([m.triangles + k for m, k in zip(meshes, before, strict=False)]),
+        np.concatenate([mesh.owner for mesh in meshes]),
+    )
 
 
 def write_stl(path: Path, mesh: Mesh) -> None:
@@ -133,6 +195,36 @@ def chord_errors(
         points = np.einsum("lk,fki->fli", _LATTICE, mine).reshape(-1, 3)
         errors[surface.name] = float(np.abs(_distance(surface, points)).max())
     return errors
+
+
+def inner_folds(corners: Array, triangles: np.ndarray, least: float) -> tuple[Array, Array]:
+    """Edges at which a closed mesh is folded inwards by more than an angle.
+
+    Args:
+        corners: Shape (V, 3), mm.
+        triangles: Shape (F, 3).
+        least: Angle between the normals of two triangles, rad.
+
+    Returns:
+        Middles (E, 3) and lengths (E,) of these edges, mm.
+    """
+    a, b, c = (corners[triangles[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    apex = np.concatenate([triangles[:, 2], triangles[:, 0], triangles[:, 1]])
+    face = np.tile(np.arange(len(triangles)), 3)
+    ends = np.sort(ends, axis=1)
+    order = np.lexsort(ends.T)
+    first, second = order[:-1], order[1:]
+    same = (ends[first] == ends[second]).all(axis=1)
+    first, second = first[same], second[same]
+    one, other = normal[face[first]], normal[face[second]]
+    begin, end = corners[ends[first, 0]], corners[ends[first, 1]]
+    inwards = np.einsum("ni,ni->n", corners[apex[second]] - begin, one) > 0.0
+    folded = inwards & (np.einsum("ni,ni->n", one, other) < np.cos(least))
+    length = np.linalg.norm(end - begin, axis=1)
+    return 0.5 * (begin + end)[folded], length[folded]
 
 
 def face_areas(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> dict[str, float]:

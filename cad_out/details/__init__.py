@@ -1,0 +1,48 @@
+"""What a workshop adds to the body, by rule from the standard alone and without the CAD kernel.
+
+In: a `Standard`. Out: its `Details`: seats of the balls, pads and screws, datum sides, lifting
+holes, thermometer pocket, lettering. The kernel builds them, the drawing shows them, the report on
+makeability measures them.
+"""
+
+from cad_out.details.detail_list import Details, details_of
+from cad_out.details.lettering import DEPTH, LINE, Lettering
+from cad_out.details.mounting import (
+    BALL,
+    RELIEF,
+    RELIEF_RADIUS,
+    SCREW,
+    Pad,
+    Screw,
+    relief_profile,
+)
+from cad_out.details.places import Bore, Side
+from cad_out.details.seats import Seat, glue_gap
+from cad_out.details.stroke_font import HEIGHT, strokes
+from cad_out.details.tolerances import BALL_SIZE, DATUMS, Tolerance, notes_of, tolerances_of
+
+__all__ = [
+    "BALL",
+    "BALL_SIZE",
+    "DATUMS",
+    "DEPTH",
+    "HEIGHT",
+    "LINE",
+    "RELIEF",
+    "RELIEF_RADIUS",
+    "SCREW",
+    "Bore",
+    "Details",
+    "Lettering",
+    "Pad",
+    "Screw",
+    "Seat",
+    "Side",
+    "Tolerance",
+    "details_of",
+    "glue_gap",
+    "notes_of",
+    "relief_profile",
+    "strokes",
+    "tolerances_of",
+]

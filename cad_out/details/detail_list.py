@@ -1,0 +1,64 @@
+"""All that follows from a standard by rule."""
+
+from dataclasses import dataclass
+
+from artefact.body import Standard
+from cad_out.details.lettering import Lettering, lettering_of
+from cad_out.details.mounting import Pad, Screw, pads_of, screws_of
+from cad_out.details.places import HEAVY, Bore, Side, lifting_holes, sides_of, thermometer_pocket
+from cad_out.details.seats import Seat, seat_of
+
+
+@dataclass(frozen=True, eq=False)
+class Details:
+    """What the workshop adds.
+
+    Attributes:
+        seats: Of the balls, by their names.
+        pads: On which it stands; none where it stands on its whole underside.
+        screws: By size.
+        sides: Of the plate by name: DATUM_B, DATUM_C, NAME, THERMO.
+        bores: Lifting holes and thermometer pocket.
+        lettering: What is engraved.
+        missing: What found no room, in words.
+    """
+
+    seats: dict[str, Seat]
+    pads: tuple[Pad, ...]
+    screws: tuple[Screw, ...]
+    sides: dict[str, Side]
+    bores: tuple[Bore, ...]
+    lettering: tuple[Lettering, ...]
+    missing: tuple[str, ...]
+
+    @property
+    def face_names(self) -> tuple[str, ...]:
+        """Names of the body's faces that come from here."""
+        seats = tuple(f"{name}_SEAT" for name in self.seats)
+        pads = tuple(pad.name for pad in self.pads) or ("SEAT",)
+        return ("DATUM_B", "DATUM_C", *seats, *pads, *(bore.name for bore in self.bores))
+
+
+def details_of(standard: Standard) -> Details:
+    """The details of a standard, the same for the same standard.
+
+    Raises:
+        NotBuildable: A post is too thin for the seat of its ball.
+    """
+    mass, sides = standard.mass(step=6.0), sides_of(standard)
+    lifting = lifting_holes(standard, mass)
+    pocket = thermometer_pocket(standard, sides["THERMO"], lifting)
+    bores = (*lifting, *([pocket] if pocket else []))
+    lettering, nameless = lettering_of(standard, sides, bores)
+    missing = [f"a number beside {name}" for name in nameless]
+    missing += ["lifting holes"] if mass > HEAVY and not lifting else []
+    missing += [] if pocket else ["a pocket for a thermometer"]
+    return Details(
+        seats={sphere.name: seat_of(sphere) for sphere in standard.spheres},
+        pads=pads_of(standard),
+        screws=screws_of(standard),
+        sides=sides,
+        bores=bores,
+        lettering=lettering,
+        missing=tuple(missing),
+    )

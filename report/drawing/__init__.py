@@ -1,0 +1,10 @@
+"""The drawing of a standard as a workshop and a calibration laboratory get it, PDF and SVG.
+
+In: a `Standard` with its `Details`. Out: one sheet of three views, two sections, dimensions,
+datums, tolerances, roughness, tables of faces, balls and holes with their purpose, title block.
+Everything is drawn from the design itself, at its scale, and not from a mesh.
+"""
+
+from report.drawing.drawing import DRAWING, Issuer, write_drawing
+
+__all__ = ["DRAWING", "Issuer", "write_drawing"]

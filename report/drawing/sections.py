@@ -1,0 +1,90 @@
+"""Enlarged sections: a ball in its seat, a screw through its pad."""
+
+import numpy as np
+
+from artefact.body import BLEND, Standard
+from cad_out.details import DEPTH, LINE, RELIEF, Details, glue_gap
+from report.drawing.sheet import THIN, WIDE, Sheet, View
+from twin.units import DEG
+
+
+def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
+    """A ball and its seat, halved; the view's origin is the ball's centre."""
+    sphere = standard.spheres[0]
+    seat, z = details.seats[sphere.name], sphere.centre[2]
+    taper = (sphere.foot_radius - sphere.stem_radius) / (z - sphere.foot)
+    floor = seat.bottom - z - 0.35 * sphere.radius
+    low = seat.top_radius + taper * (seat.top - z - floor)
+    top, deep = seat.top - z, seat.bottom - z
+    wall = [[-low, floor], [-seat.top_radius, top], [-seat.rim_radius, top], [0.0, deep]]
+    mirrored = [[-x, y] for x, y in wall[-2::-1]]
+    sheet.line(view.at([*wall, *mirrored, wall[0]]), WIDE, fill="0.9")
+    sheet.circle(view.at([[0.0, 0.0]])[0], view.scale * sphere.radius, fill="white")
+    rim = 1.2 * sphere.radius
+    sheet.line(view.at([[0.0, floor - 2.0], [0.0, rim]]), 0.13, "-.")
+    circle = [seat.contact_radius, seat.contact - z]
+    tip = view.at([circle])[0]
+    contact = f"contact circle Ø{2 * seat.contact_radius:.1f}, metal on metal"
+    sheet.leader(tip, np.add(tip, [14.0, 9.0]), contact)
+    glue = view.at([[seat.rim_radius, top + 0.5 * glue_gap(sphere, seat)]])[0]
+    sheet.leader(
+        glue, np.add(glue, [12.0, 1.0]), f"glue outside only, {glue_gap(sphere, seat):.2f} wide"
+    )
+    half = seat.half_angle / DEG
+    flank = view.at([[0.45 * seat.rim_radius, 0.55 * deep + 0.45 * top]])[0]
+    beside = np.add(view.at([[low, floor]])[0], [8.0, 5.0])
+    sheet.leader(flank, beside, f"{2 * half:.0f}°, Ra 0.8")
+    size = view.at([[-0.7 * sphere.radius, 0.7 * sphere.radius]])[0]
+    sheet.leader(size, np.add(size, [-6.0, 5.0]), f"SØ{2 * sphere.radius:g} ±0.0025")
+    where = view.at([[0.0, 1.3 * sphere.radius]])[0]
+    title = f"BALL IN ITS SEAT ({_ratio(view.scale)}), all {len(standard.spheres)} alike"
+    sheet.text(where[0], where[1] + 3.0, title, size=3.0, ha="center")
+
+
+def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
+    """A screw in its counterbore above its pad, halved; the view's origin is below the screw."""
+    hole, thick = standard.holes[0], standard.base.thickness
+    pad = details.pads[0].radius if details.pads else hole.bore_radius + 12.0
+    low = RELIEF if details.pads else 0.0
+    wide, floor = pad + 14.0, thick - hole.bore_depth
+    left = [[-wide, low], [-pad, low], [-pad, 0.0], [-hole.radius, 0.0], [-hole.radius, floor]]
+    left += [[-hole.bore_radius, floor], [-hole.bore_radius, thick], [-wide, thick]]
+    for sign in (1.0, -1.0):
+        sheet.line(view.at([[sign * x, y] for x, y in [*left, left[0]]]), WIDE, fill="0.9")
+    for screw in details.screws[:1]:
+        d, h = 0.5 * screw.diameter, 0.5 * screw.head
+        end = floor - screw.length
+        shape = [[-h, floor], [-d, floor], [-d, end], [d, end], [d, floor], [h, floor]]
+        head = [[h, floor + screw.diameter], [-h, floor + screw.diameter], shape[0]]
+        sheet.line(view.at([*shape, *head]), THIN, fill="white")
+        tip = view.at([[d, end + 4.0]])[0]
+        total = sum(len(kind.holes) for kind in details.screws)
+        sheet.leader(tip, np.add(tip, [8.0, -1.0]), f"{total} x {screw.name}")
+    sheet.line(view.at([[0.0, -18.0], [0.0, thick + 6.0]]), 0.13, "-.")
+    a, b = view.at([[-hole.bore_radius, thick], [hole.bore_radius, thick]])
+    sheet.dimension(a, b, 5.0, f"Ø{2 * hole.bore_radius:g}")
+    a, b = view.at([[-wide, low], [-wide, thick]])
+    sheet.dimension(a, b, 5.0, f"{thick - low:g}")
+    a, b = view.at([[wide, floor], [wide, thick]])
+    sheet.dimension(a, b, -5.0, f"{hole.bore_depth:g}")
+    if details.pads:
+        a, b = view.at([[-pad, 0.0], [pad, 0.0]])
+        sheet.dimension(a, b, -9.0, f"Ø{2 * pad:g}")
+        edge = view.at([[-pad - 1.0, RELIEF]])[0]
+        sheet.leader(edge, np.add(edge, [-8.0, -9.0]), f"R{BLEND:g}, step {RELIEF:g}")
+        sheet.roughness(
+            np.add(view.at([[0.5 * (pad + hole.radius), 0.0]])[0], [0.0, -5.5]), "Ra 0.8"
+        )
+    where = view.at([[0.0, thick]])[0]
+    through = f"Ø{2 * hole.radius:g} through"
+    title = f"SCREW AND PAD ({_ratio(view.scale)}), {len(standard.holes)} alike, {through}"
+    sheet.text(where[0], where[1] + 11.0, title, size=3.0, ha="center")
+
+
+def engraving_words() -> str:
+    """How lettering is made."""
+    return f"Lettering {DEPTH:g} deep, {LINE:g} wide, single strokes; never on a datum's touches."
+
+
+def _ratio(scale: float) -> str:
+    return f"{scale:g}:1" if scale >= 1.0 else f"1:{np.round(1.0 / scale, 2):g}"

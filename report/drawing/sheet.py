@@ -1,0 +1,203 @@
+"""A sheet of paper in millimetres, and the signs of technical drawings on it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from report.style import figure
+from twin.frames import Array
+
+WIDTH, HEIGHT = 594.0, 420.0
+"""A2, mm."""
+
+WIDE, THIN = 0.5, 0.25
+"""Lines of ISO 128-2, mm."""
+
+_POINT = 72.0 / 25.4  # points a millimetre
+_MARGIN, _BINDING = 10.0, 20.0
+_ARROW = 2.6  # mm
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """Where a view lies on the sheet.
+
+    Attributes:
+        x: Of the view's origin, mm of paper.
+        y: Likewise.
+        scale: Paper by part.
+    """
+
+    x: float
+    y: float
+    scale: float
+
+    def at(self, points: Any) -> Array:
+        """Points (N, 2) of the view on paper, mm."""
+        placed: Array = np.array([self.x, self.y]) + self.scale * np.atleast_2d(points)
+        return placed
+
+
+class Sheet:
+    """Lines and signs, all in millimetres of paper from the lower left corner."""
+
+    def __init__(self) -> None:
+        self.figure = figure(HEIGHT / 25.4, WIDTH / 25.4, layout=None)
+        self.axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        self.axes.set_xlim(0.0, WIDTH)
+        self.axes.set_ylim(0.0, HEIGHT)
+        self.axes.set_axis_off()
+        self._depth = 1.0
+        self.box(_BINDING, _MARGIN, WIDTH - _MARGIN - _BINDING, HEIGHT - 2 * _MARGIN, 0.7)
+
+    def line(self, points: Any, width: float = THIN, style: str = "-", fill: str = "none") -> None:
+        """A polyline, or a filled figure that hides what was drawn before."""
+        from matplotlib.patches import Polygon
+
+        p = np.atleast_2d(points)
+        self._depth += 1e-3
+        closed = fill != "none" or bool(np.allclose(p[0], p[-1]))
+        dashes = {"--": (0, (8, 4)), "-.": (0, (20, 4, 2, 4))}.get(style, "-")
+        self.axes.add_patch(
+            Polygon(
+                p,
+                closed=closed,
+                facecolor=fill,
+                edgecolor="black",
+                lw=width * _POINT,
+                ls=dashes,
+                zorder=self._depth,
+                joinstyle="round",
+                fill=fill != "none",
+            )
+        )
+
+    def circle(
+        self, middle: Any, radius: float, width: float = WIDE, style: str = "-", fill: str = "none"
+    ) -> None:
+        """A circle; filled it hides what was drawn before."""
+        t = np.linspace(0.0, 2.0 * np.pi, 97)
+        ring = np.asarray(middle) + radius * np.column_stack([np.cos(t), np.sin(t)])
+        self.line(ring, width, style, fill)
+
+    def box(self, x: float, y: float, w: float, h: float, width: float = THIN) -> None:
+        """A rectangle."""
+        self.line([[x, y], [x + w, y], [x + w, y + h], [x, y + h], [x, y]], width)
+
+    def text(
+        self, x: float, y: float, words: str, size: float = 2.5, ha: str = "left", turn: float = 0.0
+    ) -> None:
+        """Words of a height in millimetres, standing on a line."""
+        self._depth += 1e-3
+        self.axes.text(
+            x, y, words, fontsize=1.35 * size * _POINT, ha=ha, va="baseline", rotation=turn,
+            rotation_mode="anchor", zorder=self._depth,
+        )  # fmt: skip
+
+    def arrow(self, tip: Any, direction: Any) -> None:
+        """Head of an arrow."""
+        d = np.asarray(direction, dtype=float)
+        d /= np.linalg.norm(d)
+        n, p = np.array([-d[1], d[0]]), np.asarray(tip, dtype=float)
+        head = [p, p - _ARROW * d + 0.4 * n, p - _ARROW * d - 0.4 * n]
+        self._depth += 1e-3
+        self.axes.fill(*np.array(head).T, color="black", lw=0, zorder=self._depth)
+
+    def dimension(self, a: Any, b: Any, offset: float, words: str) -> None:
+        """A linear dimension between two places, its line `offset` to the left of the way."""
+        p, q = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+        along = (q - p) / np.linalg.norm(q - p)
+        n = np.array([-along[1], along[0]])
+        side = np.sign(offset) * n
+        c, d = p + offset * n, q + offset * n
+        for begin, end in ((p, c), (q, d)):
+            self.line([begin + 1.0 * side, end + 1.5 * side])
+        self.line([c, d])
+        self.arrow(c, -along)
+        self.arrow(d, along)
+        turn = float(np.degrees(np.arctan2(along[1], along[0])))
+        up, turn = (n, turn) if -89.9 < turn <= 90.1 else (-n, turn - 180.0)
+        middle = 0.5 * (c + d) + 0.9 * up
+        self.text(middle[0], middle[1], words, ha="center", turn=turn)
+
+    def leader(self, tip: Any, elbow: Any, words: str = "") -> None:
+        """A line from words to what they are about."""
+        p, e = np.asarray(tip, dtype=float), np.asarray(elbow, dtype=float)
+        self.line([p, e])
+        self.arrow(p, p - e)
+        if words:
+            right = e[0] >= p[0]
+            end = np.add(e, [4.0 if right else -4.0, 0.0])
+            self.line([e, end])
+            self.text(end[0] + (1.0 if right else -1.0), end[1] - 0.9, words,
+                      ha="left" if right else "right")  # fmt: skip
+
+    def datum(self, foot: Any, direction: Any, letter: str) -> None:
+        """Filled triangle on a face, and the letter in its box (ISO 5459)."""
+        d, p = np.asarray(direction, dtype=float), np.asarray(foot, dtype=float)
+        n = np.array([-d[1], d[0]])
+        self._depth += 1e-3
+        triangle = np.array([p + 1.6 * n, p - 1.6 * n, p + 2.6 * d])
+        self.axes.fill(*triangle.T, color="black", lw=0, zorder=self._depth)
+        middle = p + 9.0 * d
+        self.line([p + 2.6 * d, middle - 2.5 * d])
+        self.box(middle[0] - 2.5, middle[1] - 2.5, 5.0, 5.0)
+        self.text(middle[0], middle[1] - 1.3, letter, size=3.0, ha="center")
+
+    def roughness(self, foot: Any, words: str) -> None:
+        """Sign of ISO 21920-1 for a machined face, standing on it."""
+        x, y = np.asarray(foot, dtype=float)
+        self.line([[x - 1.4, y + 2.4], [x, y], [x + 2.8, y + 4.8], [x + 11.0, y + 4.8]])
+        self.line([[x - 1.4, y + 2.4], [x + 1.4, y + 2.4]])
+        self.text(x + 3.0, y + 2.2, words, size=2.0)
+
+    def tolerance(self, x: float, y: float, kind: str, width: str, datums: str) -> float:
+        """A tolerance frame of ISO 1101; returns how wide it is."""
+        cells = [7.0, 3.0 + 2.1 * len(width), *([6.0] * len(datums))]
+        at = x
+        for cell in cells:
+            self.box(at, y, cell, 6.0)
+            at += cell
+        self._sign(kind, x + 3.5, y + 3.0)
+        self.text(x + 7.0 + 0.5 * cells[1], y + 1.8, width, ha="center")
+        for k, letter in enumerate(datums):
+            self.text(x + 10.0 + cells[1] + 6.0 * k, y + 1.8, letter, ha="center")
+        return sum(cells)
+
+    def contours(self, x: Array, y: Array, z: Array, levels: int) -> None:
+        """Thin lines of equal height over a grid."""
+        self._depth += 1e-3
+        self.axes.contour(x, y, z, levels=levels, colors="0.6", linewidths=0.4, zorder=self._depth)
+
+    def _sign(self, kind: str, x: float, y: float) -> None:
+        middle, t = np.array([x, y]), np.linspace(0.0, np.pi, 40)
+        signs: dict[str, list[Any]] = {
+            "flatness": [[[-2.4, -1.2], [1.2, -1.2], [2.4, 1.2], [-1.2, 1.2], [-2.4, -1.2]]],
+            "parallelism": [[[-1.6, -1.8], [0.2, 1.8]], [[-0.2, -1.8], [1.6, 1.8]]],
+            "perpendicularity": [[[-2.0, -1.6], [2.0, -1.6]], [[0.0, -1.6], [0.0, 1.8]]],
+            "position": [[[-2.4, 0.0], [2.4, 0.0]], [[0.0, -2.4], [0.0, 2.4]]],
+            "profile": [np.column_stack([2.2 * np.cos(t), 2.4 * np.sin(t) - 1.2]),
+                        [[-2.2, -1.2], [2.2, -1.2]]],
+        }  # fmt: skip
+        for points in signs[kind]:
+            self.line(middle + np.asarray(points), 0.3)
+        if kind == "position":
+            self.circle(middle, 1.5, 0.3)
+
+    def table(
+        self, x: float, top: float, widths: Sequence[float], rows: Sequence[Sequence[str]],
+        title: str,
+    ) -> float:  # fmt: skip
+        """A table under its title, first row bold lines; returns the height of its lower edge."""
+        self.text(x, top + 1.2, title, size=3.0)
+        height, y = 4.6, top
+        for number, row in enumerate(rows):
+            at = x
+            for width, words in zip(widths, row, strict=True):
+                self.box(at, y - height, width, height, WIDE if number == 0 else 0.13)
+                self.text(at + 1.0, y - height + 1.4, words, size=1.9)
+                at += width
+            y -= height
+        return y

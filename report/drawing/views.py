@@ -1,0 +1,169 @@
+"""Three views of a standard, drawn far to near so that what is behind is hidden."""
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from artefact.body import DatumSphere, FreeformPatch, Standard
+from cad_out.details import HEIGHT, RELIEF, Details, strokes
+from report.drawing.sheet import THIN, WIDE, Sheet, View
+from twin.frames import Array, apply
+
+_SAMPLES = 41  # along an edge of a face
+_LEVELS = 6  # lines of equal height on a face
+
+
+def draw_top(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
+    """From above: plate, holes, pillars with lines of equal height, balls, lettering."""
+    base = standard.base
+    sheet.line(view.at(_outline(base.half_size, base.corner_radius, details)), WIDE, fill="white")
+    for pad in details.pads:
+        sheet.circle(view.at([pad.x, pad.y])[0], view.scale * pad.radius, THIN, "--")
+    _holes(sheet, view, standard, details)
+    for patch in standard.patches:
+        _patch_from_above(sheet, view, patch)
+    for sphere in standard.spheres:
+        middle = view.at(sphere.centre[:2])[0]
+        sheet.circle(middle, view.scale * max(sphere.foot_radius, sphere.radius), fill="white")
+        sheet.circle(middle, view.scale * sphere.radius)
+        _cross(sheet, view, sphere.centre[:2], sphere.radius)
+        sheet.text(middle[0] + 0.6, middle[1] + 0.6, sphere.name.removeprefix("SPH"), size=2.2)
+    for line in details.lettering:
+        if line.T_artefact_text[2, 2] > 0.5:
+            for stroke in strokes(line.text):
+                ink = np.column_stack([stroke * line.height / HEIGHT, np.zeros(len(stroke))])
+                sheet.line(view.at(apply(line.T_artefact_text, ink)[:, :2]), 0.13)
+
+
+def _holes(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
+    for hole in standard.holes:
+        for radius in (hole.bore_radius, hole.radius):
+            sheet.circle(view.at([hole.x, hole.y])[0], view.scale * radius)
+        _cross(sheet, view, np.array([hole.x, hole.y]), hole.bore_radius)
+        _name(sheet, view, np.array([hole.x, hole.y]), hole.bore_radius, hole.name)
+    for bore in details.bores:
+        begin = np.array(bore.mouth[:2])
+        if bore.direction[2] < 0.0:
+            sheet.circle(view.at(begin)[0], view.scale * bore.radius)
+            _cross(sheet, view, begin, bore.radius)
+            _name(sheet, view, begin, bore.radius, bore.name)
+        else:
+            along = np.array(bore.direction[:2])
+            across = bore.radius * np.array([-along[1], along[0]])
+            end = begin + bore.depth * along
+            corners = [begin + across, end + across, end - across, begin - across]
+            sheet.line(view.at(corners), THIN, "--")
+            _name(sheet, view, end, 2.0, bore.name)
+
+
+def _outline(half: tuple[float, float], radius: float, details: Details) -> Array:
+    """Corners of the plate from above, its flats cut off."""
+    t = np.linspace(0.0, 0.5 * np.pi, 25)
+    points = np.concatenate(
+        [
+            np.array([sx * (half[0] - radius), sy * (half[1] - radius)])
+            + radius * np.column_stack([np.cos(t + turn), np.sin(t + turn)])
+            for sx, sy, turn in (
+                (1, 1, 0.0), (-1, 1, 0.5 * np.pi), (-1, -1, np.pi), (1, -1, 1.5 * np.pi)
+            )
+        ]
+    )  # fmt: skip
+    for side in details.sides.values():
+        axis = 0 if side.normal[0] else 1
+        sign = float(side.normal[axis])
+        points[:, axis] = sign * np.minimum(sign * points[:, axis], side.offset)
+    return np.concatenate([points, points[:1]])
+
+
+def _patch_from_above(sheet: Sheet, view: View, patch: FreeformPatch) -> None:
+    a, b = patch.half_size
+    corners = np.array([[-a, -b], [a, -b], [a, b], [-a, b], [-a, -b]])
+    rim = apply(patch.T_artefact_patch, np.column_stack([corners, patch.height(corners)]))
+    sheet.line(view.at(rim[:, :2]), WIDE, fill="white")
+    u, v = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
+    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    points = patch.point(uv)
+    x, y = (view.at(points[:, :2])[:, k].reshape(_SAMPLES, _SAMPLES) for k in (0, 1))
+    z = points[:, 2].reshape(_SAMPLES, _SAMPLES)
+    sheet.contours(x, y, z, _LEVELS)
+    middle = view.at(patch.T_artefact_patch[:2, 3])[0]
+    sheet.text(middle[0], middle[1] - 1.2, patch.name, size=3.0, ha="center")
+
+
+def _cross(sheet: Sheet, view: View, middle: Array, radius: float) -> None:
+    reach = radius + 3.0 / view.scale * 0.5
+    for way in (np.array([reach, 0.0]), np.array([0.0, reach])):
+        sheet.line(view.at([middle - way, middle + way]), 0.13, "-.")
+
+
+def _name(sheet: Sheet, view: View, middle: Array, radius: float, name: str) -> None:
+    at = view.at(np.add(middle, [0.75 * radius, 0.75 * radius]))[0]
+    sheet.text(at[0] + 0.8, at[1] + 0.8, name, size=1.9)
+
+
+def draw_from(
+    sheet: Sheet, view: View, standard: Standard, details: Details, towards: Array
+) -> None:
+    """A view along a horizontal direction.
+
+    Args:
+        sheet: On which is drawn.
+        view: Its origin is the middle of the underside.
+        standard: What is seen.
+        details: Of it.
+        towards: Unit vector in which one looks, (3,).
+    """
+    right = np.cross(towards, [0.0, 0.0, 1.0])
+    base = standard.base
+    items: list[tuple[float, Callable[[], None]]] = []
+    for patch in standard.patches:
+        depth = float(patch.T_artefact_patch[:3, 3] @ towards)
+        items.append((depth, partial(_pillar, sheet, view, patch, right, base.thickness)))
+    for sphere in standard.spheres:
+        depth = float(sphere.centre @ towards)
+        items.append((depth, partial(_post, sheet, view, sphere, details, right)))
+    for _, draw in sorted(items, key=lambda item: -item[0]):
+        draw()
+    half = float(np.abs(right[:2]) @ base.half_size)
+    low = RELIEF if details.pads else 0.0
+    block = [[-half, low], [half, low], [half, base.thickness], [-half, base.thickness]]
+    sheet.line(view.at([*block, block[0]]), WIDE, fill="white")
+    for sign in (-1.0, 1.0):
+        edge = sign * (half - base.corner_radius)
+        sheet.line(view.at([[edge, low], [edge, base.thickness]]), 0.13)
+    for pad in details.pads:
+        at = float(np.array([pad.x, pad.y]) @ right[:2])
+        corners = [[at - pad.radius, low], [at - pad.radius, 0.0], [at + pad.radius, 0.0]]
+        sheet.line(view.at([*corners, [at + pad.radius, low]]), WIDE)
+
+
+def _pillar(
+    sheet: Sheet, view: View, patch: FreeformPatch, right: Array, foot: float
+) -> None:  # fmt: skip
+    """Walls and the outline of the face, and its nearer edge."""
+    a, b = patch.half_size
+    u, v = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
+    points = patch.point(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2))
+    grid = points.reshape(_SAMPLES, _SAMPLES, 3)
+    if abs(right[0]) < 0.5:  # along x: what was one edge after the other is the depth
+        grid = grid.transpose(1, 0, 2)
+    along, top = (grid @ right).mean(axis=1), grid[:, :, 2].max(axis=1)
+    front = grid[:, 0, 2]
+    ends = [[along[-1], foot], [along[0], foot]]
+    rim = np.column_stack([along, top])
+    sheet.line(view.at(np.concatenate([rim, ends, rim[:1]])), WIDE, fill="white")
+    sheet.line(view.at(np.column_stack([along, front])), THIN)
+    middle = view.at([[along.mean(), 0.5 * (foot + front.mean())]])[0]
+    sheet.text(middle[0], middle[1] - 1.0, patch.name, size=2.2, ha="center")
+
+
+def _post(sheet: Sheet, view: View, sphere: DatumSphere, details: Details, right: Array) -> None:
+    seat, at = details.seats[sphere.name], float(sphere.centre @ right)
+    low, high = sphere.foot_radius, seat.top_radius
+    flank = [[at - low, sphere.foot], [at - high, seat.top], [at + high, seat.top]]
+    sheet.line(view.at([*flank, [at + low, sphere.foot]]), WIDE, fill="white")
+    middle = view.at([[at, sphere.centre[2]]])[0]
+    sheet.circle(middle, view.scale * sphere.radius, fill="white")
+    number = sphere.name.removeprefix("SPH")
+    sheet.text(middle[0], middle[1] - 0.9, number, size=2.0, ha="center")

@@ -1,0 +1,168 @@
+"""Body, balls and screws: the rules of the details, and the files read by other readers."""
+
+import zipfile
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from artefact.body.solids import BLEND
+from cad_out.details.detail_list import details_of
+from cad_out.details.lettering import LINE
+from cad_out.details.mounting import RELIEF
+from cad_out.details.places import plan_room
+from cad_out.details.seats import glue_gap, seat_of
+from cad_out.details.stroke_font import HEIGHT, strokes
+from cad_out.details.tolerances import Tolerance, notes_of
+from cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
+from cad_out.verify.part21 import read_entities, read_instances
+from cad_out.verify.part21_tolerances import read_notes, read_tolerances
+from twin.errors import NotBuildable
+from twin.frames import apply, pose
+
+
+def test_a_ball_touches_its_countersink_in_one_circle_and_the_post_stays_in_its_cone(upright):
+    for sphere in upright.spheres:
+        seat = seat_of(sphere)
+        # the centre is a radius away from the countersink's flank, by the sine of its angle
+        depth = sphere.centre[2] - seat.bottom
+        assert depth * np.sin(seat.half_angle) == pytest.approx(sphere.radius, abs=1e-9)
+        r = np.linspace(0.0, seat.rim_radius, 400)
+        flank = seat.bottom + r / np.tan(seat.half_angle)
+        ball = sphere.centre[2] - np.sqrt(sphere.radius**2 - r**2)
+        assert (ball - flank).min() > -1e-9
+        assert abs(r[np.argmin(ball - flank)] - seat.contact_radius) < 0.05
+        assert flank[-1] == pytest.approx(seat.top)
+        assert 0.05 < glue_gap(sphere, seat) < 0.5
+        taper = (sphere.foot_radius - sphere.stem_radius) / (sphere.centre[2] - sphere.foot)
+        assert seat.top_radius <= sphere.stem_radius + taper * (sphere.centre[2] - seat.top) + 1e-9
+    with pytest.raises(NotBuildable, match=r"SPH1: a post of 2 mm radius is too thin"):
+        seat_of(replace(upright.spheres[0], stem_radius=2.0, foot_radius=2.0))
+
+
+def test_a_foot_that_is_rounded_keeps_the_distance_that_a_circle_has(upright):
+    """By hand: a point at (d, z) from wall and plate is R - |(R - d, R - z)| from the blend."""
+    (patch, *_), top = upright.patches, upright.base.thickness
+    wall = patch.T_artefact_patch[:3, 3] + [patch.half_size[0], 0.0, 0.0]
+    at = np.array(
+        [[wall[0] + d, wall[1], top + z] for d, z in ((1.0, 1.0), (2.5, 1.0), (4.0, 0.5))]
+    )
+    by_hand = [BLEND - np.hypot(2.0, 2.0), BLEND - np.hypot(0.5, 2.0), 0.5]
+    assert upright.distance(at) == pytest.approx(by_hand, abs=1e-9)
+    assert upright.blended == {"FF1", "FF2", "SPH1", "SPH2", "SPH3"}
+
+
+def test_lettering_stands_clear_of_bodies_holes_and_each_other(upright):
+    details = details_of(upright)
+    assert details.missing == ()
+    named = {line.of for line in details.lettering}
+    features = {*upright.features, "DATUM_B", "DATUM_C"}
+    assert named - {""} == features
+    top, boxes = upright.base.thickness, []
+    for line in details.lettering:
+        ink = np.concatenate(strokes(line.text)) * line.height / HEIGHT
+        where = apply(line.T_artefact_text, np.column_stack([ink, np.zeros(len(ink))]))
+        if np.allclose(where[:, 2], top):
+            assert plan_room(upright, where[:, :2]).min() > 1.0
+            boxes.append((where[:, :2].min(axis=0), where[:, :2].max(axis=0)))
+        else:
+            assert where[:, 2].max() < upright.blank_height - 1.0
+            assert where[:, 2].min() > RELIEF
+    for k, (low, high) in enumerate(boxes):
+        for a, b in boxes[:k]:
+            assert (np.maximum(low - b, a - high) > LINE).any()
+
+
+def test_heavy_standards_are_lifted_beside_their_centre_of_mass(upright):
+    assert [bore.name for bore in details_of(upright).bores] == ["THERMO"]
+    lead = replace(upright, material=replace(upright.material, density=5e-5))
+    one, other = (np.array(b.mouth) for b in details_of(lead).bores if b.thread)
+    assert np.linalg.norm(one - other) >= 80.0
+    assert np.linalg.norm(0.5 * (one + other)[:2]) < 15.0
+
+
+def test_the_product_structure_is_body_balls_and_screws(upright, built):
+    found = read_instances(read_entities(built[0] / "standard.step"))
+    assert set(found) == {"BODY", "SPH1", "SPH2", "SPH3", *(f"SCREW_HOLE{i}" for i in (1, 2, 3))}
+    assert found["SPH2"].about == "Ball D25, ISO 3290-1 G5, bought"
+    floor = upright.base.thickness - upright.holes[0].bore_depth
+    for hole in upright.holes:
+        screw = found[f"SCREW_{hole.name}"]
+        assert screw.product == "ISO 4762 M10x30"  # 14 mm clamped, 15 mm in the nut
+        assert screw.moved == pytest.approx((hole.x, hole.y, floor))
+    assert built[1].products["ISO 4762 M10x30"] == 3
+    assert built[1].sharp == 0.0
+
+
+def test_a_body_without_blends_has_inner_edges(upright):
+    """Two boxes, one on the other: the foot is 4 x 20 mm long, all else is convex."""
+    trimesh = pytest.importorskip("trimesh")
+    low = trimesh.creation.box((60.0, 60.0, 10.0))
+    high = trimesh.creation.box((20.0, 20.0, 10.0), pose(t=np.array([0.0, 0.0, 8.0])))
+    whole = trimesh.boolean.union([low, high], engine="manifold")
+    _, length = inner_folds(np.array(whole.vertices), np.array(whole.faces), 0.6)
+    assert length.sum() == pytest.approx(80.0)
+
+
+def test_balls_have_triangles_of_nearly_one_size(upright):
+    mesh = ball_mesh(upright.spheres[0], 0.01)
+    sides = mesh.corners[mesh.triangles] - mesh.corners[np.roll(mesh.triangles, 1, axis=1)]
+    length = np.linalg.norm(sides, axis=-1)
+    assert length.max() < 1.6 * length.min()
+    assert mesh_volume(mesh.corners, mesh.triangles) == pytest.approx(
+        4.0 / 3.0 * np.pi * upright.spheres[0].radius ** 3, rel=2e-3
+    )
+
+
+def test_3mf_is_read_by_the_consortiums_own_library(built):
+    lib3mf = pytest.importorskip("lib3mf")
+    library = lib3mf.get_wrapper() if hasattr(lib3mf, "get_wrapper") else lib3mf.Wrapper()
+    model = library.CreateModel()
+    reader = model.QueryReader("3mf")
+    reader.ReadFromFile(str(built[0] / "standard.3mf"))
+    assert reader.GetWarningCount() == 0
+    items = model.GetBuildItems()
+    assert items.Count() == 7
+    meshes = model.GetMeshObjects()
+    names, triangles = [], 0
+    while meshes.MoveNext():
+        one = meshes.GetCurrentMeshObject()
+        assert one.IsManifoldAndOriented()
+        names.append(one.GetName())
+        triangles += one.GetTriangleCount() if names[-1].startswith(("SPH", "small")) else 0
+    assert names == ["small 0007 BODY", "SPH1", "SPH2", "SPH3", "ISO 4762 M10x30"]
+    assert triangles == built[1].triangles
+    # and its colours, by a reader of XML
+    with zipfile.ZipFile(built[0] / "standard.3mf") as archive:
+        root = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+    colours = {e.get("displaycolor") for e in root.iter() if e.tag.endswith("}base")}
+    assert {"#2166BF", "#CC261F", "#299947"} <= colours
+
+
+def test_gltf_stands_upright_in_metres(upright, built):
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.load_scene(built[0] / "standard.glb")
+    low, high = scene.bounds
+    a, b = upright.base.half_size
+    assert (high - low)[[0, 2]] == pytest.approx([2e-3 * a, 2e-3 * b], rel=1e-6)
+    top = max(s.centre[2] + s.radius for s in upright.spheres)
+    assert high[1] == pytest.approx(1e-3 * top, abs=1e-5)
+    assert {name.split()[0] for name in scene.graph.nodes_geometry} >= {"BODY", "SPH3"}
+
+
+def test_tolerances_datums_and_notes_are_in_the_text(upright, built):
+    entities = read_entities(built[0] / "standard.step")
+    found = read_tolerances(entities)
+    assert Tolerance("FF2", "profile", 0.05, "ABC") in found
+    assert Tolerance("SPH3_SEAT", "position", 0.2, "ABC") in found
+    assert Tolerance("DATUM_C", "perpendicularity", 0.02, "AB") in found
+    assert len(found) == 3 + 3 + 2 + 3
+    assert read_notes(entities) == list(notes_of(upright, details_of(upright)))
+    assert built[1].untold == ()
+    text = (built[0] / "standard.step").read_text()
+    assert text.count("DIMENSIONAL_SIZE(") == len(upright.spheres)
+    assert "RUNOUT" not in text
+    # a letter exchanged is a tolerance lost
+    other = {k: e.replace(",'C')", ",'D')") if "DATUM(" in e else e for k, e in entities.items()}
+    assert Tolerance("FF2", "profile", 0.05, "ABC") not in read_tolerances(other)

@@ -1,0 +1,57 @@
+"""What touches of 1 N can say of stiffness: nothing, and that is said; known loads identify it."""
+
+from dataclasses import replace
+
+import numpy as np
+from made_up import made_up
+
+from diagnosis.fit.identification import fit_run
+from diagnosis.remarks.run_remarks import LoadTooSmall, ShortBeam, remarks
+from report.words.remark_words import remark_sentence
+from twin.library.catalogue import parse_effect
+from twin.model.model import Model
+from twin.record.run import Run
+from twin.units import UM
+
+
+def fitted(load, texts, seed=3):
+    rng = np.random.default_rng(seed)
+    touches = made_up("hsm600u")
+    direction = rng.normal(size=(len(touches), 3))
+    force = load * direction / np.linalg.norm(direction, axis=1)[:, None]
+    touches = replace(touches, force=force)
+    model = Model(touches.chain, tuple(parse_effect(t, touches.chain) for t in texts))
+    theta = model.prior_sd
+    noise = 1.0 * UM
+    run = Run(
+        touches,
+        model.columns(touches) @ theta + noise * rng.normal(size=len(touches)),
+        np.full(len(touches), noise),
+    )
+    return fit_run(run, model), theta
+
+
+def said(fit, kind):
+    return [r for r in remarks(fit) if isinstance(r, kind)]
+
+
+def test_touches_of_one_newton_do_not_identify_a_stiffness():
+    fit, _ = fitted(1.0, ["stiffness(Z)"])
+    (remark,) = said(fit, LoadTooSmall)
+    assert remark.load == 1.0 or abs(remark.load - 1.0) < 1e-9
+    assert "1 N bend too little to identify stiffness(Z)" in remark_sentence(remark)
+
+
+def test_known_loads_do():
+    fit, theta = fitted(300.0, ["stiffness(Z)", "tool-point-stiffness(X,Y)"])
+    assert not said(fit, LoadTooSmall)
+    rows = [p for p, (e, _) in enumerate(fit.parameters) if e.kind == "tool-point-stiffness"]
+    left = (fit.theta[rows] - theta[1:]) / np.sqrt(np.diag(fit.covariance)[rows])
+    assert np.sqrt(np.mean(left**2)) < 1.6
+    assert np.diag(fit.covariance)[rows][0] < (0.5 * theta[1]) ** 2
+
+
+def test_a_beam_that_is_too_short_is_told():
+    fit, _ = fitted(1.0, ["beam(Z,cantilever,300x300,at:500)"])
+    (remark,) = said(fit, ShortBeam)
+    assert "times as long as deep" in remark_sentence(remark)

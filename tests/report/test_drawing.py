@@ -1,0 +1,71 @@
+"""The sheet for the workshop: everything is on it, to scale, and on the paper."""
+
+import re
+
+import numpy as np
+import pytest
+
+from cad_out.details.detail_list import details_of
+from report.drawing.drawing import Issuer, draw_sheet, write_drawing
+from report.drawing.sheet import HEIGHT, WIDTH, Sheet, View
+from report.drawing.views import draw_from
+
+ISSUER = Issuer("A. Müller", "Workshop & Co", 6.2)
+
+
+@pytest.fixture(scope="module")
+def drawn(upright):
+    return draw_sheet(upright, details_of(upright), ISSUER)
+
+
+def words_of(sheet):
+    return [text.get_text() for text in sheet.axes.texts]
+
+
+def test_every_feature_tolerance_and_party_is_on_the_sheet(upright, drawn):
+    words = words_of(drawn)
+    for name in ("FF1", "FF2", "SPH1", "SPH2", "SPH3", "HOLE1", "HOLE2", "HOLE3", "THERMO"):
+        assert name in words
+    assert {"A", "B", "C", "0.05", "0.02", "SØ0.2", "A. Müller", "Workshop & Co"} <= set(words)
+    assert {"170", "150", "R15", "25", "Ø26", "3 x ISO 4762 M10x30", "6.2 kg"} <= set(words)
+    x, y, z = upright.spheres[1].centre
+    row = words.index("SPH2")
+    assert words[row + 1 : row + 4] == [f"{x:.1f}", f"{y:.1f}", f"{z:.1f}"]
+    assert not [w for w in words if "No room was found" in w]
+
+
+def test_nothing_leaves_the_paper(drawn):
+    drawn.figure.canvas.draw()
+    sheet = drawn.figure.bbox
+    for artist in (*drawn.axes.texts, *drawn.axes.patches):
+        box = artist.get_window_extent()
+        assert box.x0 >= 0.0 and box.y0 >= 0.0, artist  # noqa: PT018
+        assert box.x1 <= sheet.x1 and box.y1 <= sheet.y1, artist  # noqa: PT018
+
+
+def test_a_view_is_to_scale_and_looks_the_right_way(upright):
+    """From -x one has +y on the left; a pillar is as wide as its side, a ball as its diameter."""
+    sheet, view = Sheet(), View(200.0, 100.0, 0.5)
+    draw_from(sheet, view, upright, details_of(upright), np.array([1.0, 0.0, 0.0]))
+    boxes = [p.get_path().get_extents() for p in sheet.axes.patches[1:]]
+    for sphere in upright.spheres:
+        middle = view.at([-sphere.centre[1], sphere.centre[2]])[0]
+        wide = [b for b in boxes if np.allclose([(b.x0 + b.x1) / 2, (b.y0 + b.y1) / 2], middle)]
+        assert [b.width for b in wide] == pytest.approx([sphere.radius])
+    for patch in upright.patches:
+        middle = view.at([-patch.T_artefact_patch[1, 3], 0.0])[0, 0]
+        sides = [b for b in boxes if b.width == pytest.approx(patch.half_size[1])]
+        assert any((b.x0 + b.x1) / 2 == pytest.approx(middle) for b in sides)
+
+
+def test_files_are_one_a2_page_and_the_same_bytes_again(upright, tmp_path):
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        write_drawing(tmp_path / folder, upright, ISSUER)
+    pdf = (tmp_path / "one" / "drawing.pdf").read_bytes()
+    assert pdf == (tmp_path / "two" / "drawing.pdf").read_bytes()
+    box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+)", pdf)
+    assert [float(v) * 25.4 / 72.0 for v in box.groups()] == pytest.approx([WIDTH, HEIGHT], abs=0.1)
+    svg = (tmp_path / "one" / "drawing.svg").read_text()
+    assert svg == (tmp_path / "two" / "drawing.svg").read_text()
+    assert "<svg" in svg

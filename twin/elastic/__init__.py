@@ -1,0 +1,25 @@
+"""Elastic bodies: beams under weight and load, and the stiffness of the whole at the tool point.
+
+One kind a file, as in `effects`; `section` and `beam` are the mechanics. Weights need a section and
+a material, so a `beam` is stated by the user and never proposed.
+"""
+
+from twin.elastic.beam import SUPPORTS, Plane, along, bending
+from twin.elastic.body import Body
+from twin.elastic.doubts import short_beams
+from twin.elastic.section import MATERIALS, Material, Section, material
+from twin.elastic.tool_point import ToolPointStiffness
+
+__all__ = [
+    "MATERIALS",
+    "SUPPORTS",
+    "Body",
+    "Material",
+    "Plane",
+    "Section",
+    "ToolPointStiffness",
+    "along",
+    "bending",
+    "material",
+    "short_beams",
+]

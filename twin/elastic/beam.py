@@ -1,0 +1,105 @@
+"""Deflection and rotation of a Timoshenko beam at a point that moves along it.
+
+A beam of span S is held at its ends, a cantilever at its root alone. At x a force and a moment act
+on whatever sits there; beside them the weight of the beam. All is exact for constant sections: two
+elements meet at x, of which the stiffness matrices are known in closed form.
+
+Reference: Przemieniecki, Theory of Matrix Structural Analysis, 1968, 5.6 (beam with shear).
+"""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from twin.frames import Array
+
+Support = Literal["cantilever", "supported", "clamped"]
+SUPPORTS: tuple[Support, ...] = ("cantilever", "supported", "clamped")
+
+
+class Plane(NamedTuple):
+    """Bending in one plane: stiffness, and what it gives at a point, (N,) each.
+
+    Attributes:
+        by_force: Deflection per force, and rotation per moment's unit work: mm/N.
+        coupled: Rotation per force, which is deflection per moment: 1/N.
+        by_moment: Rotation per moment: 1/(N mm).
+        own: Deflection under a uniform load, mm per N/mm.
+        own_rotation: Rotation under it, rad per N/mm.
+    """
+
+    by_force: Array
+    coupled: Array
+    by_moment: Array
+    own: Array
+    own_rotation: Array
+
+
+def bending(support: Support, x: Array, span: Array, EI: float, GA: float) -> Plane:
+    """Flexibility at a point of a beam.
+
+    Args:
+        support: How it is held.
+        x: Places of the point from the first end, (N,), mm.
+        span: Length of the beam, (N,), mm; of a ram that leaves its guide, its overhang x.
+        EI: Bending stiffness, N mm2.
+        GA: Shear stiffness, N.
+    """
+    if support == "cantilever":
+        return _cantilever(x, span, EI, GA)
+    held = support == "clamped"
+    K1, p1 = _side(x, EI, GA, held, 1.0)
+    K2, p2 = _side(span - x, EI, GA, held, -1.0)
+    # of 2 by 2, and all of it is wanted
+    C: Array = np.asarray(np.linalg.inv(K1 + K2), dtype=np.float64)
+    own = np.einsum("nij,nj->ni", C, p1 + p2)
+    return Plane(
+        by_force=C[:, 0, 0],
+        coupled=C[:, 0, 1],
+        by_moment=C[:, 1, 1],
+        own=own[:, 0],
+        own_rotation=own[:, 1],
+    )
+
+
+def _cantilever(x: Array, span: Array, EI: float, GA: float) -> Plane:
+    """Closed forms; the weight beyond x loads it as a force and a moment do."""
+    own = x**2 * (6.0 * span**2 - 4.0 * span * x + x**2) / (24.0 * EI)
+    own = own + x * (2.0 * span - x) / (2.0 * GA)
+    turned = x * (3.0 * span**2 - 3.0 * span * x + x**2) / (6.0 * EI)
+    force: Array = x**3 / (3.0 * EI) + x / GA
+    both: Array = x**2 / (2.0 * EI)
+    moment: Array = x / EI
+    return Plane(by_force=force, coupled=both, by_moment=moment, own=own, own_rotation=turned)
+
+
+def _side(length: Array, EI: float, GA: float, held: bool, sign: float) -> tuple[Array, Array]:
+    """Stiffness (N, 2, 2) and load of one element at the point, its far end condensed.
+
+    Args:
+        held: Whether the far end cannot turn.
+        sign: 1 for the element before the point, -1 for the one behind.
+    """
+    L, shear = length, 12.0 * EI / (GA * length**2)
+    k = EI / (L**3 * (1.0 + shear))
+    own = (4.0 + shear) * L**2 * k
+    K = np.empty((len(L), 2, 2))
+    K[:, 0, 0], K[:, 1, 1] = 12.0 * k, own
+    K[:, 0, 1] = K[:, 1, 0] = -sign * 6.0 * L * k
+    load = np.column_stack([L / 2.0, -sign * L**2 / 12.0])
+    if not held:  # the far end is free to turn
+        far = np.column_stack([-sign * 6.0 * L * k, (2.0 - shear) * L**2 * k])
+        K -= far[:, :, None] * far[:, None, :] / own[:, None, None]
+        load -= far * (sign * L**2 / 12.0 / own)[:, None]
+    return K, load
+
+
+def along(support: Support, x: Array, span: Array, stiffness: float) -> Array:
+    """Motion along the beam per force, or rotation about it per moment, at the point, (N,).
+
+    Args:
+        stiffness: EA in N, or GJ in N mm2. Supported ends hold both.
+    """
+    if support == "cantilever":
+        return x / stiffness
+    return x * (span - x) / (span * stiffness)
