@@ -60,6 +60,10 @@ from twin.thermal import ThermalField
 PERIODS_PLANNED = 8
 """Periods that look alike, the longest ones, that a plan of touches tells apart."""
 
+ROUGHLY = 1e-4
+"""Probability by chance of a pattern beside noise that remembers from which it is told: a memory is
+a model of its own, right as far as it goes, and a residual of real parts is never quite it."""
+
 COVERED = 0.7
 """Residual over stated uncertainty below which a pattern in it is told, but nothing is missing: who
 stated so much allowed for it. Scatter of a run of a hundred touches does not reach so low."""
@@ -157,7 +161,8 @@ def _result(
     progress(0.5, "what cannot be told apart")
     tested, steps = _told(task, added, final)
     final, classes, gross = tested.state, tested.classes, final.base.gross
-    unexplained = bool(final.nameless or final.left) and not _is_covered(steps[-1].fit)
+    left = _beyond_doubt((*final.nameless, *final.left), steps[-1].fit)
+    unexplained = bool(left) and not _is_covered(steps[-1].fit)
     verdict = (
         Verdict.UNEXPLAINED
         if unexplained
@@ -166,7 +171,6 @@ def _result(
         else Verdict.NONE
     )
     start = _structures(final, progress)
-    left = (*final.nameless, *final.left)
     progress(0.8, "what the run could have shown")
     seen = final.library.sample
     effects = EffectSet(seen.complement, projected(seen.complement, final.effects))
@@ -189,6 +193,12 @@ def _result(
         faults=description_faults(steps[0].fit, progress),
         remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
     )
+
+
+def _beyond_doubt(left: Sequence[Structure], fit: Fit) -> tuple[Structure, ...]:
+    """Patterns that stand however the noise remembers."""
+    is_modelled = fit.memory is not None and fit.memory.is_filtered
+    return tuple(s for s in left if not is_modelled or s.p_value < ROUGHLY)
 
 
 def _is_covered(fit: Fit) -> bool:

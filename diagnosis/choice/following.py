@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import ttest_1samp
 
 from diagnosis.choice.prediction import SETS, Choice, ChoiceRule
-from diagnosis.choice.remembering import LOUDEST
+from diagnosis.choice.remembering import loudest
 from diagnosis.evidence import (
     Grid,
     Progress,
@@ -63,7 +63,7 @@ def followed(
     chosen = search.evaluate(members)
     smooth = PatternTests(chosen.effects.complement)
     left = find_structure(chosen.effects, progress, smooth)
-    if not left and plain.noise.factor > LOUDEST:
+    if not left and plain.noise.factor > loudest(best.effects):
         left = list(final.left or final.nameless)
     shrunk = {s.effect.name: _chance(choice) for s in effects if _is_shrunk(s)}
     nothing = find_structure(search.evaluate(()).effects, progress, smooth)

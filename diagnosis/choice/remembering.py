@@ -21,9 +21,12 @@ FEWEST = 15.0
 """Independent observations that a run must hold for its memory to be known: the length of a memory
 is uncertain by about the root of two over their number, 37 % here."""
 
-LOUDEST = 2.0
-"""Noise over stated noise from which what wanders is no noise of the instrument: users misjudge
-theirs by less, and an error that follows the order of probing looks just like it."""
+LOUDEST = 3.0
+"""Noise over stated noise from which what wanders is no noise of the instrument."""
+
+LOUD_ALONE = 2.0
+"""The same where no effect is found beside it: users misjudge their noise by less, and an error
+that follows the order of probing looks just like it."""
 
 TURNS = 3
 """Searches in which effects and memory settle beside one another."""
@@ -74,7 +77,7 @@ def remembered(
             tried.append(at)
             other = replace(task, memory=memory)
             found = search_until_stable(other, added, candidates, progress)
-            if found.base.noise.factor > LOUDEST:
+            if found.base.noise.factor > loudest(found.effects):
                 break
             best = max(best, (_evidence(found), other, found), key=lambda b: b[0])
             effects = found.effects
@@ -97,6 +100,11 @@ def memory_beside(
     memory, gain = memory_of(fit)
     is_told = gain >= CLEARLY and is_noise(memory, int(fit.used.sum()))
     return memory if is_told and fit.noise.factor <= LOUDEST else None
+
+
+def loudest(effects: Sequence[ScaledEffect]) -> float:
+    """Noise over stated noise that may be noise beside what was found."""
+    return LOUDEST if effects else LOUD_ALONE
 
 
 def _evidence(final: SearchState) -> float:

@@ -25,6 +25,7 @@ from diagnosis.remarks.run_remarks import (
     WorseThanReplicates,
     remarks,
 )
+from diagnosis.remarks.turns import HarmonicsAlike
 
 __all__ = [
     "ChosenByPrediction",
@@ -32,6 +33,7 @@ __all__ = [
     "FewPoses",
     "FewTouches",
     "FieldShares",
+    "HarmonicsAlike",
     "HeldOutInDoubt",
     "LoadTooSmall",
     "NoiseMisstated",

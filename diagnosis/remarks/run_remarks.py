@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.fit import MIN_POSES, Fit, UnitMistake, unit_mistake
+from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from twin.elastic import short_beams
 
 FEW_DOF = 30.0
@@ -214,6 +215,7 @@ Remark = (
     | PriorWidened
     | SearchEnded
     | NotSignificant
+    | HarmonicsAlike
     | ShortBeam
     | LoadTooSmall
 )
@@ -226,6 +228,7 @@ def remarks(fit: Fit) -> tuple[Remark, ...]:
     out += [ReaderRemark(text) for text in fit.run.remarks]
     out += _memory(fit)
     out += _touches(fit)
+    out += harmonics_alike(fit)
     out += _elastic(fit)
     out += ([] if units else _noise(fit)) + _outliers(fit)
     if fit.widened > 1.0:

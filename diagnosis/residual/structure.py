@@ -24,10 +24,6 @@ from twin.record import IntArray, Touches
 CHANCE = 1e-3
 """Probability, all tests together, that white noise is said to have structure."""
 
-ROUGHLY = 1e-4
-"""The same where the noise remembers: what it remembers is a model of its own, right as far as it
-goes, and a residual of real parts is never quite it."""
-
 MATERIAL = 0.01
 """Share of the squared residual that a pattern must hold to count: in ten thousand rows less is
 beyond chance too, but whoever knew it would predict no more than half a per cent better."""
@@ -98,14 +94,13 @@ def find_structure(
     wave = best_wave(effects, complement.touches, smooth.rows)
     neighbours = [*_neighbours(effects), *_crowds(complement)]
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
-    chance = CHANCE if complement.whitener is None else ROUGHLY
-    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < chance}
+    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < CHANCE}
     found = [
         *beyond,
         _wave_structure(effects, wave, count, smooth.rows),
         *(_corrected(n, count) for n in neighbours),
     ]
-    counts = (f for f in found if f.p_value < chance and f.share > MATERIAL)
+    counts = (f for f in found if f.p_value < CHANCE and f.share > MATERIAL)
     found = sorted(counts, key=lambda f: f.p_value)
     progress(1.0, "structure left")
     first = [replace(f, columns=beyond[f].columns()) if f in beyond else f for f in found[:most]]

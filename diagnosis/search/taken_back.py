@@ -14,16 +14,20 @@ from diagnosis.search.task import DiagnosisTask
 def foretold(task: DiagnosisTask, effects: Sequence[ScaledEffect], before: GrossErrors) -> Fit:
     """The fit with effects, of whose gross errors before only those return that it foretells.
 
-    A touch that its neighbours know little of, as the only pose of an arm far out, bends an effect
-    until it fits. It returns if effects that were found without it, and fitted without it, say what
-    it reads; where they merely do not contradict it, it stays out.
+    Of an instrument that sees a target from afar (`shots`): a pose that its neighbours know little
+    of, as the only one of an arm far out, bends an effect in all its coordinates until it fits. It
+    returns if effects that were found without it, and fitted without it, say what it reads; where
+    they merely do not contradict it, it stays out. Single touches return as they like: of a drift
+    they are the first after a step, which what drives it explains.
 
     Args:
         effects: Everything that was found or added.
         before: Gross errors beside the model without what was found.
     """
     whole = task.fit(effects)
-    returned = before.rows & ~whole.gross.rows
+    shot = shots(task.run.touches)
+    is_several = np.bincount(shot)[shot] > 1
+    returned = before.rows & ~whole.gross.rows & is_several
     if not returned.any():
         return whole
     without = task.fit(effects, before)
@@ -31,6 +35,5 @@ def foretold(task: DiagnosisTask, effects: Sequence[ScaledEffect], before: Gross
     missed = returned & (np.abs(without.residual) > before.limit * noise)
     if not missed.any():
         return whole
-    shot = shots(task.run.touches)
     missed = returned & np.isin(shot, shot[missed])
     return task.fit(effects, replace(whole.gross, rows=whole.gross.rows | missed))

@@ -7,6 +7,7 @@ import diagnosis.remarks as noticed
 from diagnosis.fit import MistakenUnit, UnitMistake
 from report.numbers import unit_words, with_uncertainty
 from twin.units import UM
+from twin.words import listed
 
 NONE_CERTAIN = ", none of which stands with all rows in use"
 """Behind a way of choosing of which nothing came."""
@@ -128,6 +129,20 @@ def _shown(size: float) -> str:
     return f"{float(f'{size / UM:.2g}'):g} µm"
 
 
+def _harmonics_alike(r: noticed.HarmonicsAlike) -> str:
+    if not r.found:
+        return (
+            f"{r.targets} even targets a turn of {r.axis} show whatever repeats more than "
+            f"{r.targets // 2} times a turn, such as a worm, as something slower: targets that "
+            "stand unevenly tell"
+        )
+    return (
+        f"{r.targets} even targets a turn of {r.axis} cannot tell harmonic {r.found} from "
+        f"{listed([str(h) for h in r.others], 'or')}: a worm or teeth may as well be behind it; "
+        "targets that stand unevenly tell"
+    )
+
+
 _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     UnitMistake: _units,
     noticed.NoiseRemembers: _noise_remembers,
@@ -157,5 +172,6 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.SearchEnded: "the search was ended after {r.sets:.0f} sets of effects: what is named "
     "passed every test, but another set may explain more",
     noticed.NotSignificant: _not_significant,
+    noticed.HarmonicsAlike: _harmonics_alike,
 }
 """What is told of each kind of remark: a text with its fields, or a function that makes one."""

@@ -8,15 +8,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from artefact.body.spline import greville
 from artefact.body.standard_file import read_standard, write_standard
 from artefact.certify.calibration_fit import calibrated, fitted_ball
-from artefact.certify.cmm_points_file import read_cmm_points
+from artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
 from artefact.certify.dmis import APPROACH, dmis_program
 from artefact.worth.calibration import Calibration
+from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.simulation import simulate
+from probe_paths.emit.program import make_programs
+from probe_paths.emit.writer import Feeds
+from probe_paths.language.dialect_file import read_dialect
+from probe_paths.plan.planner import plan_touches
+from probe_paths.plan.probe import Probe
+from probe_paths.plan.touch_plan import PlanOptions
 from twin.errors import BadFile, NotEnoughData
 from twin.frames import apply, pose, rotation
 from twin.library.ordinary import ordinary_model
@@ -152,24 +160,22 @@ def test_uncertainties_take_the_place_of_those_assumed(nominal, found) -> None:
     assert felt == pytest.approx([5 * UM, found.standard.known.features[ball.name].u])
 
 
-def test_the_planted_errors_are_no_longer_seen(golden, nominal, found) -> None:
-    """Programs on the real standard: with the design the fit is bad, with the calibration good."""
+def planted(nominal):
+    """The real standard: balls beside their places, heights of FF1 that follow its form."""
     balls = [replace(b, centre=b.centre + d) for b, d in zip(nominal.spheres, SHIFT, strict=True)]
-    faces = []
-    for patch in nominal.patches:
-        heights = patch.heights
-        if patch.name == "FF1":  # heights that follow the planted form at their own places
-            from artefact.body.spline import greville
+    faces = list(nominal.patches)
+    patch = faces[0]
+    gu, gv = (greville(k, 5) for k in (patch.knots_u, patch.knots_v))
+    uv = np.clip(np.stack(np.meshgrid(gu, gv, indexing="ij"), axis=-1).reshape(-1, 2), -18, 18)
+    j = patch.jet(uv)
+    along_z = form(uv) * np.sqrt(1.0 + j.hu**2 + j.hv**2)
+    faces[0] = replace(patch, heights=patch.heights + along_z.reshape(patch.heights.shape))
+    return replace(nominal, spheres=tuple(balls), patches=tuple(faces))
 
-            gu, gv = (greville(k, 5) for k in (patch.knots_u, patch.knots_v))
-            uv = np.stack(np.meshgrid(gu, gv, indexing="ij"), axis=-1).reshape(-1, 2)
-            uv = np.clip(uv, -18.0, 18.0)
-            j = patch.jet(uv)
-            heights = heights + (form(uv) * np.sqrt(1 + j.hu**2 + j.hv**2)).reshape(heights.shape)
-        faces.append(replace(patch, heights=heights))
-    true = replace(nominal, spheres=tuple(balls), patches=tuple(faces))
+
+def measured(true, nominal, rng):
+    """The standard that a CMM makes of the real one."""
     rows = []
-    rng = np.random.default_rng(8)
     for body in (*true.spheres, *true.patches):
         if body in true.patches:
             uv = rng.uniform(-1.0, 1.0, (120, 2)) * body.half_size
@@ -177,26 +183,50 @@ def test_the_planted_errors_are_no_longer_seen(golden, nominal, found) -> None:
             uv = np.column_stack([rng.uniform(-3, 3, 40), rng.uniform(0.0, 1.5, 40)])
         p = body.point(uv) + NOISE * rng.normal(size=(len(uv), 1)) * body.normal(uv)
         rows += [(body.name, *x) for x in apply(ELSEWHERE, p)]
-    path = golden.FOLDER.parent / "nowhere.csv"
-    from artefact.certify.cmm_points_file import CmmPoints
-
     cmm = CmmPoints(
-        path=path,
+        path=Path("cmm.csv"),
         feature=np.array([r[0] for r in rows]),
         point=np.array([r[1:] for r in rows]),
         diameter=np.full(len(rows), np.nan),
         line=np.arange(len(rows)),
         remarks=(),
     )
-    made = calibrated(nominal, cmm, NOISE, 0.2 * UM).standard
+    return calibrated(nominal, cmm, NOISE, 0.2 * UM).standard
+
+
+def test_the_planted_errors_are_no_longer_seen(golden, nominal) -> None:
+    """Programs on the real standard: with the design the fit is bad, with the calibration good."""
+    true = planted(nominal)
+    made = measured(true, nominal, np.random.default_rng(8))
     machine = VirtualMachine(golden.machine(), noise=0.5 * UM)
-    programs = sorted(golden.FOLDER.glob("*_[0-9].H")) or sorted(golden.FOLDER.glob("*.H"))
+    programs = sorted(golden.FOLDER.glob("*_[0-9].H"))
     ratio = {}
     for name, believed in (("design", nominal), ("calibrated", made)):
         run = simulate(programs, true, machine, np.random.default_rng(2), calibrated=believed).run
         ratio[name] = fit_run(run, ordinary_model(run.touches.chain)).noise.chi2_ratio
     assert ratio["design"] > 8.0
     assert ratio["calibrated"] < 1.8
+
+
+@pytest.mark.slow
+def test_diagnosis_sees_the_form_until_the_standard_is_calibrated(
+    golden, nominal, tmp_path
+) -> None:
+    """Places right, form planted alone: named with the design, not there with the calibration."""
+    form_alone = replace(nominal, patches=planted(nominal).patches)
+    made = measured(form_alone, nominal, np.random.default_rng(8))
+    wanted = golden.requests(nominal, each=10)
+    plan = plan_touches(
+        nominal, golden.machine(), Probe(), golden.setup(), wanted, PlanOptions(tolerated=20)
+    )
+    programs = make_programs(plan, read_dialect("itnc530"), Feeds()).write(tmp_path)
+    machine = VirtualMachine(golden.machine(), noise=0.5 * UM)
+    found = {}
+    for name, believed in (("design", nominal), ("calibrated", made)):
+        rng = np.random.default_rng(2)
+        run = simulate(programs, form_alone, machine, rng, calibrated=believed).run
+        found[name] = [step.effect.name for step in diagnose(run).steps if step.effect]
+    assert found == {"design": ["artefact-form(FF1)"], "calibrated": []}
 
 
 def test_a_ball_by_hand() -> None:
@@ -241,6 +271,10 @@ def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
     inches = written(tmp_path / "in.csv", rows, nominal.fingerprint, "in", 1 / 25.4)
     assert call(inches) == 0
     assert "FF1: 30 points" in capsys.readouterr().out
+    nominal_file = str(tmp_path / "standard.toml")
+    both = ["calibrate", nominal_file, "--program", "--cad", str(tmp_path / "c"), "-o", str(out)]
+    assert main([*both, "--force"]) == 2
+    assert "expected it beside --points" in capsys.readouterr().err
     again = main(["calibrate", str(out), "--points", str(inches), "-o", str(tmp_path / "x.toml")])
     assert again == 2
     assert "already" in capsys.readouterr().err

@@ -8,7 +8,9 @@ import pytest
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.fit.identification import fit_run
 from diagnosis.geometry.learnt import geometry_rows
+from diagnosis.remarks import HarmonicsAlike, remarks
 from matstd.console import say
+from report.words import remark_sentence
 from twin.files.run_file import read_run
 from twin.files.run_writer import run_text
 from twin.foreign.machine_draft import machine_text
@@ -19,8 +21,10 @@ from twin.foreign.positioning import (
     read_positioning,
 )
 from twin.foreign.sheet import read_sheet
+from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.machine.chain import Axis, make_chain
+from twin.model.model import Model
 from twin.record.instrument import Instrument
 from twin.units import DEG, UM, URAD
 from twin.words import deviations_in
@@ -125,3 +129,41 @@ def test_angles_are_told_in_their_own_unit(tilting, capsys):
         say("left are 3.2 µm rms")
     say("left are 3.2 µm rms")
     assert capsys.readouterr().out.splitlines() == ["left are 3.2 µrad rms", "left are 3.2 µm rms"]
+
+
+def turned(targets: int, harmonic: int, seed: int = 2):
+    """Three turns to and fro over even targets of a table with one wave of 30 µrad."""
+    rng = np.random.default_rng(seed)
+    at = np.arange(targets) * 2.0 * np.pi / targets
+    angle = np.tile(np.concatenate([at, at[::-1]]), 3)
+    way = np.tile(np.repeat([1, -1], targets), 3)
+    cycle = np.repeat([1, 2, 3], 2 * targets)
+    error = 30.0 * URAD * np.sin(harmonic * angle + 0.3) + rng.normal(0.0, 2.0 * URAD, len(angle))
+    test = PositioningTest("C", angle, error, cycle, way, np.arange(len(angle)))
+    return positioning_run(test, one_axis_machine("C", angle), 2.0 * UM)
+
+
+def test_a_worm_is_found_where_targets_resolve_it():
+    found = diagnose(turned(120, 45))
+    (effect,) = found.found
+    assert effect.name == "periodic(ECC)"
+    assert effect.tuning["harmonic"] == 45.0
+
+
+def test_harmonics_that_even_targets_confuse_are_listed():
+    """A harmonic of 45 at 120 targets may be one of 75, 165, 195, 285; a curve may be anything."""
+    (alike,) = told(turned(120, 45), "periodic(ECC)", 45.0)
+    assert alike == HarmonicsAlike("C", 120, 45, (75, 165, 195, 285))
+    assert "cannot tell harmonic 45 from 75, 165, 195 or 285" in remark_sentence(alike)
+    (curve,) = told(turned(12, 40), "geometric(ECC,2-4)")
+    assert curve == HarmonicsAlike("C", 12, 0, ())
+    assert "12 even targets a turn of C show whatever repeats more than 6" in remark_sentence(curve)
+
+
+def told(run, name, *inner):
+    """Remarks on harmonics about the ordinary model with one effect."""
+    start = ordinary_model(run.touches.chain)
+    effect = parse_effect(name, run.touches.chain)
+    effect = effect.tuned(*inner) if inner else effect
+    fit = fit_run(run, Model(start.chain, (*start.effects, effect)))
+    return [r for r in remarks(fit) if isinstance(r, HarmonicsAlike)]

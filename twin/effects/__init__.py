@@ -7,7 +7,13 @@ the search and the reports know it from then on.
 from twin.effects.geometric import ComponentError, HigherOrder, component
 from twin.effects.location import LocationError
 from twin.effects.once_more import MARK, Again, Change, again
-from twin.effects.periodic import MOST_OVERTONES, Overtones, Periodic, usual_distance
+from twin.effects.periodic import (
+    MOST_OVERTONES,
+    Harmonic,
+    Overtones,
+    Periodic,
+    usual_distance,
+)
 from twin.effects.position_table import PositionTable
 from twin.effects.probe import ProbeRadius, normal_in_tool
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, SetupError, setup_errors
@@ -20,6 +26,7 @@ __all__ = [
     "Again",
     "Change",
     "ComponentError",
+    "Harmonic",
     "HigherOrder",
     "LocationError",
     "Overtones",

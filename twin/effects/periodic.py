@@ -31,6 +31,8 @@ OVERSAMPLING = 4.0
 """Scanned frequencies per resolvable one; the nearest keeps 97 % of a sine between two of them."""
 MOST_OVERTONES = 12
 """Sines of one period beyond which its shape is a saw of steps."""
+FINEST_HARMONIC = 400
+"""Of what an instrument of angles reads of an axis: worms have up to 180 teeth, gears more."""
 HIGHEST_HARMONIC = 12
 """A period of 30 degrees, which 26 distinct readings of the axis can tell from its neighbours."""
 
@@ -165,7 +167,9 @@ class Harmonic(_Repeating):
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The harmonic, as far as the distinct readings of the axis can tell one from another."""
         readings = np.unique(np.round(touches.reading(self.symbol.link), 4))
-        highest = int(np.clip(len(readings) // 2 - 1, 2, HIGHEST_HARMONIC))
+        is_own = self.symbol.component == touches.chain.link(self.symbol.link).own_component
+        most = FINEST_HARMONIC if is_own and touches.instrument.reads_angle else HIGHEST_HARMONIC
+        highest = int(np.clip(len(readings) // 2 - 1, 2, most))
         return (Inner("harmonic", "1", np.arange(2.0, highest + 1.0), continuous=False),)
 
     def tuned(self, *values: float) -> "Harmonic":

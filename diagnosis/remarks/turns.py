@@ -1,0 +1,64 @@
+"""What evenly spaced targets of a turn cannot tell of a rotary axis."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.fit import Fit
+from twin.effects import Again, Harmonic, HigherOrder, PositionTable
+from twin.frames import Array
+
+EVEN = 2e-3
+"""Largest distance of a target from an even spacing, rad: a tenth of a degree."""
+
+FEWEST_TARGETS = 3
+"""Targets of a turn up to which no harmonic is told from another at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class HarmonicsAlike:
+    """Harmonics of a turn that read as a found one at evenly spaced targets, the lowest first.
+
+    Attributes:
+        found: 0 of a curve, whose harmonics are many.
+    """
+
+    axis: str
+    targets: int
+    found: int
+    others: tuple[int, ...]
+
+
+def harmonics_alike(fit: Fit) -> list[HarmonicsAlike]:
+    """Harmonics that even targets cannot tell from a found one: n of them, k and every m n ± k.
+
+    Of a curve, which may be any of them, the number of targets alone.
+    """
+    out: list[HarmonicsAlike] = []
+    for effect in fit.model.effects:
+        one: object = effect.effect if isinstance(effect, Again) else effect
+        if not isinstance(one, Harmonic | HigherOrder | PositionTable):
+            continue
+        if one.symbol.link not in fit.run.touches.chain.rotary_axes:
+            continue
+        n = targets_a_turn(fit.run.touches.reading(one.symbol.link)[fit.used])
+        k = round(one.harmonic) if isinstance(one, Harmonic) else 0
+        around = {m * n + side * k for m in (1, 2) for side in (-1, 1)} if k else set()
+        others = tuple(h for h in sorted(around - {k}) if h > 0)
+        if n:
+            out.append(HarmonicsAlike(one.symbol.link, n, k, others))
+    return list(dict.fromkeys(out))
+
+
+def targets_a_turn(q: Array) -> int:
+    """Number of targets that stand evenly over a whole turn, rad; 0 where they do not.
+
+    Example:
+        >>> targets_a_turn(np.radians([0.0, 90.0, 180.0, 270.0, 360.0])), targets_a_turn(np.ones(3))
+        (4, 0)
+    """
+    turn = 2.0 * np.pi
+    places = np.unique(np.round(np.mod(q + EVEN, turn), 4))
+    n = len(places)
+    off = places - places[0] - turn / n * np.arange(n)
+    return n if n > FEWEST_TARGETS and np.abs(off).max() < EVEN else 0
