@@ -10,6 +10,7 @@ a line in `judged.offered`.
 from diagnosis.drift.arx import ArxInputs
 from diagnosis.drift.arx import coefficients as arx_coefficients
 from diagnosis.drift.beams import Beam, beam_estimate, read_beams
+from diagnosis.drift.clocks import lead
 from diagnosis.drift.drift_file import read_law, write_drift, write_prediction
 from diagnosis.drift.judged import Judged, Law, chosen, judge, offered
 from diagnosis.drift.linear import LinearLaw
@@ -35,6 +36,7 @@ __all__ = [
     "joined",
     "judge",
     "kept",
+    "lead",
     "offered",
     "read_beams",
     "read_law",

@@ -30,6 +30,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of the place of a feature by what its points share (scales, squareness and stylus of "
         "the CMM), as its certificate has it, µm (0.3)",
     )
+    parser.add_argument(
+        "--cad", metavar="FOLDER", help="also STEP, STL, 3MF and glTF of the standard as it is"
+    )
     add_output(parser, "FILE")
 
 
@@ -50,6 +53,8 @@ def run(args: argparse.Namespace) -> int:
             f"{args.standard}: calibrated with {nominal.known.source} already, expected the "
             "standard as designed"
         )
+    if args.program and args.cad:
+        raise DesignError(f"--cad {args.cad}: beside --program, expected it beside --points")
     if args.program:
         text = dmis_program(nominal)
         write_whole(args.output, text, newline="\r\n")
@@ -62,6 +67,10 @@ def run(args: argparse.Namespace) -> int:
             raise DesignError(f"{option}: expected an uncertainty from 0.001 to 100 µm")
     points = read_cmm_points(args.points, nominal)
     found = calibrated(nominal, points, args.u_um * UM, args.u_feature_um * UM)
+    if args.cad:
+        from cad_out.verify import export_standard
+
+        export_standard(found.standard, args.cad)
     write_standard(args.output, found.standard)
     first, *others = calibration_lines(found)
     say(f"{args.output}: {first}")

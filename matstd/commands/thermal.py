@@ -131,9 +131,12 @@ def _compare(args: argparse.Namespace) -> int:
 
 def _record(args: argparse.Namespace) -> tuple[DriftRecord, NDArray[np.int64], NDArray[np.int64]]:
     """All hours, and the rows to learn from and to hold out."""
+    from dataclasses import replace
+
     import numpy as np
 
-    from diagnosis.drift import check_alike, joined, read_log, varying
+    from diagnosis.drift import check_alike, joined, lead, read_log, varying
+    from report.drift import clock_line
 
     paths = [*args.logs, *args.held_out]
     records = [read_log(path, args.step_min * 60.0) for path in paths]
@@ -151,7 +154,11 @@ def _record(args: argparse.Namespace) -> tuple[DriftRecord, NDArray[np.int64], N
             f"expected {LEAST} and 2 at least (steps of {record.step / 60.0:g} min)"
         )
     train = np.arange(count)
-    return varying(record, train), train, np.arange(count, len(record))
+    record = varying(record, train)
+    ahead = lead(record)
+    if ahead:
+        record = replace(record, remarks=(*record.remarks, clock_line(ahead)))
+    return record, train, np.arange(count, len(record))
 
 
 LEAST = 40

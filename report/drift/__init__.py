@@ -2,9 +2,10 @@
 
 from report.drift.drift_page import write_drift_page
 from report.drift.drift_pictures import draw_drift, draw_laws
-from report.drift.drift_words import drift_lines, kept_line, law_title
+from report.drift.drift_words import clock_line, drift_lines, kept_line, law_title
 
 __all__ = [
+    "clock_line",
     "draw_drift",
     "draw_laws",
     "drift_lines",

@@ -77,6 +77,14 @@ def law_words(judged: Judged, record: DriftRecord) -> str:
     return words
 
 
+def clock_line(lead: float) -> str:
+    """Displacements that answer too early."""
+    return (
+        f"the displacements change {span(lead, 2)} before the speed does: set the clocks of both "
+        "alike, heat does not come before what makes it"
+    )
+
+
 def kept_line(result: Kept, record: DriftRecord, rows: IntArray, every: float) -> str:
     """What probing now and then leaves, beside the same probings without a law.
 

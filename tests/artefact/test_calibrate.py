@@ -271,6 +271,10 @@ def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
     inches = written(tmp_path / "in.csv", rows, nominal.fingerprint, "in", 1 / 25.4)
     assert call(inches) == 0
     assert "FF1: 30 points" in capsys.readouterr().out
+    nominal_file = str(tmp_path / "standard.toml")
+    both = ["calibrate", nominal_file, "--program", "--cad", str(tmp_path / "c"), "-o", str(out)]
+    assert main([*both, "--force"]) == 2
+    assert "expected it beside --points" in capsys.readouterr().err
     again = main(["calibrate", str(out), "--points", str(inches), "-o", str(tmp_path / "x.toml")])
     assert again == 2
     assert "already" in capsys.readouterr().err

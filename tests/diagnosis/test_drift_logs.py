@@ -7,9 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from diagnosis.drift.clocks import lead
 from diagnosis.drift.drift_file import read_law
 from diagnosis.drift.log_file import read_log, read_probed
+from diagnosis.drift.record import varying
 from matstd.cli import main
+from report.drift.drift_words import clock_line
 from twin.errors import BadFile
 from twin.units import UM
 
@@ -119,11 +122,30 @@ def test_what_cannot_be_is_refused(tmp_path, capsys, monkeypatch, options, words
     assert not (tmp_path / "out").exists()
 
 
-def test_a_constant_sensor_is_left_out_and_told(tmp_path, capsys):
+def test_a_constant_sensor_is_left_out_and_told(tmp_path):
     rows = [f"{r},21.5" for r in rows_of()]
     log = written(tmp_path / "a.csv", rows, f"{HEAD},T_dead_degC")
-    assert main(["thermal", str(log), "--no-network", "-o", str(tmp_path / "out")]) == 0
-    assert "dead: constant in the training hours, left out" in capsys.readouterr().out
+    record = varying(read_log(log, 300.0), np.arange(100))
+    assert record.drives == ("nose", "spindle_rpm")
+    assert "dead: constant in the training hours, left out" in record.remarks[0]
+
+
+def test_displacements_that_answer_before_the_speed_are_told(tmp_path):
+    """A body of 40 min behind the speed; its logger's clock is 30 min ahead of the control's."""
+    rpm = 1000.0 * np.array([k % 30 > 15 for k in range(150)])
+    growth, course = 0.0, []
+    for n in rpm:
+        growth += (n / 100.0 - growth) * (1.0 - np.exp(-5.0 / 40.0))
+        course.append(growth)
+    said = {}
+    for name, ahead in (("right", 0), ("wrong", 6)):
+        rows = [
+            f"{5 * k},{20.0 + 0.1 * course[k]:.4f},{rpm[k]:g},{course[k + ahead]:.4f}"
+            for k in range(140)
+        ]
+        said[name] = lead(read_log(written(tmp_path / f"{name}.csv", rows), 300.0))
+    assert said == {"right": 0.0, "wrong": 1800.0}
+    assert "change 30 min before the speed does" in clock_line(said["wrong"])
 
 
 @pytest.mark.slow

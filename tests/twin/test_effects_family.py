@@ -29,7 +29,7 @@ def on_a_path(touches):
 
 
 def elastic(touches):
-    """Beams that nobody proposes: sections are the user's to say."""
+    """What nobody proposes: beams, whose sections are the user's to say, higher couplings."""
     chain = touches.chain
     axis = next(a for a in chain.linear_axes if not carried_by_rotary(chain, a))
     low, high = chain.link(axis).range
@@ -39,7 +39,10 @@ def elastic(touches):
         f"beam({axis},clamped,d160,at:{at:g},span:{span:g},mass:120,material:cast-iron)",
         f"beam({axis},supported,200x300,at:{high + 50.0:g},sense:-1,span:{span:g},down:+Y)",
     )
-    return [parse_effect(text, chain) for text in texts]
+    rotary = chain.rotary_axes[:1] or chain.linear_axes[:1]
+    others = [a for a in (*rotary, *chain.linear_axes) if a != axis][:2]
+    couplings = [f"coupling(EB{axis},{other},{n})" for n, other in zip((2, 3), others, strict=True)]
+    return [parse_effect(text, chain) for text in (*texts, *couplings)]
 
 
 def carried_by_rotary(chain, axis):

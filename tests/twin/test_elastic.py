@@ -175,3 +175,19 @@ def test_a_loaded_ball_bar_finds_the_stiffness_over_the_workspace(chain):
     np.testing.assert_allclose(along @ theta, want, rtol=1e-9)
     found = np.linalg.lstsq(along, np.array(want))[0]
     np.testing.assert_allclose(found, theta, rtol=1e-6)
+
+
+def test_a_coupling_of_higher_degree_is_any_smooth_function_of_both_axes(chain):
+    """EAX = 40 urad (3 u^2 - 1)/2 v + 10 urad u (5 v^3 - 3 v)/2, written out."""
+    effect = parse_effect("coupling(EAX,Z,3)", chain)
+    words = [p.name for p in effect.parameters]
+    theta = np.zeros(9)
+    theta[words.index("P2X P1Z")], theta[words.index("P1X P3Z")] = 40e-6, 10e-6
+    x, z = 120.0, -50.0
+    u, v = x / 300.0, (z + 200.0) / 200.0
+    want = 40e-6 * (3 * u**2 - 1) / 2 * v + 10e-6 * u * (5 * v**3 - 3 * v) / 2
+    touches = at_poses(chain, np.array([[0.0, x, z]]), 0.0)
+    added = Model(chain, (effect,)).contribution(touches, theta)
+    assert added.twist[0, chain.link_index("X"), 3] == pytest.approx(want, rel=1e-12)
+    with pytest.raises(UnknownEffect, match="a degree of 1"):
+        parse_effect("coupling(EAX,Z,9)", chain)

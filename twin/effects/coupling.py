@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 
 from twin.frames import Array
 from twin.machine import Chain, Family, Symbol
@@ -21,33 +22,45 @@ from twin.model import (
 from twin.record import Touches
 from twin.units import UM, URAD
 
+DEGREES = ("1", "2", "3", "4")
+"""Of a coupling: more bends no guide, and no run tells."""
+
 
 @dataclass(frozen=True)
 class Coupling:
     """A component error that depends on the reading of another axis: a bending guide.
 
     The weight of what travels bends the guide it travels on, more in one place of the other axis
-    than in another. This is the lowest joint term: pitch of X that changes with the height of Z is
-    ``EBX = a u_X u_Z``, u the reading scaled to [-1, 1].
+    than in another. The lowest joint term is enough for most: pitch of X that changes with the
+    height of Z is ``EBX = a u_X u_Z``, u the reading scaled to [-1, 1]. Of a higher degree n it is
+    any function of both, ``sum a_jk P_j(u_X) P_k(u_Z)``, j and k from 1 to n, P of Legendre (of an
+    axis that turns, cosine and sine of its multiples): what each axis does by itself stays its own.
 
     Attributes:
         other: Name of the axis it also depends on.
+        degree: n.
     """
 
     symbol: Symbol
     other: str
+    degree: int = 1
 
     kind = "coupling"
 
     @property
     def name(self) -> str:
-        """`coupling(EBX,Z)`."""
-        return f"coupling({self.symbol.name},{self.other})"
+        """`coupling(EBX,Z)`; with its degree from 2, `coupling(EBX,Z,2)`."""
+        degree = f",{self.degree}" if self.degree > 1 else ""
+        return f"coupling({self.symbol.name},{self.other}{degree})"
 
     @property
     def _words(self) -> list[str]:
         """Name of every joint term; an axis whose letter turns gives a cosine and a sine."""
-        own, other = (_factor_names(axis) for axis in (self.symbol.link, self.other))
+        axes = (self.symbol.link, self.other)
+        if self.degree > 1:
+            higher = [_higher_names(axis, self.degree) for axis in axes]
+            return [f"{f} {g}" for f in higher[0] for g in higher[1]]
+        own, other = (_factor_names(axis) for axis in axes)
         words = [" ".join(w for w in (f, g) if w) for f in own for g in other]
         return ["amplitude"] if len(words) == 1 else words
 
@@ -60,12 +73,20 @@ class Coupling:
     def parameters(self) -> Sequence[Parameter]:
         """Peak amplitudes."""
         sd = 100 * URAD if self.symbol.is_angular else 10 * UM
-        return tuple(Parameter(word, self.symbol.unit, sd) for word in self._words)
+        if self.degree == 1:
+            return tuple(Parameter(word, self.symbol.unit, sd) for word in self._words)
+        # guides are smooth: a shape of order j k is expected that much smaller
+        own, other = (_orders(a, self.degree) for a in (self.symbol.link, self.other))
+        sizes = [sd / (j * k) for j in own for k in other]
+        return tuple(
+            Parameter(word, self.symbol.unit, size)
+            for word, size in zip(self._words, sizes, strict=True)
+        )
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis."""
         where = touches.chain.twist_of(self.symbol)
-        own, other = _factors(touches, self.symbol.link), _factors(touches, self.other)
+        own, other = (_factors(touches, a, self.degree) for a in (self.symbol.link, self.other))
         products = [f * g for f in own for g in other]
         return tuple(Term(k, where, product) for k, product in enumerate(products))
 
@@ -74,21 +95,41 @@ def _factor_names(axis: str) -> tuple[str, ...]:
     return ("",) if axis[0] in "XYZUVW" else (f"cos {axis}", f"sin {axis}")
 
 
-def _factors(touches: Touches, axis: str) -> tuple[Array, ...]:
-    """Lowest functions of one reading, each (N,)."""
+def _turns(axis: str) -> bool:
+    return axis[0] not in "XYZUVW"
+
+
+def _orders(axis: str, degree: int) -> list[int]:
+    """Order of every function of one reading."""
+    return [k for k in range(1, degree + 1) for _ in range(2 if _turns(axis) else 1)]
+
+
+def _higher_names(axis: str, degree: int) -> list[str]:
+    if not _turns(axis):
+        return [f"P{k}{axis}" for k in range(1, degree + 1)]
+    return [f"{f} {k}{axis}" for k in range(1, degree + 1) for f in ("cos", "sin")]
+
+
+def _factors(touches: Touches, axis: str, degree: int) -> tuple[Array, ...]:
+    """Functions of one reading from the lowest on, each (N,)."""
     q = touches.reading(axis)
     link = touches.chain.link(axis)
-    return (link.scaled(q),) if link.kind == "linear" else (np.cos(q), np.sin(q))
+    if link.kind == "linear":
+        return tuple(legvander(link.scaled(q), degree).T[1:])
+    return tuple(f(k * q) for k in range(1, degree + 1) for f in (np.cos, np.sin))
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Coupling:
-    """From the component error and the other axis."""
-    check_count(KIND.usage, arguments, 2, 2)
+    """From the component error, the other axis, and the degree where it is not one."""
+    check_count(KIND.usage, arguments, 2, 3)
+    degree = arguments[2] if len(arguments) == 3 else "1"
+    if degree not in DEGREES:
+        raise refusal(KIND.usage, arguments, f"a degree of {', '.join(DEGREES)}")
     symbol = component_symbol(chain, arguments[0])
     other = checked_axis(KIND.usage, arguments, arguments[1], chain)
     if other == symbol.link:
         raise refusal(KIND.usage, arguments, f"another axis than {other} itself")
-    return Coupling(symbol, other)
+    return Coupling(symbol, other, int(degree))
 
 
 def propose(touches: Touches) -> Iterable[Coupling]:
@@ -107,10 +148,11 @@ def propose(touches: Touches) -> Iterable[Coupling]:
 
 KIND = Kind(
     word="coupling",
-    arguments="symbol,axis",
+    arguments="symbol,axis[,degree]",
     title="bending of a guide with another axis",
     synonyms="cross-coupling, non-rigid, quasi-rigid, guideway bending, foundation bending",
-    formula="E = a f(q_own) g(q_other); f, g = u (linear axis), cos q and sin q (rotary axis)",
+    formula="E = a f(q_own) g(q_other); f, g = u (linear axis), cos q and sin q (rotary axis); of "
+    "degree n: sum a_jk P_j(u_own) P_k(u_other), j, k = 1 ... n",
     units="a: µrad or µm",
     typical="10 to 60 µrad over the travel, on slender machines more",
     source="J. S. Chen, Int. J. Mach. Tools Manufact. 35 (1995): pitch of X depends on Z, 58 µrad",
