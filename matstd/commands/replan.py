@@ -47,9 +47,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="whose words the programs have (that of the programs in OUT)",
     )
     parser.add_argument(
-        "--within-mm", type=float, default=20.0, help="of its place the standard stands (20)"
+        "--within-mm",
+        type=float,
+        help="of its place the standard stands (what the search in OUT/setup was made for)",
     )
-    parser.add_argument("--within-deg", type=float, default=5.0, help="likewise (5)")
+    parser.add_argument("--within-deg", type=float, help="likewise")
     add_pdf(parser)
     add_output(parser)
 
@@ -69,7 +71,11 @@ def run(args: argparse.Namespace) -> int:
     from twin.units import DEG
 
     printed_by, design = asked_printer(args), Path(args.design)
-    spread = Spread(args.within_mm, args.within_deg * DEG)
+    made_for = spread_of(design)
+    spread = Spread(
+        made_for.distance if args.within_mm is None else args.within_mm,
+        made_for.angle if args.within_deg is None else args.within_deg * DEG,
+    )
     chain = read_machine(design / "machine.toml")
     standard = read_standard(design / "standard.toml")
     files = programs_of(design)
@@ -105,6 +111,19 @@ def programs_of(design: Path) -> list[Path]:
     if not found:
         raise BadFile(folder, "folder", "no program", "the folder that `matstd design` made")
     return sorted(found, key=lambda p: (len(p.name), p.name))
+
+
+def spread_of(design: Path) -> Spread:
+    """Within which the search of a design finds the standard, as its program states."""
+    from probe_paths.emit import SEARCH
+    from probe_paths.locate import Spread
+    from twin.units import DEG
+
+    for program in sorted((design / SHEET).glob(f"*_{SEARCH}.*")):
+        text = program.read_text(encoding="ascii", errors="replace")
+        if stated := re.search(r"STANDS WITHIN ([\d.]+) MM AND ([\d.]+) DEG", text):
+            return Spread(float(stated[1]), float(stated[2]) * DEG)
+    return Spread()
 
 
 def _place(

@@ -6,17 +6,13 @@ from pathlib import Path
 from probe_paths.emit import Feeds, ProgramSet, make_ball, make_dry_run, make_first, make_search
 from probe_paths.language import Dialect
 from probe_paths.locate.ball_plan import plan_ball
-from probe_paths.locate.search_plan import Spread, plan_search
+from probe_paths.locate.search_plan import plan_search
+from probe_paths.locate.spread import SPREADS, Spread
 from probe_paths.plan import TouchPlan
 from twin.errors import NotReachable
-from twin.units import DEG
 
 RAISED = 100.0
 """Of a dry run, mm."""
-
-SPREADS = tuple(Spread(d, a * DEG) for d, a in ((20.0, 5.0), (15.0, 4.0), (10.0, 3.0), (5.0, 2.0)))
-"""That a search is made for, the first for which there is one: by eye, by a rule, by a stop. A
-standard of tall posts leaves a short stylus no room to come down wherever it may stand."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 
 from artefact.body import Standard, contact
 from probe_paths.locate.relief import Relief
-from probe_paths.locate.search_plan import Spread
+from probe_paths.locate.spread import Spread
 from twin.errors import NotEnoughData
 from twin.frames import Array, apply, fixed_xyz, inverse, pose
 from twin.record import Setup
@@ -38,7 +38,7 @@ GOOD = 0.1
 """Root mean square of the touches beyond which nothing has been found, mm: what a machine bends
 within the 100 mm of a search leaves 0.03 mm."""
 
-_KNOWN, _KNOWN_ANGLE = 0.3, 0.1 * DEG
+KNOWN, KNOWN_ANGLE = 0.3, 0.1 * DEG
 """Largest standard uncertainties of a place that programs are planned for, mm and rad."""
 
 _CLEAR, _ROUGH = 3.0, 0.03
@@ -97,7 +97,7 @@ def find_standard(
     relief = Relief.of(standard, radius)
 
     def on_picture(theta: Array) -> Array:
-        return _lifted(relief, ball, theta)
+        return lifted(relief, ball, theta)
 
     def on_surfaces(theta: Array) -> Array:
         return _lifted_exactly(standard, ball, theta, radius)
@@ -137,10 +137,10 @@ def _check(rms: Array, u: Array) -> None:
             f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm): align the standard "
             "better and search again"
         )
-    if u[:3].max() > _KNOWN or u[3:].max() > _KNOWN_ANGLE:
+    if u[:3].max() > KNOWN or u[3:].max() > KNOWN_ANGLE:
         raise NotEnoughData(
             f"the touches tell the place to {u[:3].max():.2f} mm and {u[3:].max() / DEG:.2f} "
-            f"degrees only, expected {_KNOWN:g} mm and {_KNOWN_ANGLE / DEG:g} degrees: align the "
+            f"degrees only, expected {KNOWN:g} mm and {KNOWN_ANGLE / DEG:g} degrees: align the "
             "standard better and search again"
         )
 
@@ -154,7 +154,7 @@ Lift = Callable[[Array], Array]
 """By how much the standard at places (M, 6) would stop balls above where they were, (M, N), mm."""
 
 
-def _lifted(relief: Relief, ball: Array, theta: Array) -> Array:
+def lifted(relief: Relief, ball: Array, theta: Array) -> Array:
     """On the picture: the ball's height over it, along its own way down."""
     out = []
     for some in np.array_split(theta, max(len(theta) // 2000, 1)):

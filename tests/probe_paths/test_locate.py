@@ -2,12 +2,13 @@
 
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from artefact.body import contact, write_standard
+from artefact.body import Base, contact, write_standard
 from matstd.cli import main
 from matstd.commands.replan import feeds_of
 from probe_paths.campaign.collisions import check_moves
@@ -21,7 +22,8 @@ from probe_paths.emit.program import make_programs, make_search
 from probe_paths.emit.writer import Feeds
 from probe_paths.locate.find import find_standard
 from probe_paths.locate.relief import Relief
-from probe_paths.locate.search_plan import Spread, plan_search
+from probe_paths.locate.search_plan import plan_search
+from probe_paths.locate.spread import Spread
 from probe_paths.plan.clearance import ToolClearance
 from probe_paths.plan.probe import Probe
 from twin.errors import BadFile, NotEnoughData, NotReachable
@@ -128,6 +130,16 @@ def test_a_probe_that_is_too_short_and_a_spread_out_of_travel_are_refused(small,
         plan_search(small, chain, stub, golden.setup(), Spread())
     with pytest.raises(NotReachable, match="smaller spread"):
         plan_search(small, chain, Probe(), golden.setup(), Spread(90.0, 1.0 * DEG))
+
+
+def test_a_search_on_flat_places_alone_is_refused(golden, chain):
+    """Balls far from the only places that have room: all touches would meet the base."""
+    small = golden.standard()
+    bare = replace(
+        small, patches=(), spheres=small.spheres[:1], base=Base((130.0, 130.0), 10.0, 20.0)
+    )
+    with pytest.raises(NotReachable, match="comes down to flat places: it would tell 0 of 60"):
+        plan_search(bare, chain, Probe(), golden.setup(), Spread(3.0, 1.0 * DEG))
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
 from probe_paths.emit.writer import Feeds
 from probe_paths.language.dialect import Dialect
 from probe_paths.locate.beside import companions
-from probe_paths.locate.search_plan import Spread
+from probe_paths.locate.spread import Spread
 from report.pages.setup_page import PAGE, PICTURE, write_setup_page
 from report.pages.tables import page_tables
 from twin.frames import apply, inverse, pose, turn
