@@ -16,7 +16,7 @@ from cad_out.build import as_part, run_apart
 from cad_out.meshes import Mesh
 from cad_out.verify import Conformity, export_standard, measure
 
-PARTS = ("details", "meshes", "build", "verify")
+PARTS = ("details", "making", "meshes", "build", "verify")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = ["Conformity", "Mesh", "as_part", "export_standard", "measure", "run_apart"]

@@ -1,6 +1,6 @@
 """A whole standard as STEP AP242 and STL, both read back and measured before they count.
 
-Four saddles on columns, three datum spheres, a datum plane, mounting holes: one solid. The faces in
+Four saddles on columns, three balls, a datum plane, mounting holes with screws. The faces in
 the STEP text are compared with the design by a reader that shares no code with the CAD kernel.
 """
 

@@ -14,6 +14,7 @@ from artefact.brief import Project
 from artefact.certify import dmis_program, like_task
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
+from cad_out.making import Making, making_of, write_making
 from cad_out.verify import Conformity, export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.files import write_uncertainty
@@ -79,7 +80,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         project, workspace, project.poses, folder / "sensitivity", rng, progress, workers
     )
     progress("STEP and STL", 0, 1)
-    conformity = _cad(project, placement.standard, folder)
+    conformity, making = _cad(project, placement.standard, folder)
     progress("probing programs", 0, 1)
     programs = make_programs(plan, dialect(project), feeds(project))
     paths = programs.write(folder / "programs")
@@ -106,6 +107,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         maps=maps,
         placement=placement,
         conformity=conformity,
+        making=making,
         plan=plan,
         programs=programs,
         machines=tuple(machines),
@@ -116,12 +118,14 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     )
 
 
-def _cad(project: Project, standard: Standard, folder: Path) -> Conformity:
-    """Models and drawing of a standard."""
+def _cad(project: Project, standard: Standard, folder: Path) -> tuple[Conformity, Making]:
+    """Models and drawing of a standard, and whether it can be made as it is drawn."""
+    making = making_of(standard)
+    write_making(folder / "making.json", making)
     who = project.standard
     conformity = export_standard(standard, folder, author=who.author, organisation=who.organisation)
     write_drawing(folder, standard, Issuer(who.author, who.organisation, conformity.mass))
-    return conformity
+    return conformity, making
 
 
 def _placement(

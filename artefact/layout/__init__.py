@@ -5,6 +5,7 @@ beside each other, standards put together from `Site`s by hand, and rivals. A fu
 more entry in `rivals`.
 """
 
+from artefact.layout.post import post_stiffness
 from artefact.layout.rival_artefacts import rivals, with_spheres
 from artefact.layout.side_by_side import most_side_by_side
 from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
@@ -30,6 +31,7 @@ __all__ = [
     "holes_on",
     "least_gap",
     "most_side_by_side",
+    "post_stiffness",
     "rivals",
     "standard_from_sites",
     "with_spheres",

@@ -6,7 +6,7 @@ from cad_out.build.process import run_apart
 from twin.errors import NotBuildable
 
 
-def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 150.0) -> None:
+def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 400.0) -> None:
     """Run one task of `cad_out.build.worker` in a process of its own.
 
     Args:

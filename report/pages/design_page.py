@@ -9,6 +9,7 @@ from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
 from artefact.compare import Rival
 from artefact.reach import standing_remarks
 from artefact.worth import Criterion, touch_curve
+from cad_out.making import FIRST_MODE, SAG, Making
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
 from report.pages.page import digits, write_page
@@ -133,9 +134,14 @@ def _standard(design: Design) -> dict[str, Any]:
         "comparison": [_rival(r, design, on_machine) for r in design.placement.rivals],
         "rival": _rival(best, design, on_machine) if best is not None else None,
         "step_deviation": _at_most(faces),
+        "making": _making(design.making),
         "cad": [
             ("STEP", f"AP242, mm, {c.step_bytes / 1e6:.1f} MB, {len(c.names)} named faces"),
-            ("solid", f"{c.solids} solid, valid: {_yes(c.is_valid)}, closed: {_yes(c.is_closed)}"),
+            (
+                "solids",
+                f"{c.solids}: body, balls and screws, valid: {_yes(c.is_valid)}, "
+                f"closed: {_yes(c.is_closed)}",
+            ),
             ("volume", f"{c.volume / 1e3:.3f} cm³ re-read, {c.volume_built / 1e3:.3f} cm³ built"),
             ("mass", f"{c.mass:.2f} kg"),
             (
@@ -155,6 +161,27 @@ def _standard(design: Design) -> dict[str, Any]:
             ),
         ],
     }
+
+
+def _making(made: Making) -> list[tuple[str, str]]:
+    """Rows about cutters and stiffness; what is beyond a limit says so."""
+    cutting, stiff = made.cutting, made.stiffness
+    name, sag = stiff.worst
+    mode = "" if stiff.first_mode >= FIRST_MODE else f"; at least {FIRST_MODE:.0f} Hz are wanted"
+    often = sorted(f for f, value in stiff.sag.items() if value > SAG)
+    told = f"; beyond {SAG / UM:g} µm: {', '.join(often)}" if often else ""
+    cutters = ", ".join(f"{face} Ø{d:g}" for face, d in cutting.cutter.items())
+    beyond = f", not at all: {', '.join(cutting.out_of_reach)}" if cutting.out_of_reach else ""
+    return [
+        (
+            "ball-end mill of 6 mm, 10 D out of its holder",
+            f"reaches {100 * cutting.upright:.0f} % of the surface from above, "
+            f"{100 * cutting.tilted:.0f} % tilted by 45° at most{beyond}",
+        ),
+        ("largest ball-end mill of a face, mm", cutters),
+        ("first mode on rigid screws", f"{stiff.first_mode:.0f} Hz{mode}"),
+        ("sag from upright to lying on its side", f"{name} {sag / UM:.2f} µm at most{told}"),
+    ]
 
 
 def _rival(rival: Rival, design: Design, on_machine: dict[str, float]) -> dict[str, Any]:

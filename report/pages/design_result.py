@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from artefact.brief import Project
 from artefact.compare import IdentifiabilityReport
 from artefact.place import Placement
+from cad_out.making import Making
 from cad_out.verify import Conformity
 from diagnosis.answer import Proof
 from diagnosis.fit import Fit
@@ -49,6 +50,7 @@ class Design:
         maps: File and caption of the study's pictures.
         placement: Standard and touches.
         conformity: CAD files, measured after they were written.
+        making: Reach of cutters, first mode, sag.
         plan: Touches in their order.
         programs: Text that makes them.
         machines: Random machines, probed and identified.
@@ -63,6 +65,7 @@ class Design:
     maps: list[tuple[str, str]]
     placement: Placement
     conformity: Conformity
+    making: Making
     plan: TouchPlan
     programs: ProgramSet
     machines: tuple[Proven, ...]

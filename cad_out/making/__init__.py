@@ -1,0 +1,20 @@
+"""Whether a standard can be made, and how stiff it stands: cutters, first mode, sag.
+
+In: a `Standard`. Out: a `Making` and `making.json`. Neither the CAD kernel nor a mesh is needed:
+bodies answer for distances, and plate and pillars are cubes of finite elements.
+"""
+
+from cad_out.making.cutting import Cutting
+from cad_out.making.making_file import FIRST_MODE, SAG, Making, making_of, write_making
+from cad_out.making.stiffness import Stiffness, stiffness_of
+
+__all__ = [
+    "FIRST_MODE",
+    "SAG",
+    "Cutting",
+    "Making",
+    "Stiffness",
+    "making_of",
+    "stiffness_of",
+    "write_making",
+]

@@ -1,0 +1,63 @@
+"""Everything about the making of a standard, and its file."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from artefact.body import Standard
+from cad_out.details import details_of
+from cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
+from cad_out.making.stiffness import Stiffness, stiffness_of
+from twin.files import write_whole
+from twin.units import UM
+
+FIRST_MODE, SAG = 500.0, 0.1 * UM
+"""Least first mode, Hz; most sag that needs no correction, mm."""
+
+
+@dataclass(frozen=True, eq=False)
+class Making:
+    """Whether a standard can be cut, and how it stands.
+
+    Attributes:
+        cutting: Reach of cutters.
+        stiffness: First mode and sag.
+    """
+
+    cutting: Cutting
+    stiffness: Stiffness
+
+
+def making_of(standard: Standard) -> Making:
+    """Cutters and stiffness of a standard."""
+    details = details_of(standard)
+    return Making(cutting_of(standard, details), stiffness_of(standard, details))
+
+
+def write_making(path: Path, making: Making) -> None:
+    """All figures with their limits as JSON; lengths in their names' units."""
+    cutting, stiffness = making.cutting, making.stiffness
+    name, sag = stiffness.worst
+    table: dict[str, Any] = {
+        "format": "making/1",
+        "finishing_cutter": {"diameter_mm": 2.0 * RADIUS, "overhang_mm": OVERHANG},
+        "points": cutting.points,
+        "reached_upright": cutting.upright,
+        "reached_tilted_45_deg": cutting.tilted,
+        "out_of_reach": list(cutting.out_of_reach),
+        "faces": {
+            face: {
+                "least_concave_radius_mm": radius if radius < 1e6 else None,
+                "ball_end_mill_mm": cutting.cutter[face],
+            }
+            for face, radius in cutting.radius.items()
+        },
+        "first_mode_Hz": stiffness.first_mode,
+        "first_mode_limit_Hz": FIRST_MODE,
+        "element_mm": stiffness.cube,
+        "sag_um": {feature: value / UM for feature, value in stiffness.sag.items()},
+        "sag_limit_um": SAG / UM,
+        "sag_worst": {"feature": name, "um": sag / UM},
+    }
+    write_whole(path, json.dumps(table, indent=1, allow_nan=False) + "\n")

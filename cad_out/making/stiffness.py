@@ -1,0 +1,184 @@
+"""First mode of a standard on its screws, and how its features sag when the table tilts.
+
+Plate and pillars are cubes as stiff and heavy as they are filled; every post is a mass at its ball,
+held to the plate's upper face round its foot by the stiffness of a cantilever. The
+standard is held where it is screwed down.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from artefact.body import DatumSphere, Standard
+from artefact.layout import post_stiffness
+from cad_out.details import BALL, Details
+from cad_out.making.hexahedron import CORNERS, cube
+from twin.frames import Array
+
+GRAVITY = 9.81e3
+"""In mm/s^2."""
+
+_MODULUS, _POISSON = 200e3, 0.3  # N/mm^2: steel
+_FILLED = 0.02  # of a cube, below which it is left out
+_TO_TIP = 0.25  # of a cantilever's mass that swings with its end: 33/140, rounded up
+_STIFF = 1e9  # N/mm that hold a node: ten thousand times a cube's own
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffness:
+    """What gravity and vibration do to a standard.
+
+    Attributes:
+        first_mode: Lowest natural frequency on rigid screws, Hz.
+        sag: Of every face's middle and ball, from upright to lying on its side, the worst way, mm.
+        cube: Side of the elements, mm.
+    """
+
+    first_mode: float
+    sag: dict[str, float]
+    cube: float
+
+    @property
+    def worst(self) -> tuple[str, float]:
+        """Where it sags most, and by how much, mm."""
+        name = max(self.sag, key=self.sag.__getitem__)
+        return name, self.sag[name]
+
+
+def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> Stiffness:
+    """By finite elements.
+
+    Args:
+        standard: Plate, pillars, posts and balls.
+        details: With the pads.
+        side: Of the cubes, mm; 10 and 6 mm differ by some per cent.
+    """
+    from scipy.sparse import coo_array, csc_array, diags_array
+    from scipy.sparse.linalg import LinearOperator, eigsh, splu
+
+    cells, share = _cells(standard, side)
+    corner = cells[:, None] + ((CORNERS + 1) / 2).astype(int)
+    nodes, index = np.unique(corner.reshape(-1, 3), axis=0, return_inverse=True)
+    index = index.reshape(-1, 8)
+    places = nodes * side + _origin(standard)
+    freedom = (3 * index[:, :, None] + np.arange(3)).reshape(len(index), 24)
+    K_cube = cube(side, _MODULUS, _POISSON)
+    rows = np.repeat(freedom, 24, axis=1).reshape(-1)
+    columns = np.tile(freedom, (1, 24)).reshape(-1)
+    values = (share[:, None] * K_cube.reshape(1, -1)).reshape(-1)
+    balls = standard.spheres
+    size = 3 * (len(nodes) + len(balls))
+    mass = np.zeros(size)
+    one = standard.material.density * side**3 / 8.0
+    np.add.at(mass, freedom.reshape(-1), np.repeat(share * one, 24))
+    extra = [
+        _springs(ball, 3 * (len(nodes) + k), places, standard, side) for k, ball in enumerate(balls)
+    ]
+    for k, ball in enumerate(balls):
+        tip = 3 * (len(nodes) + k)
+        mass[tip : tip + 3] = _tip_mass(ball, standard)
+    held = _held(standard, details, places, side)
+    ends = [e for e, _ in extra]
+    rows = np.concatenate([rows, *[np.repeat(e, len(e)) for e in ends], held])
+    columns = np.concatenate([columns, *[np.tile(e, len(e)) for e in ends], held])
+    values = np.concatenate(
+        [values, *[K.reshape(-1) for _, K in extra], np.full(len(held), _STIFF)]
+    )
+    K = csc_array(coo_array((values, (rows, columns)), shape=(size, size)))
+    factor = splu(K, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    solve = LinearOperator((size, size), matvec=factor.solve)
+    start = np.ones(size)
+    lowest = eigsh(K, k=1, M=diags_array(mass).tocsc(), sigma=0.0, OPinv=solve, v0=start)[0]
+    shape = factor.solve(mass[:, None] * np.tile(np.eye(3), (size // 3, 1)) * GRAVITY)
+    moved = shape.reshape(-1, 3, 3)  # node, displacement, direction of gravity
+    return Stiffness(
+        first_mode=float(np.sqrt(lowest[0]) / (2.0 * np.pi) * np.sqrt(1e3)),
+        sag=_sag(standard, places, moved * 1e-3),
+        cube=side,
+    )
+
+
+def _origin(standard: Standard) -> Array:
+    return np.array([-standard.base.half_size[0], -standard.base.half_size[1], 0.0])
+
+
+def _cells(standard: Standard, side: float) -> tuple[Array, Array]:
+    """Cubes that hold some of plate and pillars, (E, 3), and how much, (E,)."""
+    low = _origin(standard)
+    tops = [float(p.point(p.grid(4.0))[:, 2].max()) for p in standard.patches]
+    high = np.array([*standard.base.half_size, max([standard.base.thickness, *tops])])
+    counts = np.ceil((high - low) / side - 1e-6).astype(int)
+    cells = np.stack(np.meshgrid(*(np.arange(n) for n in counts), indexing="ij"), -1).reshape(-1, 3)
+    middle = low + (cells + 0.5) * side
+    parts = [standard.base.body.distance(middle)]
+    parts += [column.distance(middle) for column in standard.columns.values()]
+    distance = np.min(parts, axis=0)
+    share = np.clip(0.5 - distance / side, 0.0, 1.0)
+    return cells[share > _FILLED], share[share > _FILLED]
+
+
+def _post_mass(ball: DatumSphere, standard: Standard) -> float:
+    a, b, length = ball.foot_radius, ball.stem_radius, ball.centre[2] - ball.foot - ball.radius
+    return float(standard.material.density * np.pi * length * (a * a + a * b + b * b) / 3.0)
+
+
+def _tip_mass(ball: DatumSphere, standard: Standard) -> float:
+    """Of a ball, and of its post what swings with it, kg."""
+    return float(
+        BALL.density * 4.0 / 3.0 * np.pi * ball.radius**3 + _TO_TIP * _post_mass(ball, standard)
+    )
+
+
+def _springs(
+    ball: DatumSphere, tip: int, places: Array, standard: Standard, side: float
+) -> tuple[np.ndarray, Array]:
+    """Freedoms of a ball and of the plate round its foot, and the stiffness between them.
+
+    The foot moves and turns as the nodes of the plate's upper face round it do, by least squares.
+    """
+    foot, top = np.array([*ball.centre[:2], ball.foot]), standard.base.thickness
+    on_top = np.flatnonzero(np.abs(places[:, 2] - top) < 0.51 * side)
+    near = on_top[np.argsort(np.linalg.norm(places[on_top] - foot, axis=1), kind="stable")[:9]]
+    arm = places[near] - foot
+    rigid = np.zeros((3 * len(near), 6))
+    for k, (x, y, z) in enumerate(arm):
+        rigid[3 * k : 3 * k + 3] = [[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x], [0, 0, 1, y, -x, 0]]
+    length = ball.centre[2] - ball.foot
+    at_ball = np.array([[1, 0, 0, 0, length, 0], [0, 1, 0, -length, 0, 0], [0, 0, 1, 0, 0, 0]])
+    carried = at_ball @ np.linalg.pinv(rigid)
+    across = post_stiffness(length, ball.stem_radius, ball.foot_radius, _MODULUS)
+    along = _MODULUS * np.pi * ball.stem_radius * ball.foot_radius / length
+    apart = np.hstack([np.eye(3), -carried])
+    freedom = np.concatenate([tip + np.arange(3), (3 * near[:, None] + np.arange(3)).reshape(-1)])
+    return freedom, apart.T @ np.diag([across, across, along]) @ apart
+
+
+def _held(standard: Standard, details: Details, places: Array, side: float) -> np.ndarray:
+    """Freedoms of the underside that the screws hold."""
+    low = np.flatnonzero(places[:, 2] < 0.5 * side)
+    rings = [(pad.x, pad.y, pad.radius) for pad in details.pads]
+    rings = rings or [(hole.x, hole.y, hole.bore_radius) for hole in standard.holes]
+    chosen: list[Any] = []
+    for x, y, radius in rings:
+        off = np.hypot(places[low, 0] - x, places[low, 1] - y)
+        inside = low[off <= max(radius, np.partition(off, 3)[3])]
+        chosen.append(inside)
+    nodes = np.unique(np.concatenate(chosen)) if chosen else low
+    return (3 * nodes[:, None] + np.arange(3)).reshape(-1)
+
+
+def _sag(standard: Standard, places: Array, moved: Array) -> dict[str, float]:
+    """From gravity along -z to gravity along the worst direction across, by feature, mm."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 25)
+    across = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(25)])
+    change = across - np.array([0.0, 0.0, -1.0])
+    sag = {}
+    for patch in standard.patches:
+        middle = patch.point(np.zeros((1, 2)))[0]
+        nearest = int(np.argmin(np.linalg.norm(places - middle, axis=1)))
+        sag[patch.name] = float(np.linalg.norm(change @ moved[nearest].T, axis=1).max())
+    for k, ball in enumerate(standard.spheres):
+        own = moved[len(places) + k]
+        sag[ball.name] = float(np.linalg.norm(change @ own.T, axis=1).max())
+    return sag

@@ -1,0 +1,112 @@
+"""Cutters and stiffness against closed forms: cantilevers, slots, a cube under uniform strain."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from artefact.body.freeform import graph_patch
+from artefact.body.standard import Base
+from artefact.layout.post import post_stiffness
+from cad_out.details.detail_list import details_of
+from cad_out.making.cutting import cutting_of, untrimmed_radius
+from cad_out.making.hexahedron import CORNERS, cube
+from cad_out.making.making_file import Making, write_making
+from cad_out.making.stiffness import GRAVITY, stiffness_of
+from twin.frames import pose
+
+E, NU = 200e3, 0.3
+
+
+def test_a_cube_under_uniform_strain_stores_the_energy_of_hookes_law():
+    K, side = cube(7.0, E, NU), 7.0
+    eigenvalues = np.linalg.eigvalsh(K)
+    assert (np.abs(eigenvalues) < 1e-9 * eigenvalues.max()).sum() == 6
+    places = 0.5 * side * CORNERS
+    for strain in (np.diag([1e-3, 0.0, 0.0]), np.array([[0, 1e-3, 0], [1e-3, 0, 0], [0, 0, 0]])):
+        u = (places @ strain.T).reshape(-1)
+        lame, shear = E * NU / ((1 + NU) * (1 - 2 * NU)), 0.5 * E / (1 + NU)
+        by_hand = 0.5 * lame * np.trace(strain) ** 2 + shear * np.sum(strain**2)
+        assert 0.5 * u @ K @ u == pytest.approx(by_hand * side**3, rel=1e-9)
+
+
+@pytest.fixture(scope="module")
+def mast(upright):
+    """A pillar of 10 by 10 mm, 90 mm above a plate of 20 mm with three screws."""
+    flat = np.zeros((4, 4))
+    pillar = graph_patch(
+        "FF1", pose(t=np.array([5.0, 5.0, 110.0])), (5.0, 5.0), flat, (3, 3), 100.0
+    )
+    holes = tuple(
+        replace(hole, x=x, y=y) for hole, (x, y) in zip(
+            upright.holes, ((-10.0, 0.0), (20.0, -10.0), (20.0, 20.0)), strict=True
+        )
+    )  # fmt: skip
+    return replace(
+        upright, base=Base((50.0, 50.0), 5.0, 20.0), patches=(pillar,), spheres=(), holes=holes
+    )
+
+
+def test_a_mast_swings_and_sags_as_a_cantilever(mast):
+    """Euler and Bernoulli: f = 1.8751^2 / (2 pi L^2) sqrt(E I / rho A), tip rho A g L^4 / 8 E I."""
+    found = stiffness_of(mast, details_of(mast), 10.0)
+    density, L, b = mast.material.density, 90.0, 10.0
+    second, area = b**4 / 12.0, b**2
+    f = 1.8751**2 / (2 * np.pi * L**2) * np.sqrt(E * second / (density * area) * 1e3)
+    tip = density * area * GRAVITY * L**4 / (8.0 * E * second) * 1e-3
+    # the plate gives way a little, and the blend of the foot is in the cubes beside it
+    assert found.first_mode == pytest.approx(f, rel=0.08)
+    assert found.sag["FF1"] == pytest.approx(tip, rel=0.15)
+
+
+def test_a_ball_on_a_rigid_plate_sags_by_its_weight_over_the_stiffness_of_its_post(upright):
+    bare = replace(upright, patches=upright.patches[:1])
+    found = stiffness_of(bare, details_of(bare), 12.5)
+    ball = upright.spheres[1]
+    length = ball.centre[2] - ball.foot
+    post = 7.8e-6 * np.pi * ball.foot_radius**2 * (length - ball.radius)  # nearly a cylinder
+    mass = 7.83e-6 * 4.0 / 3.0 * np.pi * ball.radius**3 + 0.25 * post
+    k = post_stiffness(length, ball.stem_radius, ball.foot_radius, E)
+    alone = mass * GRAVITY * 1e-3 / k
+    assert alone < found.sag["SPH2"] < 3.0 * alone
+    assert found.worst[0] in found.sag
+
+
+def test_a_cutter_reaches_open_pillars_and_not_the_floor_of_a_deep_slot(upright):
+    details = details_of(upright)
+    found = cutting_of(upright, details)
+    assert found.tilted == 1.0
+    assert found.out_of_reach == ()
+    flat = np.zeros((4, 4))
+    walls = tuple(
+        graph_patch(f"FF{i}", pose(t=np.array([x, 0.0, 160.0])), (20.0, 40.0), flat, (3, 3), 150.0)
+        for i, x in ((1, -26.0), (2, 26.0))
+    )
+    slot = replace(upright, patches=walls, spheres=(), blank_height=200.0)
+    found = cutting_of(slot, details_of(slot))
+    assert found.upright < found.tilted < 1.0
+    assert {"FF1 wall", "FF2 wall"} <= set(found.out_of_reach)
+
+
+def test_the_largest_cutter_fits_the_least_radius_beyond_the_trim(upright):
+    """A bowl z = (x^2 + y^2) / 2 R has the radius R in its middle and wider ones outside."""
+    R = 11.0
+    control = np.array([1.0, -1.0, 1.0]) * 18.0**2 / (2.0 * R)  # of a parabola of degree 2
+    bowl = graph_patch(
+        "FF1", pose(t=np.array([-38.0, -22.0, 52.0])), (12.0, 12.0),
+        control[:, None] + control, (2, 2), 44.0,
+    )  # fmt: skip
+    assert untrimmed_radius(bowl) == pytest.approx(R, rel=1e-6)
+    hollow = replace(upright, patches=(bowl, upright.patches[1]))
+    assert cutting_of(hollow, details_of(hollow)).cutter["FF1"] == 16.0  # 0.8 * 22 = 17.6
+
+
+def test_the_file_has_every_figure_with_its_limit(upright, tmp_path):
+    details = details_of(upright)
+    made = Making(cutting_of(upright, details), stiffness_of(upright, details, 25.0))
+    write_making(tmp_path / "making.json", made)
+    told = json.loads((tmp_path / "making.json").read_text())
+    assert told["first_mode_Hz"] == pytest.approx(made.stiffness.first_mode)
+    assert told["sag_limit_um"] == 0.1
+    assert set(told["sag_um"]) == {"FF1", "FF2", "SPH1", "SPH2", "SPH3"}
