@@ -4,6 +4,7 @@ Each stage is one call into one room; nothing is computed here.
 """
 
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from artefact.brief import Project
 from artefact.certify import dmis_program, like_task
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
-from cad_out.making import Making, making_of, write_making
+from cad_out.making import making_of, write_making
 from cad_out.verify import Conformity, export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.files import write_uncertainty
@@ -73,14 +74,19 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     plan = _plan(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
     write_whole(folder / "cmm.dmi", dmis_program(placement.standard), newline="\r\n")
-    progress("what can be told apart", 0, 1)
-    known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
-    write_identifiability(folder / "identifiability.json", known)
-    study, maps = study_and_maps(
-        project, workspace, project.poses, folder / "sensitivity", rng, progress, workers
-    )
-    progress("STEP and STL", 0, 1)
-    conformity, making = _cad(project, placement.standard, folder)
+    with ThreadPoolExecutor(1) as beside:  # the kernel works in processes of its own
+        cad = beside.submit(_export, project, placement.standard, folder)
+        progress("what can be told apart", 0, 1)
+        known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
+        write_identifiability(folder / "identifiability.json", known)
+        study, maps = study_and_maps(
+            project, workspace, project.poses, folder / "sensitivity", rng, progress, workers
+        )
+        progress("STEP and STL", 0, 1)
+        making = making_of(placement.standard)
+        write_making(folder / "making.json", making)
+        conformity = cad.result()
+    _draw(project, placement.standard, conformity, folder)
     progress("probing programs", 0, 1)
     programs = make_programs(plan, dialect(project), feeds(project))
     paths = programs.write(folder / "programs")
@@ -118,14 +124,16 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     )
 
 
-def _cad(project: Project, standard: Standard, folder: Path) -> tuple[Conformity, Making]:
-    """Models and drawing of a standard, and whether it can be made as it is drawn."""
-    making = making_of(standard)
-    write_making(folder / "making.json", making)
+def _export(project: Project, standard: Standard, folder: Path) -> Conformity:
+    """STEP, STL, 3MF and glTF of a standard, measured."""
     who = project.standard
-    conformity = export_standard(standard, folder, author=who.author, organisation=who.organisation)
+    return export_standard(standard, folder, author=who.author, organisation=who.organisation)
+
+
+def _draw(project: Project, standard: Standard, conformity: Conformity, folder: Path) -> None:
+    """The drawing of a standard, with the mass that was measured."""
+    who = project.standard
     write_drawing(folder, standard, Issuer(who.author, who.organisation, conformity.mass))
-    return conformity, making
 
 
 def _placement(

@@ -32,8 +32,8 @@ def task_lines(
         )
     if one.u_w == 0.0:
         lines.append(
-            "u_w is 0: form, roughness and expansion of the workpieces are not in U "
-            "([workpiece] of the task)"
+            "nothing is stated of the workpieces, u_w is 0: their form, roughness and expansion "
+            "are not in U ([workpiece] of the task)"
         )
     if visits.lost:
         lines.append(f"{visits.lost} places that not every visit has were left out")
