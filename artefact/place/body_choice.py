@@ -59,6 +59,21 @@ class BodyChoice:
     W: Array
     group: IntArray
 
+    def check_room(self, count: int) -> None:
+        """Refuse more faces than stand side by side even without a ball, before anything is chosen.
+
+        Raises:
+            NotBuildable: How many fit (fact `fitting`).
+        """
+        limits = self.blank.limits
+        found = most_side_by_side(faces_fit(self.faces, holes_on(self.blank), limits), count)
+        if len(found) < count:
+            raise NotBuildable(
+                f"only {len(found)} of {count} patches fit on the blank side by side; between two "
+                f"of them cutter and probe need {least_gap(limits):g} mm",
+                fitting=len(found),
+            )
+
     def standard(
         self,
         name: str,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable
+from contextlib import closing
+from socket import create_server
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -80,6 +82,11 @@ def _check(endpoint: str) -> None:
         good = False
     if not good:
         raise BadValue("endpoint", repr(endpoint), "an address such as opc.tcp://localhost:4840")
+    try:  # before the server is built, which takes seconds
+        with closing(create_server((parts.hostname, parts.port))):
+            return
+    except OSError as error:
+        raise DesignError(f"{endpoint}: {error.strerror or error}") from error
 
 
 async def _follow(service: Service, nodes: _Nodes, until: asyncio.Event) -> None:
