@@ -59,21 +59,6 @@ class BodyChoice:
     W: Array
     group: IntArray
 
-    def check_room(self, count: int) -> None:
-        """Refuse more faces than stand side by side even without a ball, before anything is chosen.
-
-        Raises:
-            NotBuildable: How many fit (fact `fitting`).
-        """
-        limits = self.blank.limits
-        found = most_side_by_side(faces_fit(self.faces, holes_on(self.blank), limits), count)
-        if len(found) < count:
-            raise NotBuildable(
-                f"only {len(found)} of {count} patches fit on the blank side by side; between two "
-                f"of them cutter and probe need {least_gap(limits):g} mm",
-                fitting=len(found),
-            )
-
     def standard(
         self,
         name: str,
@@ -260,10 +245,11 @@ def body_choice(
         rng: Draws them.
 
     Raises:
-        NotBuildable: No room for faces at all.
+        NotBuildable: No room for so many faces, even without a ball (fact `fitting`).
         NotReachable: No face can be touched.
     """
     all_faces = freeform_faces(blank, faces, tried, rng)
+    _check_room(all_faces, blank, faces)
     few = spread_poses(poses, _POSES)
     wanted = joined([each_at(p, face_grid(p.half_size, 3)[::2], few) for p in all_faces])
     wanted = wanted[criterion.reach.is_reachable(wanted)]
@@ -279,6 +265,17 @@ def body_choice(
         W=criterion.rows(wanted),
         group=wanted.feature.astype(np.int64),
     )
+
+
+def _check_room(faces: Sequence[FreeformPatch], blank: Blank, count: int) -> None:
+    """Refuse more faces than stand side by side before anything is chosen."""
+    found = most_side_by_side(faces_fit(faces, holes_on(blank), blank.limits), count)
+    if len(found) < count:
+        raise NotBuildable(
+            f"only {len(found)} of {count} patches fit on the blank side by side; between two of "
+            f"them cutter and probe need {least_gap(blank.limits):g} mm",
+            fitting=len(found),
+        )
 
 
 def _azimuth_of_face(face: FreeformPatch) -> float:
