@@ -144,28 +144,30 @@ def _turned_round(order: IntArray, cost: Array, away: Array) -> tuple[float, Int
 
 
 def _put_elsewhere(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
-    """The part of up to three places that saves most elsewhere, in either direction."""
+    """The part of up to three places that saves most elsewhere, in either direction.
+
+    Gap k is before the place k of the order, the last one behind all of them.
+    """
     n, best, found = len(order), 0.0, order
+    into = np.concatenate([[away[order]], cost[order[:, None], order]])  # over gap k to place j
+    on = np.concatenate([cost[order[:, None], order], np.zeros((1, n))])  # from place j over gap k
+    gap = np.append(into[np.arange(n), np.arange(n)], 0.0)
     for size in range(1, min(_PART, n - 1) + 1):
-        for i in range(n - size + 1):
-            part, rest = order[i : i + size], np.delete(order, np.s_[i : i + size])
-            before = away[part] if i == 0 else cost[order[i - 1], part]
-            is_last = i + size == n
-            after = 0.0 if is_last else cost[part[-1], order[i + size]]
-            bridge = 0.0
-            if not is_last:
-                follows = order[i + size]
-                bridge = away[follows] if i == 0 else cost[order[i - 1], follows]
-            saved = before[0] + after - bridge
-            behind = np.append(np.diagonal(cost[rest[:-1][:, None], rest[1:]]), 0.0)
-            gaps = np.concatenate([[away[rest[0]]], behind])
-            for one in (part, part[::-1]):
-                to = np.concatenate([[away[one[0]]], cost[rest, one[0]]])
-                onward = np.append(cost[one[-1], rest], 0.0)
-                gain = saved - (to + onward - gaps)
-                k = int(np.argmax(gain))
-                if gain[k] > best:
-                    best, found = float(gain[k]), np.concatenate([rest[:k], one, rest[k:]])
+        first = np.arange(n - size + 1)
+        last = first + size - 1
+        bridge = np.append(into[first[:-1], last[:-1] + 1], 0.0)
+        saved = gap[first] + gap[last + 1] - bridge
+        k = np.arange(n + 1)[:, None]
+        own = (k >= first) & (k <= last + 1)
+        for one, other in ((first, last), (last, first)):
+            gain = np.where(own, -np.inf, saved - (into[:, one] + on[:, other] - gap[:, None]))
+            to, i = np.unravel_index(int(np.argmax(gain)), gain.shape)
+            if gain[to, i] > best:
+                part, rest = order[i : i + size], np.delete(order, np.s_[i : i + size])
+                part = part if one is first else part[::-1]
+                at = to if to < i else to - size
+                best = float(gain[to, i])
+                found = np.concatenate([rest[:at], part, rest[at:]])
     return best, found
 
 
