@@ -24,7 +24,7 @@ from artefact.brief import read_project
 from artefact.compare import Power, Rival
 from artefact.place import design_standard
 from artefact.worth import TouchOptions
-from matstd.from_project import blank, placement_options, probe_reach
+from matstd.stages.from_project import blank, placement_options, probe_reach
 from sensitivity.first_order import Workspace
 from twin.units import UM
 

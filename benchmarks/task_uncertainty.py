@@ -21,8 +21,8 @@ from artefact.brief import Project, Task, read_project
 from artefact.certify import like_task, misplaced, on_faces
 from artefact.worth import Calibration
 from diagnosis.fit import Prior, fit_run
-from matstd.certify.budgets import CLAMPED, PLAIN, budgets
-from matstd.design import _twin
+from matstd.stages.budgets import CLAMPED, PLAIN, budgets
+from matstd.stages.design import _twin
 from probe_paths.campaign import visits
 from sensitivity.population import drawn_errors
 from twin.effects import setup_errors

@@ -7,30 +7,40 @@ import os
 import sys
 from collections.abc import Sequence
 
-COMMANDS = {
-    "design": "the main job: sensitivities, standard, STEP and STL, programs, proof, report",
-    "volumetric": "exact deviation of the tool point in the table frame, one row per pose",
-    "sensitivity": "sensitivity of the tool point to every error parameter at every pose",
-    "simulate": "run an emitted probing program on the machine's twin and write a run file",
-    "control-test": "emitted programs on an installed LinuxCNC, the exact twin as its machine",
-    "evaluate": "logs of our probing programs from the control, made a run file",
-    "replan": "programs planned again for where the standard stands, as a log tells it",
-    "import": "tables of instruments, CMMs and spreadsheets made a run file",
-    "compare": "measurements against the model: where it fails",
-    "diagnose": "which effect is missing in the model, and how far the error falls with it",
-    "thermal": "laws of a thermal drift from logs of temperatures, and predictions with them",
-    "calibrate": "a standard as a coordinate measuring machine finds it; the program for the CMM",
-    "uncertainty": "of a measuring task, from visits to the calibrated faces (ISO 15530-3)",
-    "compensate": "the identified model goes back to the control: tables, or a part program",
-    "serve": "corrections while the machine moves, as an OPC UA server",
-    "contributions": "what every error adds along a program or at poses",
-    "machines": "the machines that come with the tool, with the source of every figure",
-    "new": "a commented minimal file to start from: machine, project, run or effect",
-    "effects": "the effects that can be added, each with its formula and units",
+FOLDERS = {
+    "standard": {
+        "design": "the main job: sensitivities, standard, STEP and STL, programs, proof, report",
+        "sensitivity": "sensitivity of the tool point to every error parameter at every pose",
+        "calibrate": "a standard as a CMM finds it, and the program for that machine",
+        "uncertainty": "of a measuring task, from visits to the calibrated faces (ISO 15530-3)",
+    },
+    "probing": {
+        "simulate": "run an emitted probing program on the machine's twin and write a run file",
+        "control-test": "emitted programs on an installed LinuxCNC, the exact twin as its machine",
+        "evaluate": "logs of our probing programs from the control, made a run file",
+        "replan": "programs planned again for where the standard stands, as a log tells it",
+    },
+    "measured": {
+        "import": "tables of instruments, CMMs and spreadsheets made a run file",
+        "compare": "measurements against the model: where it fails",
+        "diagnose": "which effect is missing in the model, and how far the error falls with it",
+        "thermal": "laws of a thermal drift from logs of temperatures, and predictions with them",
+    },
+    "compensation": {
+        "compensate": "the identified model goes back to the control: tables, or a part program",
+        "serve": "corrections while the machine moves, as an OPC UA server",
+        "contributions": "what every error adds along a program or at poses",
+    },
+    "machine": {
+        "volumetric": "exact deviation of the tool point in the table frame, one row per pose",
+        "machines": "the machines that come with the tool, with the source of every figure",
+        "new": "a commented minimal file to start from: machine, project, run or effect",
+        "effects": "the effects that can be added, each with its formula and units",
+    },
 }
+"""Commands by the folder of `matstd/commands` that has their files, with what each does."""
 
-PLACES = dict.fromkeys(("compensate", "contributions"), "compensation")
-"""Where commands are whose modules are not in `commands`."""
+COMMANDS = {name: line for folder in FOLDERS.values() for name, line in folder.items()}
 
 EXIT_BAD_INPUT = 2
 
@@ -104,13 +114,15 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     parser.add_argument("--version", action=_Version, nargs=0, help="what results depend on")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     called = next((word for word in arguments if not word.startswith("-")), None)
-    for name, line in COMMANDS.items():
-        command = commands.add_parser(name, help=line, description=line[0].upper() + line[1:] + ".")
-        if name == called:
-            place = PLACES.get(name, "commands")
-            module = importlib.import_module(f"matstd.{place}.{name.replace('-', '_')}")
-            module.add_arguments(command)
-            command.set_defaults(run=module.run)
+    for folder, inside in FOLDERS.items():
+        for name, line in inside.items():
+            said = line[0].upper() + line[1:] + "."
+            command = commands.add_parser(name, help=line, description=said)
+            if name == called:
+                file = f"matstd.commands.{folder}.{name.replace('-', '_')}"
+                module = importlib.import_module(file)
+                module.add_arguments(command)
+                command.set_defaults(run=module.run)
     return parser
 
 

@@ -1,1 +1,1 @@
-"""One command a file, each with `add_arguments(parser)` and `run(args) -> int`."""
+"""One command a file, with `add_arguments(parser)` and `run(args) -> int`, by what it is about."""

@@ -17,9 +17,9 @@ from artefact.place.placement import PlacementOptions
 from artefact.worth import ball_choice
 from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
-from matstd import design, study_run
 from matstd.cli import main
-from matstd.from_project import blank, placement_options, probe_reach
+from matstd.stages import design, study_run
+from matstd.stages.from_project import blank, placement_options, probe_reach
 from probe_paths.control.interpreter import read_program
 from probe_paths.emit.program import make_programs
 from probe_paths.language.dialect_file import read_dialect

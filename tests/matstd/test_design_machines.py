@@ -9,9 +9,9 @@ import pytest
 from artefact.body.limits import check
 from artefact.brief.project_file import Project, read_project
 from artefact.worth import ball_choice
-from matstd import design
-from matstd.from_project import blank, placement_options, probe_reach
-from matstd.reach import PICTURE, check_reach
+from matstd.stages import design as design
+from matstd.stages.from_project import blank, placement_options, probe_reach
+from matstd.stages.reach import PICTURE, check_reach
 from probe_paths.campaign.order_study import orders
 from probe_paths.emit.program import make_programs
 from report.plots.plan_pictures import write_order_picture

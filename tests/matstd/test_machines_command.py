@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.commands.machines import names, text
+from matstd.commands.machine.machines import names, text
 from twin.files.error_file import read_errors
 from twin.files.machine_file import read_machine
 from twin.model.model import Model

@@ -7,8 +7,8 @@ from artefact.brief.project_file import read_project
 from artefact.reach.touchable import ProbeReach
 from artefact.worth.touch_criterion import random_touches
 from matstd.cli import main
-from matstd.commands.new import TEMPLATES, template
-from matstd.from_project import probe_reach
+from matstd.commands.machine.new import TEMPLATES, template
+from matstd.stages.from_project import probe_reach
 from twin.files.machine_file import read_machine
 from twin.files.run_file import read_run
 from twin.library.catalogue import load_user_effects, parse_effect

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from artefact.brief.project_file import read_project
-from matstd.from_project import probe, probe_reach
+from matstd.stages.from_project import probe, probe_reach
 from probe_paths.plan.probe import Probe
 from twin.errors import BadFile
 

@@ -11,9 +11,9 @@ from artefact.reach.face_of_table import standing_remarks, table_face
 from artefact.reach.touchable import Requests
 from artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
-from matstd.commands.design import NO_ROOM, REFUSED, refusals
-from matstd.from_project import blank, probe_reach
-from matstd.reach import _to_rise, check_reach
+from matstd.commands.standard.design import NO_ROOM, REFUSED, refusals
+from matstd.stages.from_project import blank, probe_reach
+from matstd.stages.reach import _to_rise, check_reach
 from twin.errors import BadFile, NotBuildable, NotReachable
 from twin.frames import fixed_xyz, pose
 from twin.units import DEG
@@ -104,7 +104,7 @@ def test_a_refused_command_leaves_its_picture_alone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # whatever would design has not begun: it would fail with a traceback
-    monkeypatch.setattr("matstd.design.design_standard", None)
+    monkeypatch.setattr("matstd.stages.design.design_standard", None)
     far = with_setup("origin_mm = [2000.0, 0.0, 0.0]")
     path, out = changed(tmp_path, "gantry", far, {}), tmp_path / "out"
     for _ in range(2):  # its own picture does not stand in the way of the next run
@@ -162,7 +162,7 @@ def test_travels_of_a_table_entered_the_other_way_are_told(tmp_path: Path) -> No
 def test_patches_that_do_not_fit_are_told_with_a_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("matstd.design.design_standard", None)  # not begun
+    monkeypatch.setattr("matstd.stages.design.design_standard", None)  # not begun
     wide = {r"\Z": "\n[limits]\ngap_mm = 120.0\n"}
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
     for _ in range(2):

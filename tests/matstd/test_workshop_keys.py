@@ -12,7 +12,7 @@ from artefact.brief.workshop_tables import probe_models
 from artefact.reach.mesh_cover import MOST_BOXES, covering_solids
 from artefact.reach.touchable import ProbeReach, Requests
 from artefact.reach.workshop import Solid, Workshop, still_frames
-from matstd.from_project import dialect, feeds, plan_options, probe, probe_reach, workshop
+from matstd.stages.from_project import dialect, feeds, plan_options, probe, probe_reach, workshop
 from twin.errors import BadFile, DesignError
 from twin.frames import apply, inverse, pose, rotation
 from twin.machine.kinematics import table_to_tool

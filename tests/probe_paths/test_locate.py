@@ -10,7 +10,7 @@ import pytest
 
 from artefact.body import Base, contact, write_standard
 from matstd.cli import main
-from matstd.commands.replan import feeds_of
+from matstd.commands.probing.replan import feeds_of
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.evaluation import ball_centres

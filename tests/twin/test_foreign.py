@@ -309,7 +309,9 @@ def test_faults_of_a_mapping_file_are_one_line(tmp_path, capsys, old, new, told)
 
 
 def test_the_command_is_a_module_of_its_own():
-    assert importlib.import_module("matstd.commands.import").__doc__.startswith("`matstd import`")
+    assert importlib.import_module("matstd.commands.measured.import").__doc__.startswith(
+        "`matstd import`"
+    )
 
 
 def blocks_of_the_page(language: str) -> list[str]:

@@ -20,8 +20,8 @@ from cad_out.verify import Conformity, export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.files import write_uncertainty
 from diagnosis.fit import fit_run
-from matstd.certify.budgets import virtual_budgets
-from matstd.from_project import (
+from matstd.stages.budgets import virtual_budgets
+from matstd.stages.from_project import (
     blank,
     dialect,
     feeds,
@@ -30,9 +30,9 @@ from matstd.from_project import (
     probe,
     probe_reach,
 )
-from matstd.reach import check_reach, check_room
-from matstd.streams import streams
-from matstd.study_run import study_and_maps
+from matstd.stages.reach import check_reach, check_room
+from matstd.stages.streams import streams
+from matstd.stages.study_run import study_and_maps
 from probe_paths.campaign import Campaign, VirtualMachine, simulate
 from probe_paths.emit import make_programs
 from probe_paths.plan import TouchPlan, plan_touches

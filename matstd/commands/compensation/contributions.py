@@ -6,11 +6,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.compensation.options import add_state
+from matstd.commands.compensation.options import add_state
 from twin.errors import DesignError
 
 if TYPE_CHECKING:
-    from matstd.compensation.job import Job
+    from matstd.commands.compensation.job import Job
     from twin.record import Touches
 
 OURS = ("contributions.csv", "contributions.png")
@@ -35,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
     """Write the table and the picture; the folder appears whole or not at all."""
     from compensation.field import contributions, deviation
     from compensation.programs import write_shares
-    from matstd.compensation.job import read_job
+    from matstd.commands.compensation.job import read_job
     from matstd.console import say
     from matstd.folder import results_folder
     from report.compensation import draw_shares_along, share_lines

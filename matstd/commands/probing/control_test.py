@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.commands.replan import programs_of
-from matstd.commands.simulate import add_planted, checked_noise, virtual_machine
+from matstd.commands.probing.replan import programs_of
+from matstd.commands.probing.simulate import add_planted, checked_noise, virtual_machine
 from matstd.options import add_output, seen_from
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.compensation.options import add_state
+from matstd.commands.compensation.options import add_state
 from twin.errors import DesignError
 
 if TYPE_CHECKING:
     from compensation.tables import Played
-    from matstd.compensation.job import Job
+    from matstd.commands.compensation.job import Job
 
 OURS = ("*/*", "report.html", "tables.xlsx", "tables/*.csv", "pictures/*.png", "compensation.json")
 """Results that not every compensation leaves."""
@@ -62,7 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write what is asked for; a folder appears whole or not at all."""
-    from matstd.compensation.job import read_job
+    from matstd.commands.compensation.job import read_job
 
     if (args.tables is None) == (args.program is None):
         raise DesignError("expected one of --tables DIR and --program FILE -o OUT")
@@ -86,7 +86,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
         read_part_program,
         write_trajectory,
     )
-    from matstd.compensation.job import tool_lengths
+    from matstd.commands.compensation.job import tool_lengths
     from matstd.console import say
     from report.compensation import draw_program, program_lines
     from twin.files import refuse_to_overwrite, write_whole

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.compensation.options import add_state
+from matstd.commands.compensation.options import add_state
 
 if TYPE_CHECKING:
     from compensation.service import Service
@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
     import logging
 
     from compensation.service import OutputLimits, Service, serve
-    from matstd.compensation.job import read_job
+    from matstd.commands.compensation.job import read_job
     from matstd.console import say
     from twin.units import UM
 

@@ -27,7 +27,7 @@ from artefact.reach import (
     turned,
 )
 from artefact.worth import poses_within
-from matstd.from_project import (
+from matstd.stages.from_project import (
     blank,
     placement_options,
     plan_options,

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from artefact.brief import Project
-from matstd.streams import Streams, streams
+from matstd.stages.streams import Streams, streams
 from report.maps import draw_maps, draw_path
 from report.pages import write_study_page
 from report.words import sampling_words, study_words

@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     from artefact.reach import standing_remarks
     from matstd.console import say, say_assumed, say_each
     from matstd.folder import results_folder
-    from matstd.from_project import dialect, feeds
+    from matstd.stages.from_project import dialect, feeds
     from matstd.workers import connected
     from report.task import task_lines
     from report.words import design_lines, proof_line
@@ -80,8 +80,8 @@ def run(args: argparse.Namespace) -> int:
         results_folder(args.output, args.force, leftovers, [REFUSED, NO_ROOM]) as folder,
         refusals(project, folder, args.output),
     ):
-        from matstd.design import design
         from matstd.progress import stages
+        from matstd.stages.design import design
         from probe_paths.locate import companions
         from report.pages import write_design_page, write_setup_page
 
@@ -116,7 +116,7 @@ def refusals(project: Project, folder: Path, out: str) -> Iterator[None]:
         folder: In which it is; the picture of what is reached lies there.
         out: Where a picture goes of what stops it.
     """
-    from matstd import reach
+    from matstd.stages import reach
     from twin.errors import NotBuildable, NotReachable
 
     try:

@@ -86,7 +86,7 @@ def _study(args: argparse.Namespace) -> int:
     say_each(project.remarks)
     with results_folder(args.output, args.force, REPORT_FILES) as folder:
         from matstd.progress import stages
-        from matstd.study_run import study_project
+        from matstd.stages.study_run import study_project
 
         with stages() as progress, connected(args.scheduler) as workers:
             told = study_project(project, args.poses, folder, progress, workers)

@@ -38,9 +38,9 @@ def run(args: argparse.Namespace) -> int:
     from artefact.brief import Task, read_task
     from artefact.worth import Calibration
     from diagnosis.files import check_machine, read_model, write_uncertainty
-    from matstd.certify.budgets import PLAIN, budgets
     from matstd.console import say, say_each
     from matstd.inputs import is_learnt_from
+    from matstd.stages.budgets import PLAIN, budgets
     from report.task import task_lines
     from twin.files import read_run, refuse_to_overwrite
 

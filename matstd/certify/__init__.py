@@ -1,1 +1,0 @@
-"""What the commands on calibrated standards share: rooms strung together, nothing computed."""

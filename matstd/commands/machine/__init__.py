@@ -1,0 +1,1 @@
+"""Commands on machines, errors and files to start from."""

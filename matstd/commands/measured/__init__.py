@@ -1,0 +1,1 @@
+"""Commands on measurements: read, compared with the model, diagnosed."""

@@ -1,0 +1,1 @@
+"""Commands on programs and the logs that they leave."""

@@ -1,0 +1,1 @@
+"""Commands on the standard: designed, calibrated, and what it is worth."""

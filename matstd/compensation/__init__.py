@@ -1,1 +1,0 @@
-"""What `matstd compensate` and its kin read from the command line, and do."""

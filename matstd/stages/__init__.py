@@ -1,0 +1,1 @@
+"""Stages of `matstd design` and `sensitivity`: rooms strung together, nothing computed."""
