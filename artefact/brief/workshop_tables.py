@@ -99,6 +99,7 @@ class WorkshopTable(Table):
     minutes_per_file: float | None = Field(default=None, ge=1.0)
     dry_run_mm: float = Field(default=100.0, ge=10.0)
     height_read: Literal["gauge", "tip"] = "gauge"
+    strategy: Literal["axes", "plane-spatial"] = "axes"
 
 
 @cache

@@ -116,7 +116,8 @@ def dialect(project: Project) -> Dialect:
     """Words of the control for which programs are written, and numbers of this workshop.
 
     Raises:
-        BadFile: A folder for a control that takes none.
+        BadFile: A folder for a control that takes none, planes of one that has none, or of a
+            machine that turns its tool.
     """
     stated = project.workshop
     words = read_dialect(project.control, project.path.parent)
@@ -124,7 +125,23 @@ def dialect(project: Project) -> Dialect:
         raise BadFile(project.path, "workshop.folder", stated.folder, "nothing for this control")
     keys = {"folder": "folder", "tool": "tool", "preset": "preset", "height_read": "result_height"}
     given = {keys[k]: getattr(stated, k) for k in keys if k in stated.model_fields_set}
-    return replace(words, **given)
+    return replace(words, is_tilted=_is_tilted(project, words), **given)
+
+
+def _is_tilted(project: Project, words: Dialect) -> bool:
+    """Whether programs use planes, which control and machine must be made for."""
+    asked = project.workshop.strategy
+    if asked != "plane-spatial":
+        return False
+    chain = project.chain
+    turns = [a for a in chain.rotary_axes if not chain.link(a).carries_workpiece]
+    for why in (
+        "a dialect with has_planes = true" if not words.has_planes else "",
+        f"axes on this machine, whose tool {turns[0]} turns" if turns else "",
+    ):
+        if why:
+            raise BadFile(project.path, "workshop.strategy", repr(asked), why)
+    return True
 
 
 def dialects(project: Project) -> list[Dialect]:

@@ -155,13 +155,17 @@ def _readings(part: LogPart, chain: Chain, dialect: Dialect) -> Array:
     """Axis readings (N, A) of a log's touches, from what cycle 4 returned."""
     frame = ProgramFrame(chain, Probe(part.radius, part.tool_length - part.radius))
     q = np.zeros((len(part.number), len(chain.axes)))
+    for letter, degrees in part.rotary.items():
+        q[:, chain.axis_index(letter)] = degrees * DEG
+    frames = [frame] * len(q)
+    if part.heading.is_tilted:
+        frames = [frame.tilted(rotary) for rotary in q[:, frame.rotary]]
     for i, letter in enumerate(LINEAR):
         word = part.xyz[:, i]
         if letter == "Z" and dialect.result_height == "gauge":
             word = word - part.tool_length
-        q[:, chain.axis_index(letter)] = [frame.reading(letter, float(v)) for v in word]
-    for letter, degrees in part.rotary.items():
-        q[:, chain.axis_index(letter)] = degrees * DEG
+        values = zip(frames, word.tolist(), strict=True)
+        q[:, chain.axis_index(letter)] = [f.reading(letter, v) for f, v in values]
     return q
 
 

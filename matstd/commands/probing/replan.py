@@ -216,6 +216,7 @@ def _dialect(control: str | None, program: Path) -> Dialect:
         dialect = replace(dialect, tool=int(tool[1]))
     if prefix := re.match(r"(.+?)_[A-Z0-9_]+_\d+\Z", program.stem.upper()):
         dialect = replace(dialect, prefix=prefix[1])
+    dialect = replace(dialect, is_tilted=";FRAME SPATIAL" in text and dialect.has_planes)
     if preset := re.search(r";PRESET (\d+):", text):
         dialect = replace(dialect, preset=int(preset[1]))
     if folder := re.search(r"F-PRINT (\S+)\\[A-Z0-9_]+\.A ", text):

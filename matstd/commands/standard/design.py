@@ -99,6 +99,12 @@ def run(args: argparse.Namespace) -> int:
     # a pose is visited twice
     dropped = dict.fromkeys(str(r) for one in made.stations for r in one.plan.refused)
     say_each(f"touch dropped: {refusal}" for refusal in dropped)
+    tools = {one.dialect.tool for one in made.stations}
+    say_each(
+        f"tool {probe.tool} has no program: those before it make every touch that it could"
+        for probe in project.further_probes
+        if probe.tool not in tools
+    )
     say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
     say_each(task_lines(made.budgets, project.task.tolerance, made.visits))
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
