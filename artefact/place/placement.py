@@ -180,16 +180,15 @@ def design_standard(
     places = ball_places(criterion.plain, blank, all_poses, rng)
     bodies = body_choice(criterion.plain, blank, all_poses, options.patches, options.sites, rng)
     progress("placement", 2, 6)
-    free = random_touches(
-        reach, criterion.volume, criterion.rotary, max(choice.touches, _FREE), rng
-    )
+    count = max(choice.touches, _FREE)
+    free = random_touches(reach, criterion.volume, criterion.rotary, count, rng)
     library = visibility(criterion, free)
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", 4, 6)
     bases = _bases(criterion.plain, rivals, places, all_poses, options)
     first = _identifying(criterion, bodies, bases, options)
     found = _rearranged(criterion, bodies, places, first, all_poses, choice)
-    found, on_faces = _with_proof([found, first], criterion.reach, choice.proof)
+    found, on_faces = _with_proof([found, first], reach, choice.proof)
     standard, tried, chosen = found.standard, found.tried, found.chosen
     requests, here = tried[chosen], criterion.on(replace(standard, patches=()))
     proof, powers = _proving(criterion.on(standard), found, on_faces, choice.proof, library, rng)

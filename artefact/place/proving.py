@@ -11,7 +11,7 @@ import numpy as np
 from artefact.body import FreeformPatch, Standard
 from artefact.place.covering import covering, even_shares
 from artefact.reach import ProbeReach, Requests, joined
-from artefact.worth import Criterion, clear_touches, each_at
+from artefact.worth import Criterion, each_at
 from information.selection import Selection, fill
 from twin.errors import NotReachable
 from twin.frames import Array
@@ -25,8 +25,10 @@ _CROWDED = 1.25  # even shares of the touches that one table pose may have, if a
 def touches_on_faces(reach: ProbeReach, standard: Standard, poses: Array, count: int) -> Requests:
     """Touches that can be made, to choose `count` from: all over the faces, at every pose."""
     pitch = int(np.ceil(np.sqrt(_PLACES * count / len(standard.patches))))
-    wanted = [each_at(face, _middles_of_cells(face, pitch), poses) for face in standard.patches]
-    return clear_touches(reach, standard, joined(wanted))
+    grids = [each_at(face, _middles_of_cells(face, pitch), poses) for face in standard.patches]
+    wanted = joined(grids)
+    wanted = wanted[reach.is_reachable(wanted)]
+    return wanted[reach.is_clear(standard, wanted)]
 
 
 def proving_touches(
