@@ -57,7 +57,7 @@ def add_effects(parser: argparse.ArgumentParser) -> None:
 
 def load_effects(files: Iterable[str]) -> None:
     """Effects of other rooms, of installed packages and of the user's files."""
-    from diagnosis.drift import DRIFT_LAW
+    from matstd.drift_law import DRIFT_LAW
     from twin.library import load_installed_effects, load_user_effects, register
 
     register(DRIFT_LAW)

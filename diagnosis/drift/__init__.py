@@ -13,7 +13,7 @@ from diagnosis.drift.arx import coefficients as arx_coefficients
 from diagnosis.drift.beams import read_beams
 from diagnosis.drift.clocks import lead
 from diagnosis.drift.drift_file import read_law, write_drift, write_prediction
-from diagnosis.drift.drift_law import DRIFT_LAW, DriftLaw
+from diagnosis.drift.drift_law import DriftLaw, drift_law_of
 from diagnosis.drift.judged import Judged, chosen, judge, offered
 from diagnosis.drift.linear import LinearLaw
 from diagnosis.drift.live import LiveDrift
@@ -22,7 +22,6 @@ from diagnosis.drift.probing import Kept, kept
 from diagnosis.drift.record import DriftRecord, IntArray, joined, varying
 
 __all__ = [
-    "DRIFT_LAW",
     "ArxInputs",
     "DriftLaw",
     "DriftRecord",
@@ -34,6 +33,7 @@ __all__ = [
     "arx_coefficients",
     "check_alike",
     "chosen",
+    "drift_law_of",
     "joined",
     "judge",
     "kept",

@@ -20,7 +20,7 @@ from diagnosis.drift.record import DriftRecord, is_speed
 from twin.errors import UnknownEffect
 from twin.frames import Array
 from twin.machine import Chain, Symbol
-from twin.model import Kind, Parameter, Term, Title, component_symbol, refusal
+from twin.model import Parameter, Term, Title, component_symbol, refusal
 from twin.record import Touches
 from twin.units import DEG
 from twin.words import did_you_mean
@@ -307,7 +307,7 @@ def bound_of(chain: Chain, saved: SavedLaw, arguments: Sequence[str], text: str)
     )
 
 
-def make(chain: Chain, arguments: Sequence[str]) -> DriftLaw:
+def drift_law_of(chain: Chain, arguments: Sequence[str]) -> DriftLaw:
     """From the file of the law and what its columns move.
 
     Raises:
@@ -319,18 +319,3 @@ def make(chain: Chain, arguments: Sequence[str]) -> DriftLaw:
     saved = read_law(arguments[0])
     bound = tuple(bound_of(chain, saved, arguments, text) for text in arguments[1:])
     return DriftLaw(arguments[0], saved, bound)
-
-
-DRIFT_LAW = Kind(
-    word="drift-law",
-    arguments="thermal.json,column:EZZ,...",
-    title="thermal drift by a saved law",
-    synonyms="thermal displacement, ARX, growth, drift model, replay of a law, warm-up",
-    formula="E = s (law(T, n, t) + w (root u + e)), the law of matstd thermal",
-    units="law: 1; unknowns: standard deviations",
-    typical="what the log showed; unknowns 1",
-    source="D-MT paper, eq. (4); matstd thermal",
-    make=make,
-    propose=lambda touches: (),
-    classes=(DriftLaw,),
-)

@@ -11,12 +11,12 @@ from compensation.field.state import State
 from compensation.service.output import OutputLimits, Quality
 from compensation.service.service import Service
 from diagnosis.drift.drift_file import write_drift
-from diagnosis.drift.drift_law import DRIFT_LAW
 from diagnosis.drift.judged import Judged
 from diagnosis.drift.lags import Lagged
 from diagnosis.drift.linear import LinearLaw
 from diagnosis.drift.record import DriftRecord
 from matstd.cli import main
+from matstd.drift_law import DRIFT_LAW
 from twin.errors import BadFile, DesignError, UnknownEffect, UnknownSymbol
 from twin.library import parse_effect, register
 from twin.record import at_poses
@@ -30,9 +30,7 @@ KNOWN, LEFT, MEMORY = 0.05, np.array([1.0 * UM, 2.0 * URAD]), 30.0 * MINUTE
 
 @pytest.fixture(scope="module")
 def thermal_json(tmp_path_factory):
-    """z follows a frame with 30 min and the spindle with 20 min, a tilt follows the frame alone;
-    learnt at 18 to 22 degC.
-    """  # noqa: D205
+    """z follows a frame with 30 min and the spindle with 20 min; a tilt follows the frame alone."""
     places = (("frame", TAU), ("spindle_rpm", SPIN))
     law = LinearLaw(
         inputs=Lagged(places),
@@ -238,7 +236,7 @@ def test_a_file_that_is_no_law(bench_chain, bench):
 
 
 def test_command(bench, errors_file, thermal_json, tmp_path, capsys):
-    """Along a program that lasts an hour the spindle warms the machine; without a sensor: a line."""
+    """Over a program of an hour the spindle warms the machine; without a sensor: a line."""
     source = tmp_path / "part.ngc"
     source.write_text("G0 X0 Y0 Z0\nG1 X100 F2.5\nG1 X0\n")
     command = ["contributions", str(bench), "--errors", str(errors_file), "--program", str(source)]
