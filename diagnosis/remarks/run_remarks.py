@@ -24,6 +24,9 @@ they do not feel it: a rotary axis that stands still."""
 LOADED = ("stiffness", "tool-point-stiffness")
 """Kinds of effects of which a touch tells nothing but by its load."""
 
+STANDS = 1e-3
+"""Range of readings (rad) below which a joint of an arm stood still: a jitter tells nothing."""
+
 FEWEST_REPLICATES = 10
 """Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
 
@@ -63,6 +66,13 @@ class FewPoses:
 
     poses: int
     has_rotary: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class JointsStood:
+    """Joints of a serial arm that stood still in all poses."""
+
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,6 +218,7 @@ Remark = (
     | FewDegreesOfFreedom
     | HeldOutInDoubt
     | FewPoses
+    | JointsStood
     | WorseThanReplicates
     | NoiseMisstated
     | OutliersKept
@@ -253,6 +264,10 @@ def _touches(fit: Fit) -> list[Remark]:
     if poses < MIN_POSES:
         turns = bool(t.chain.rotary_axes) and not t.instrument.reads_angle
         out.append(FewPoses(poses, turns))
+    joints = t.chain.arm_joints if t.chain.is_serial_arm else ()
+    stood = tuple(j for j in joints if np.ptp(t.reading(j)[fit.used]) < STANDS)
+    if stood:
+        out.append(JointsStood(stood))
     return out
 
 

@@ -53,6 +53,14 @@ def _field_shares(r: noticed.FieldShares) -> str:
     )
 
 
+def _joints_stood(r: noticed.JointsStood) -> str:
+    them, what = ("it", "it does") if len(r.names) == 1 else ("them", "they do")
+    return (
+        f"{listed([*r.names])} stood still in all poses: nothing is known of {them}, and what "
+        f"{what} wrong is part of where the reflector sits"
+    )
+
+
 def _few_poses(r: noticed.FewPoses) -> str:
     several = r.poses > 1
     if not r.has_rotary:
@@ -157,6 +165,7 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.HeldOutInDoubt: "the error of held-out touches is {r.ratio:.1f} times the stated "
     "noise, with too few touches to say whether anything is missing: probe more",
     noticed.FewPoses: _few_poses,
+    noticed.JointsStood: _joints_stood,
     noticed.WorseThanReplicates: "residuals are {r.ratio:.2f} times as large as the scatter of "
     "{r.dof} replicates: the model lacks something",
     noticed.NoiseMisstated: _noise_misstated,
