@@ -56,9 +56,11 @@ def add_effects(parser: argparse.ArgumentParser) -> None:
 
 
 def load_effects(files: Iterable[str]) -> None:
-    """Effects of the user's own, of installed packages and of his files."""
-    from twin.library import load_installed_effects, load_user_effects
+    """Effects of other rooms, of installed packages and of the user's files."""
+    from matstd.drift_law import DRIFT_LAW
+    from twin.library import load_installed_effects, load_user_effects, register
 
+    register(DRIFT_LAW)
     load_installed_effects()
     for path in files:
         load_user_effects(Path(path))
