@@ -28,7 +28,7 @@ from artefact.compare import (
 )
 from artefact.layout import Blank, with_spheres
 from artefact.place.body_choice import BodyChoice, body_choice
-from artefact.place.proving import proving_touches
+from artefact.place.proving import proving_touches, telling_touches, touches_on_faces
 from artefact.reach import Mask, ProbeReach, Requests, joined
 from artefact.worth import (
     BallPlaces,
@@ -180,18 +180,18 @@ def design_standard(
     places = ball_places(criterion.plain, blank, all_poses, rng)
     bodies = body_choice(criterion.plain, blank, all_poses, options.patches, options.sites, rng)
     progress("placement", 2, 6)
-    free = random_touches(
-        reach, criterion.volume, criterion.rotary, max(choice.touches, _FREE), rng
-    )
+    count = max(choice.touches, _FREE)
+    free = random_touches(reach, criterion.volume, criterion.rotary, count, rng)
     library = visibility(criterion, free)
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", 4, 6)
     bases = _bases(criterion.plain, rivals, places, all_poses, options)
     first = _identifying(criterion, bodies, bases, options)
     found = _rearranged(criterion, bodies, places, first, all_poses, choice)
+    found, on_faces = _with_proof([found, first], reach, choice.proof)
     standard, tried, chosen = found.standard, found.tried, found.chosen
     requests, here = tried[chosen], criterion.on(replace(standard, patches=()))
-    proof, powers = _proving(criterion.on(standard), found, choice.proof, library, rng)
+    proof, powers = _proving(criterion.on(standard), found, on_faces, choice.proof, library, rng)
     standard = _with_shares(criterion, standard, proof)
     progress("placement", 5, 6)
     lots = random_lots(tried, len(requests), rng)
@@ -311,30 +311,36 @@ def _rearranged(
         return found
     if nearness.value >= found.nearness.value:
         return found
-    proof = touches_to_choose_from(here.reach, standard, standard.patches, poses, choice.proof)
-    if len(proof) < choice.proof:
-        return found
     return _Identifying(
         standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
     )
 
 
+def _with_proof(
+    choices: list[_Identifying], reach: ProbeReach, count: int
+) -> tuple[_Identifying, Requests]:
+    """The first choice on whose faces touches enough can be made, or the last; those touches."""
+    for found in choices:
+        on_faces = touches_on_faces(reach, found.standard, found.poses, count)
+        if len(on_faces) >= count:
+            break
+    return found, on_faces
+
+
 def _proving(
     criterion: Criterion,
     found: _Identifying,
+    on_faces: Requests,
     count: int,
     library: Visibility,
     rng: np.random.Generator,
 ) -> tuple[Requests, tuple[Power, Power, Power]]:
     """Touches that prove; their power over the task and in the volume, and that of the balls."""
     standard, requests = found.standard, found.tried[found.chosen]
-    on_faces = touches_to_choose_from(
-        criterion.reach, standard, standard.patches, found.poses, count
-    )
-    proof = proving_touches(criterion, on_faces, requests, count)
+    proof = proving_touches(criterion, standard, on_faces, requests, count)
     others = found.tried[~found.chosen]
     others = others if len(others) >= count else found.tried  # the same ones once more
-    more = proving_touches(criterion, others, requests, min(count, len(others)))
+    more = telling_touches(criterion, others, requests, min(count, len(others)))
     effects, normals = library.effects, task_normals(criterion, proof, rng)
     return proof, (
         proof_power(criterion, requests, proof, effects, rng, normals),
