@@ -60,6 +60,7 @@ __all__ = ["Placement", "PlacementOptions", "design_standard"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
 _BASES = 3  # sets of balls tried at most
+_NEXT_TO_NOTHING = 1.005  # times what the balls alone leave, a quarter of a per cent in µm
 
 
 @dataclass(frozen=True)
@@ -187,7 +188,7 @@ def design_standard(
     progress("placement", 4, 6)
     bases = _bases(criterion.plain, rivals, places, all_poses, options)
     first = _identifying(criterion, bodies, bases, options)
-    found = _rearranged(criterion, bodies, places, first, all_poses, choice)
+    found = _rearranged(criterion, bodies, places, first, bases[0].value, all_poses, choice)
     found, on_faces = _with_proof([found, first], reach, choice.proof)
     standard, tried, chosen = found.standard, found.tried, found.chosen
     requests, here = tried[chosen], criterion.on(replace(standard, patches=()))
@@ -213,6 +214,15 @@ def design_standard(
 
 
 @dataclass(frozen=True, eq=False)
+class _Base:
+    """Balls to build on, touches on them, and the value of these where no face is in the way."""
+
+    balls: tuple[DatumSphere, ...]
+    touches: Requests
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
 class _Identifying:
     """A standard with the touches that identify by it: those that can be made, the choice."""
 
@@ -229,8 +239,8 @@ def _bases(
     places: BallPlaces,
     all_poses: Array,
     options: PlacementOptions,
-) -> list[tuple[tuple[DatumSphere, ...], Requests]]:
-    """Balls to build on, with touches: the rivals', the best first, or as many as find room."""
+) -> list[_Base]:
+    """Those of the rivals, the best first, or as many balls as find room."""
     of_balls = [
         r
         for r in rivals
@@ -238,7 +248,7 @@ def _bases(
     ]
     if of_balls:
         return [
-            (r.body.spheres, r.touches)
+            _Base(r.body.spheres, r.touches, r.value)
             for r in sorted(of_balls, key=lambda r: r.value)
             if r.body is not None
         ]
@@ -248,13 +258,13 @@ def _bases(
     tried = touches_to_choose_from(
         criterion.reach, body, body.spheres, poses, options.choice.touches
     )
-    return [(body.spheres, tried)]
+    return [_Base(body.spheres, tried, 0.0)]
 
 
 def _identifying(
     criterion: Criterion,
     bodies: BodyChoice,
-    bases: list[tuple[tuple[DatumSphere, ...], Requests]],
+    bases: list[_Base],
     options: PlacementOptions,
 ) -> _Identifying:
     """The best balls that leave room for the faces, and the touches that identify by them.
@@ -264,10 +274,10 @@ def _identifying(
     """
     best: _Identifying | None = None
     choice, refused = options.choice, NotReachable("no ball")
-    for balls, touches in bases[:_BASES]:
-        poses = np.unique(touches.rotary, axis=0)
+    for base in bases[:_BASES]:
+        poses = np.unique(base.touches.rotary, axis=0)
         standard = bodies.standard(
-            options.name, options.serial, balls, touches, options.patches, choice.proof
+            options.name, options.serial, base.balls, base.touches, options.patches, choice.proof
         )
         here, reach = criterion.on(replace(standard, patches=())), criterion.reach
         tried = touches_to_choose_from(reach, standard, standard.spheres, poses, choice.touches)
@@ -280,7 +290,7 @@ def _identifying(
             best = _Identifying(
                 standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
             )
-        if len(standard.spheres) == len(balls):
+        if len(standard.spheres) == len(base.balls):
             break
     if best is None:
         raise refused
@@ -292,10 +302,16 @@ def _rearranged(
     bodies: BodyChoice,
     places: BallPlaces,
     found: _Identifying,
+    alone: float,
     all_poses: Array,
     choice: TouchOptions,
 ) -> _Identifying:
-    """The same faces with balls and table poses chosen anew beside them, if that tells more."""
+    """The same faces with balls and table poses chosen anew beside them, if that tells more.
+
+    Nothing is tried where the faces cost next to nothing of what the balls alone are worth.
+    """
+    if found.nearness.value <= _NEXT_TO_NOTHING * alone:
+        return found
     standard = bodies.rearranged(found.standard, places, choice.touches)
     if standard is None:
         return found
