@@ -8,7 +8,7 @@ from typing import Any
 from artefact.body import Standard
 from cad_out.details import details_of
 from cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
-from cad_out.making.stiffness import Stiffness, stiffness_of
+from cad_out.making.stiffness import Stiffness
 from twin.files import write_whole
 from twin.units import UM
 
@@ -29,10 +29,9 @@ class Making:
     stiffness: Stiffness
 
 
-def making_of(standard: Standard) -> Making:
-    """Cutters and stiffness of a standard."""
-    details = details_of(standard)
-    return Making(cutting_of(standard, details), stiffness_of(standard, details))
+def making_of(standard: Standard, stiffness: Stiffness) -> Making:
+    """Cutters of a standard whose stiffness is known."""
+    return Making(cutting_of(standard, details_of(standard)), stiffness)
 
 
 def write_making(path: Path, making: Making) -> None:

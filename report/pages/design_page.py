@@ -170,6 +170,7 @@ def _making(made: Making) -> list[tuple[str, str]]:
     mode = "" if stiff.first_mode >= FIRST_MODE else f"; at least {FIRST_MODE:.0f} Hz are wanted"
     often = sorted(f for f, value in stiff.sag.items() if value > SAG)
     told = f"; beyond {SAG / UM:g} µm: {', '.join(often)}" if often else ""
+    told += "; taken off by evaluations ([sag] of standard.toml)"
     cutters = ", ".join(f"{face} Ø{d:g}" for face, d in cutting.cutter.items())
     beyond = f", not at all: {', '.join(cutting.out_of_reach)}" if cutting.out_of_reach else ""
     return [
