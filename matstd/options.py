@@ -28,9 +28,11 @@ SHEET = "setup"
 SHEET_FILES = (
     f"{SHEET}/setup.pdf",
     f"{SHEET}/tables/*.csv",
-    *(f"{SHEET}/*_{ending}.*" for ending in ("LOC", "CAL", "COM")),
+    *(f"{SHEET}/{stem}_*" for stem in ("setup", "playback")),
+    *(f"{SHEET}/*_{ending}.*" for ending in ("LOC", "CAL", "COM", "DRY")),
+    "programs/*_[0-9]*.*",
 )
-"""Of it, what not every run leaves."""
+"""Of it and of the programs, what not every run leaves."""
 
 
 def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = "") -> None:
