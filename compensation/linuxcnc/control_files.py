@@ -10,7 +10,7 @@ from twin.errors import BadFile, DesignError
 from twin.files import read_text, write_whole
 from twin.machine import Chain
 
-HAL_FILE, COMPONENT, SOCKET = "matstd.hal", "matstd_corrector.py", "matstd.sock"
+HAL_FILE, COMPONENT, SOCKET = "corrector.hal", "corrector.py", "corrector.sock"
 
 HEAD = "# matstd serve --linuxcnc wrote this"
 """First line of the HAL file, by which it is known as ours."""
@@ -146,24 +146,28 @@ def hal_text(control: Control, service: Service, limits: OutputLimits) -> str:
         words += [f"--{name}", f"{getattr(limits, name):g}"]
     words = [w or "''" for w in words]
     lines = [HEAD, f"# corrections of {chain.name}; net your temperatures and spindle speed below"]
-    lines.append(f"loadusr -Wn matstd {' '.join(words)}")
+    lines.append(f"loadusr -Wn corrector {' '.join(words)}")
     known = control.signals()
 
     def net(name: str, source: str, *sinks: str) -> None:
         lines.append(f"net {known.get(source, name)} {source} => {' '.join(sinks)}")
 
     for low in (a.lower() for a in control.letters if a in chain.axes):
-        net(f"matstd-at-{low}", f"axis.{low}.pos-cmd", f"matstd.position-{low}")
+        net(f"corrector-at-{low}", f"axis.{low}.pos-cmd", f"corrector.position-{low}")
     for low in map(str.lower, linear):
         lines.append(f"setp axis.{low}.eoffset-scale {_scale():g}")
-        net(f"matstd-counts-{low}", f"matstd.counts-{low}", f"axis.{low}.eoffset-counts")
-        net(f"matstd-has-{low}", f"axis.{low}.eoffset-request", f"matstd.requested-{low}")
-    net("matstd-enable", "matstd.enable", *(f"axis.{a.lower()}.eoffset-enable" for a in linear))
-    net("matstd-on", "motion.motion-enabled", "matstd.machine-on")
-    net("matstd-homed", "motion.is-all-homed", "matstd.homed")
-    lines += [f"setp matstd.temperature-{n} {v:g}" for n, v in state.temperature.items()]
+        net(f"corrector-counts-{low}", f"corrector.counts-{low}", f"axis.{low}.eoffset-counts")
+        net(f"corrector-has-{low}", f"axis.{low}.eoffset-request", f"corrector.requested-{low}")
+    net(
+        "corrector-enable",
+        "corrector.enable",
+        *(f"axis.{a.lower()}.eoffset-enable" for a in linear),
+    )
+    net("corrector-on", "motion.motion-enabled", "corrector.machine-on")
+    net("corrector-homed", "motion.is-all-homed", "corrector.homed")
+    lines += [f"setp corrector.temperature-{n} {v:g}" for n, v in state.temperature.items()]
     if state.spindle_rpm is not None:
-        lines.append(f"setp matstd.spindle-rpm {state.spindle_rpm:g}")
+        lines.append(f"setp corrector.spindle-rpm {state.spindle_rpm:g}")
     return "\n".join(lines) + "\n"
 
 

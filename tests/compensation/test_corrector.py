@@ -225,7 +225,7 @@ def test_a_second_service_is_refused(answering):
 
 INI = """[HAL]
 HALFILE = machine.hal
-HALFILE = matstd.hal
+HALFILE = corrector.hal
 [TRAJ]
 COORDINATES = X Y Z B C
 LINEAR_UNITS = mm
@@ -258,8 +258,8 @@ def test_files_for_the_control(ini, known, datum):
     control.check(known.chain)
     hal, script = write_control_files(control, service, limits)
     text = hal.read_text()
-    assert "net xpos axis.x.pos-cmd => matstd.position-x" in text
-    assert "net matstd-at-y axis.y.pos-cmd => matstd.position-y" in text
+    assert "net xpos axis.x.pos-cmd => corrector.position-x" in text
+    assert "net corrector-at-y axis.y.pos-cmd => corrector.position-y" in text
     assert "--ends X:-400:400,Y:-300:300,Z:-500:0" in text
     assert f"setp axis.z.eoffset-scale {corrector.SCALE:g}" in text
     words = next(s for s in text.splitlines() if s.startswith("loadusr")).split()[4:]
@@ -269,7 +269,7 @@ def test_files_for_the_control(ini, known, datum):
     assert script.stat().st_mode & 0o111
     write_control_files(control, service, limits)  # ours may be replaced
     hal.write_text("# mine\n")
-    with pytest.raises(DesignError, match=r"matstd\.hal already exists and is not ours"):
+    with pytest.raises(DesignError, match=r"corrector\.hal already exists and is not ours"):
         write_control_files(control, service, limits)
     assert hal_text(control, service, limits) == text
 

@@ -50,7 +50,7 @@ COMM_TIMEOUT = 4.0
 SERVO_PERIOD = 1000000
 [HAL]
 HALFILE = machine.hal
-HALFILE = matstd.hal
+HALFILE = corrector.hal
 [TRAJ]
 COORDINATES = X Y Z B C
 LINEAR_UNITS = mm

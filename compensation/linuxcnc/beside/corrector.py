@@ -279,7 +279,7 @@ def _ends(text: str) -> "tuple[str, tuple[float, float]]":
 def arguments(words: Optional["list[str]"] = None) -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("--name", default="matstd")
+    parser.add_argument("--name", default="corrector")
     for name in ("--socket", "--axes", "--linear"):
         parser.add_argument(name, required=True)
     for name in ("--sensors", "--ends"):
