@@ -3,11 +3,11 @@
 Records carry the numbers; the sentences are made in `report`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.fit import MIN_POSES, Fit, UnitMistake, unit_mistake
+from diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
 from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from twin.elastic import short_beams
 
@@ -109,6 +109,24 @@ class OutliersLeftOut:
     lines: tuple[int, ...]
     largest: float
     runs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ManyStoodOut:
+    """So many touches stood out that the error is told both ways.
+
+    Attributes:
+        touches: That stood out, of `of`.
+        left_out: Whether they were left out.
+        without: Error of held-out touches with them left out, mm.
+        whole: With all touches in the fit, and judged, mm.
+    """
+
+    touches: int
+    of: int
+    left_out: bool
+    without: float
+    whole: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,6 +241,7 @@ Remark = (
     | NoiseMisstated
     | OutliersKept
     | OutliersLeftOut
+    | ManyStoodOut
     | PriorWidened
     | SearchEnded
     | NotSignificant
@@ -325,8 +344,9 @@ def _noise(fit: Fit) -> list[Remark]:
 def _outliers(fit: Fit) -> list[Remark]:
     """Touches that were left out, or should have been if they were not so many."""
     gross = fit.gross
+    both = _both_ways(fit)
     if gross.too_many:
-        return [OutliersKept()]
+        return [OutliersKept(), *both]
     rows = np.flatnonzero(gross.rows)
     if len(rows) == 0:
         return []
@@ -334,4 +354,24 @@ def _outliers(fit: Fit) -> list[Remark]:
     largest = float(fit.residual[rows[np.argmax(np.abs(fit.residual[rows]))]])
     t = fit.run.touches
     of = tuple(t.runs[k] for k in t.run[rows]) if len(t.runs) > 1 else ()
-    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest, of)]
+    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest, of), *both]
+
+
+def _both_ways(fit: Fit) -> list[Remark]:
+    """The error without the touches that stand out, and with them, where they are many."""
+    gross = fit.gross
+    out = gross.standing if gross.too_many else gross.rows
+    if out is None or not (gross.too_many or gross.are_many):
+        return []
+    other = replace(gross, rows=out & gross.too_many, too_many=False)
+    beside = fit_run(fit.run, fit.model, gross=other, memory=fit.memory)
+    without, whole = (beside, fit) if gross.too_many else (fit, beside)
+    return [
+        ManyStoodOut(
+            touches=int(out.sum()),
+            of=len(out),
+            left_out=not gross.too_many,
+            without=without.test_rms,
+            whole=whole.test_rms,
+        )
+    ]

@@ -79,6 +79,19 @@ def _noise_misstated(r: noticed.NoiseMisstated) -> str:
     )
 
 
+def _many_stood_out(r: noticed.ManyStoodOut) -> str:
+    share = f"{r.touches} of {r.of} touches stand out ({100.0 * r.touches / r.of:.0f} %)"
+    why = (
+        "scattered, of all sizes and far from the rest, as accidents are"
+        if r.left_out
+        else "alike, together or too many for accidents"
+    )
+    return (
+        f"{share}, {why}: held-out error {r.without / UM:.2f} µm without them, "
+        f"{r.whole / UM:.2f} µm with all touches"
+    )
+
+
 def _outliers_left_out(r: noticed.OutliersLeftOut) -> str:
     count = len(r.lines)
     several = count > 1
@@ -172,6 +185,7 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.OutliersKept: "more touches stand out than accidents can explain: all were kept, and "
     "the residual is treated as structure",
     noticed.OutliersLeftOut: _outliers_left_out,
+    noticed.ManyStoodOut: _many_stood_out,
     noticed.PriorWidened: "the machine's errors are about {r.factor:.1f} times their stated "
     "distributions; the prior was widened by that",
     noticed.ShortBeam: "{r.effect} is {r.slenderness:.1f} times as long as deep at most: the "
