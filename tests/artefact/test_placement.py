@@ -124,7 +124,7 @@ def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
         assert 0 < rival.visible <= rival.could_be_visible
     assert own.visible > by_name["one freeform face"].visible
     spheres = [by_name[f"{n} spheres"].rms_user for n in (4, 5, 7, 13)]
-    assert own.rms_user < 1.05 * min(spheres)  # the benchmark has the mean over seeds
+    assert own.rms_user < 1.02 * min(spheres)
 
 
 @pytest.mark.parametrize("of_task", [False, True])
