@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from probe_paths.campaign import BallChange
+from probe_paths.campaign import BallChange, EffectiveRadius
 from probe_paths.locate import Found
 from twin.frames import fixed_xyz_angles, inverse
 from twin.record import Setup
@@ -15,6 +15,7 @@ def ball_lines(
     changes: Sequence[BallChange],
     limit: float | None = None,
     heights: Sequence[Mapping[str, float]] = (),
+    radii: Sequence[EffectiveRadius] = (),
 ) -> list[str]:
     """What the same ball tells of the time between two looks at it, in words.
 
@@ -22,6 +23,7 @@ def ball_lines(
         changes: In the order of time.
         limit: Beyond which measurements are refused, mm; None where they are not.
         heights: What touches of commissioning programs tell of Z, by its meanings, mm.
+        radii: What the calibrated ball of the workshop tells.
     """
     lines = []
     for beside in heights:
@@ -31,6 +33,11 @@ def ball_lines(
             f"commissioning touch: Z of the control is that of {best} (--z {best}): the ball is "
             f"{abs(beside[best]):.3f} mm beside its place, {others}"
         )
+    lines += [
+        f"datum ball at {one.begin:%H:%M}: effective radius of the probe "
+        f"{one.excess / UM:+.1f} ± {one.u / UM:.1f} µm beyond its calibration"
+        for one in radii
+    ]
     within = "" if limit is None else f" (limit {limit / UM:g} µm)"
     for change in changes:
         moved = ", ".join(

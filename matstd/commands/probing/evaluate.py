@@ -49,7 +49,13 @@ def run(args: argparse.Namespace) -> int:
 
     from artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
-    from probe_paths.campaign import ball_changes, check_changes, evaluate, read_heights
+    from probe_paths.campaign import (
+        ball_changes,
+        check_changes,
+        effective_radii,
+        evaluate,
+        read_heights,
+    )
     from probe_paths.control import read_log
     from probe_paths.language import Dialect
     from report.words import ball_lines
@@ -68,7 +74,8 @@ def run(args: argparse.Namespace) -> int:
     dialect, u, limit = Dialect(result_height=args.z), args.u_um * UM, args.probe_limit_um * UM
     changes = ball_changes(parts, standard, chain, u, dialect)
     heights = [read_heights(part, standard, chain) for part in parts if part.is_first]
-    told = ball_lines(changes, limit, heights)
+    radii = effective_radii(parts, chain, u, dialect)
+    told = ball_lines(changes, limit, heights, radii)
     if not any(part.is_measuring for part in parts) and told:
         say("no run file: the logs hold no measurements")
         say_each(told)
