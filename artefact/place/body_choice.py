@@ -21,6 +21,7 @@ from artefact.layout import (
     most_side_by_side,
     with_spheres,
 )
+from artefact.place.room import FEWEST_BALLS, Room, check_room, room_among
 from artefact.reach import Requests, joined, spread_poses
 from artefact.worth import BallPlaces, Criterion, each_at, face_grid
 from information.selection import best_groups
@@ -30,9 +31,6 @@ from twin.machine import table_to_tool
 from twin.record import IntArray
 
 Which = NDArray[np.bool_]
-
-FEWEST_BALLS = 3
-"""A set-up has six unknowns, and a ball alone hides every turn about it."""
 
 _REBUILDS = 8  # choices of faces tried before giving up
 
@@ -51,6 +49,7 @@ class BodyChoice:
         faces: F of them, named by their numbers.
         W: Rows of touches on them, (N, R).
         group: Face of every row, (N,).
+        room: Some faces and balls that stand side by side.
     """
 
     criterion: Criterion
@@ -58,6 +57,7 @@ class BodyChoice:
     faces: list[FreeformPatch]
     W: Array
     group: IntArray
+    room: Room
 
     def standard(
         self,
@@ -83,14 +83,24 @@ class BodyChoice:
         Raises:
             NotBuildable: No such body; what binds.
         """
-        limits, hides = self.blank.limits, self._hidden(touches)
-        standing, holes = self._screwed(list(balls))
+        hides = self._hidden(touches)
+        wanted = name, serial, hides, count, proving // count
+        try:
+            return self._built(list(balls), *wanted)
+        except NotBuildable:
+            # where the balls that tell most leave no room, those of which it is known that they do
+            return self._built(list(self.room.balls), *wanted)
+
+    def _built(
+        self, balls: list[DatumSphere], name: str, serial: str, hides: Array, count: int, take: int
+    ) -> Standard:
+        """A body of some balls with faces between them, chosen again until no limit is broken."""
+        limits = self.blank.limits
+        standing, holes = self._screwed(balls)
         fits = faces_fit(self.faces, holes, limits)
         refused, binding = "", list[str]()
         for _ in range(_REBUILDS):
-            chosen, standing = self._between(
-                standing, hides, count, fits, proving // count, refused
-            )
+            chosen, standing = self._between(standing, hides, count, fits, take, refused)
             faces = sorted((self.faces[k] for k in chosen), key=_azimuth_of_face)
             made = self._put_together(name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
@@ -227,29 +237,25 @@ class BodyChoice:
 
 
 def body_choice(
-    criterion: Criterion,
-    blank: Blank,
-    poses: Array,
-    faces: int,
-    tried: int,
-    rng: np.random.Generator,
+    places: BallPlaces, poses: Array, faces: int, tried: int, rng: np.random.Generator
 ) -> BodyChoice:
     """Candidates all over a blank.
 
     Args:
-        criterion: What faces are chosen for, without potential terms.
-        blank: On which all stand.
+        places: That balls may have, on the same blank and for the same criterion.
         poses: Table poses to choose from, (K, R), rad.
         faces: How many will be chosen: the more, the smaller they are.
         tried: Number of random faces.
         rng: Draws them.
 
     Raises:
-        NotBuildable: No room for so many faces, even without a ball (fact `fitting`).
+        NotBuildable: No room for so many faces beside the fewest balls (fact `fitting`).
         NotReachable: No face can be touched.
     """
+    criterion, blank = places.criterion, places.blank
     all_faces = freeform_faces(blank, faces, tried, rng)
-    _check_room(all_faces, blank, faces)
+    room = room_among(all_faces, places.balls, faces, blank)
+    check_room(room)
     few = spread_poses(poses, _POSES)
     wanted = joined([each_at(p, face_grid(p.half_size, 3)[::2], few) for p in all_faces])
     wanted = wanted[criterion.reach.is_reachable(wanted)]
@@ -264,18 +270,8 @@ def body_choice(
         faces=all_faces,
         W=criterion.rows(wanted),
         group=wanted.feature.astype(np.int64),
+        room=room,
     )
-
-
-def _check_room(faces: Sequence[FreeformPatch], blank: Blank, count: int) -> None:
-    """Refuse more faces than stand side by side before anything is chosen."""
-    found = most_side_by_side(faces_fit(faces, holes_on(blank), blank.limits), count)
-    if len(found) < count:
-        raise NotBuildable(
-            f"only {len(found)} of {count} patches fit on the blank side by side; between two of "
-            f"them cutter and probe need {least_gap(blank.limits):g} mm",
-            fitting=len(found),
-        )
 
 
 def _azimuth_of_face(face: FreeformPatch) -> float:

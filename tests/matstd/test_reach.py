@@ -169,7 +169,7 @@ def test_patches_that_do_not_fit_are_told_with_a_picture(
         assert main(["design", str(path), "-o", str(out)]) == 2
         (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
         assert [p.name for p in out.iterdir()] == [NO_ROOM]
-    assert re.search(r"only \d of 6 patches fit on the blank side by side", told)
+    assert re.search(r"only 4 of 6 patches fit on the blank side by side", told)
     assert "limits.gap_mm or probe.radius_mm (smaller)" in told
 
 
