@@ -44,7 +44,8 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
         ("hsm600u-machine.toml", "machine.toml"),
         ("poses = 2000", "poses = 300"),
         ("draws = 2000", "draws = 300"),
-        ("patches = 6 ", "patches = 5 "),
+        ("patches = 6 ", "patches = 3 "),
+        ("# balls = 13", "balls = 5"),
         ("# proof_touches = 160", "proof_touches = 60"),
         ("touches = 480", f"touches = {touches}"),
         ("poses = 30 ", f"poses = {poses} "),
@@ -164,7 +165,7 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("X = [-150.0, 150.0]", "X = [150.0, -150.0]", "workspace.X"),
         ("X = [-150.0, 150.0]", "Q = [-150.0, 150.0]", "workspace.Q"),
         ("X = [-150.0, 150.0]", "X = [-900.0, 150.0]", "within the travel"),
-        ("patches = 5", "patches = 2", "standard.patches"),
+        ("patches = 3", "patches = 2", "standard.patches"),
         ("noise_um = 1.0", "noise_um = nan", "simulation.noise_um"),
         ("noise_um = 1.0", "noises = 1.0", "simulation.noises"),
         ("# [errors.classes]", "[errors.classes]\nspeed = [1.0, 2.0]", "errors.classes.speed"),
@@ -260,7 +261,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert placement_options(read_project(path)) == PlacementOptions(
-        name="FFS-600U", serial="001", patches=5, choice=TouchOptions(120, 10, 60)
+        name="FFS-600U", serial="001", patches=3, balls=5, choice=TouchOptions(120, 10, 60)
     )
     plain = re.sub(
         r"(?m)^(criterion|potential|robust_machines|robust_share|poses = 10).*\n", "", text
