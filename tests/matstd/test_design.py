@@ -17,6 +17,7 @@ from artefact.place.placement import PlacementOptions
 from artefact.worth import ball_choice
 from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
+from cad_out.verify.conformity import FACE_LIMIT
 from matstd.cli import main
 from matstd.stages import design, study_run
 from matstd.stages.from_project import blank, placement_options, probe_reach
@@ -140,6 +141,13 @@ def test_the_run_can_be_made_again_from_the_files(made: Path, tmp_path: Path) ->
     assert len(first) == len(second)
     difference = (first.deviation - second.deviation) * 1e3
     assert 0.8 < np.std(difference) < 1.25  # the noise of the first run, 1 um
+
+
+def test_what_was_measured_stands_with_its_limits(made: Path) -> None:
+    told = json.loads((made / "conformity.json").read_text())
+    assert told["faults"] == []
+    assert 0.0 < told["measured"]["mass"] < 60.0
+    assert told["limits"]["face_deviation_mm"] == FACE_LIMIT
 
 
 def test_the_page_stands_alone(made: Path) -> None:
