@@ -7,7 +7,8 @@ programs are read; with `--wide` their touches are first planned anew for a prob
 3 x 40 mm, a body of 62 mm and a nose of 100 mm, and what is refused is told. Then every touch is
 looked at from its start to its contact: surfaces as points every 0.5 mm, the tool above its ball as
 exact cylinders, kinematics by hand (`planted_collisions`). A place of a surface is up to 0.36 mm
-beside the nearest point, which is taken off the gap.
+beside the nearest point, which is taken off the gap; where that leaves less than 1 mm, points every
+0.15 mm are looked at.
 """
 
 import argparse
@@ -17,7 +18,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from planted_collisions import rotations, solid_points, standard_points, tip_on_table
+from planted_collisions import (
+    features_points,
+    rotations,
+    solid_points,
+    standard_points,
+    tip_on_table,
+)
 
 from artefact.body import Standard, read_standard
 from artefact.reach import Requests
@@ -29,7 +36,7 @@ from twin.files import read_machine
 from twin.frames import Array
 
 PITCH = 0.5  # mm between points of a surface
-_BESIDE = PITCH / np.sqrt(2.0)  # mm: the farthest that a place of a surface is from a point
+FINER = 0.15  # mm: the same where the first look leaves less than is wanted
 _PLACES = 3  # of the way in that are looked at
 _NEAR = 2.0  # mm: what is farther away is not looked at closely
 _COARSE = 3.0  # mm between the points that tell what is near
@@ -69,10 +76,16 @@ def _clouds(standard: Standard, head: Heading, pitch: float) -> dict[str, Array]
     return {name: points.astype(np.float32) for name, points in bodies.items()}
 
 
+def _at_least(gap: float, pitch: float) -> float:
+    """A gap, less what a place of the surface may lie beside the nearest point."""
+    return float(np.sqrt(max(gap**2 - 0.5 * pitch**2, 0.0)))
+
+
 def smallest(programs: Sequence[ReadProgram], standard: Standard) -> tuple[Array, Array]:
     """Gap of every touch, the distance of the points taken off, and its number."""
     head = programs[0].heading
     coarse, fine = (_clouds(standard, head, pitch) for pitch in (_COARSE, PITCH))
+    finer: dict[str, Array] = {}
     gaps, numbers = [], []
     for program in programs:
         for touch in program.touches:
@@ -80,11 +93,21 @@ def smallest(programs: Sequence[ReadProgram], standard: Standard) -> tuple[Array
             axis = C.apply(B.apply([0.0, 0.0, 1.0]))
             way = np.linspace(0.0, touch.back, _PLACES)[:, None] * touch.direction[2:5]
             centres = tip_on_table(touch.q[2:5] + way, touch.q[:2])
-            gap = _NEAR
+            gap, near = _NEAR, []
             for name, points in fine.items():
                 if gap_above_ball(coarse[name], centres, axis, head.probe) < _NEAR + _COARSE:
                     gap = min(gap, gap_above_ball(points, centres, axis, head.probe))
-            gaps.append(np.sqrt(max(gap**2 - _BESIDE**2, 0.0)))
+                    near.append(name)
+            gaps.append(_at_least(gap, PITCH))
+            if gaps[-1] < WANTED:
+                place = head.setup.T_table_artefact
+                finer = finer or features_points(standard, place, FINER)
+                flat = [gap_above_ball(fine[n], centres, axis, head.probe)
+                        for n in near if n not in finer]  # fmt: skip
+                others = [gap_above_ball(finer[n], centres, axis, head.probe)
+                          for n in near if n in finer]  # fmt: skip
+                gaps[-1] = min(_at_least(min(flat, default=_NEAR), PITCH),
+                               _at_least(min(others, default=_NEAR), FINER))  # fmt: skip
             numbers.append(touch.number)
     return np.array(gaps), np.array(numbers)
 

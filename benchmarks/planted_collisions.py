@@ -86,7 +86,13 @@ def standard_points(standard: Standard, T: Array, pitch: float = PITCH) -> dict[
     """Points of every body of the standard by name, table frame."""
     a, b = standard.base.half_size
     box = trimesh.creation.box((2 * a, 2 * b, standard.base.thickness))
-    bodies = {"BASE": points_of(box, pitch) + np.array([0.0, 0.0, 0.5 * standard.base.thickness])}
+    base = points_of(box, pitch) + np.array([0.0, 0.0, 0.5 * standard.base.thickness])
+    return {"BASE": base @ T[:3, :3].T + T[:3, 3]} | features_points(standard, T, pitch)
+
+
+def features_points(standard: Standard, T: Array, pitch: float = PITCH) -> dict[str, Array]:
+    """Points of spheres, stems and faces by name, table frame."""
+    bodies = {}
     for s in standard.spheres:
         bodies[s.name] = s.centre + points_of(trimesh.creation.icosphere(3, s.radius), pitch)
         z = np.arange(s.foot, s.centre[2], pitch)

@@ -28,9 +28,11 @@ SHEET = "setup"
 SHEET_FILES = (
     f"{SHEET}/setup.pdf",
     f"{SHEET}/tables/*.csv",
-    *(f"{SHEET}/*_{ending}.*" for ending in ("LOC", "CAL", "COM")),
+    *(f"{SHEET}/{stem}_*" for stem in ("setup", "playback")),
+    *(f"{SHEET}/*_{ending}.*" for ending in ("LOC", "CAL", "COM", "DRY")),
+    "programs/*_[0-9]*.*",
 )
-"""Of it, what not every run leaves."""
+"""Of it and of the programs, what not every run leaves."""
 
 
 def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = "") -> None:
@@ -56,9 +58,11 @@ def add_effects(parser: argparse.ArgumentParser) -> None:
 
 
 def load_effects(files: Iterable[str]) -> None:
-    """Effects of the user's own, of installed packages and of his files."""
-    from twin.library import load_installed_effects, load_user_effects
+    """Effects of other rooms, of installed packages and of the user's files."""
+    from matstd.drift_law import DRIFT_LAW
+    from twin.library import load_installed_effects, load_user_effects, register
 
+    register(DRIFT_LAW)
     load_installed_effects()
     for path in files:
         load_user_effects(Path(path))

@@ -20,7 +20,7 @@ from probe_paths.emit import Feeds, ProgramSet, make_programs
 from probe_paths.language import Dialect
 from probe_paths.plan import PlanOptions, Probe, TouchPlan, plan_touches, requests_at
 
-PARTS = ("plan", "language", "control", "emit", "campaign", "linuxcnc", "locate")
+PARTS = ("plan", "language", "control", "emit", "stations", "campaign", "linuxcnc", "locate")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

@@ -13,13 +13,14 @@ from artefact.brief.standard_tables import (
     StandardTable,
 )
 from artefact.brief.task_file import Task, read_task
-from artefact.brief.workshop_tables import BodyTable, probe_models
+from artefact.brief.workshop_tables import BodyTable, ProbeTable, probe_models
 
 __all__ = [
     "BASE_THICKNESS",
     "CORNER_RADIUS",
     "FEWEST_PATCHES",
     "BodyTable",
+    "ProbeTable",
     "Project",
     "StandardTable",
     "Task",

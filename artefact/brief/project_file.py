@@ -1,5 +1,6 @@
 """Project file (TOML, format "project/1"): all that `matstd design` is told."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,10 +18,12 @@ from artefact.brief.standard_tables import (
 )
 from artefact.brief.task_file import Task, read_task
 from artefact.brief.workshop_tables import (
+    FurtherProbeTable,
     ProbeTable,
     WorkshopTable,
     check_workshop,
     checked_probe,
+    checked_probes,
     table_radius,
 )
 from sensitivity.montecarlo import MACHINES_A_BATCH
@@ -123,6 +126,8 @@ class Project:
         visits: Number of virtual visits from which the uncertainty of the task is evaluated.
         task: What the user measures; whatever is touched on the faces where he did not say.
         remarks: What the user should know of his file.
+        further_setups: In which the standard is probed again, in their order.
+        further_probes: That make what those before them do not reach, in their order.
     """
 
     path: Path
@@ -151,6 +156,8 @@ class Project:
     visits: int
     task: Task
     remarks: tuple[str, ...] = ()
+    further_setups: tuple[Setup, ...] = ()
+    further_probes: tuple[FurtherProbeTable, ...] = ()
 
     @property
     def population(self) -> Population:
@@ -178,8 +185,6 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     machine_path = path.parent / table.machine
     chain = read_machine(machine_path)
     workspace, poses = _workspace(table, chain, path)
-    if len(table.setup) != 1:
-        raise BadFile(path, "setup", f"{len(table.setup)} set-ups", "one set-up")
     if table.montecarlo.digits and table.montecarlo.draws < 2 * MACHINES_A_BATCH:
         raise BadFile(
             path,
@@ -193,7 +198,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     assert probe.length_mm is not None
     room = _table_radius(table, path)
     check_body(table.blank, table.limits, table.standard, probe.radius_mm, room, path)
-    name, setup = next(iter(table.setup.items()))
+    first, *others = _setups(table, path)
     return Project(
         path=path,
         machine_path=machine_path,
@@ -214,13 +219,15 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         standard=table.standard,
         blank=table.blank,
         limits=table.limits,
-        setup=setup.setup(name),
+        setup=first,
         calibration=table.calibration,
         noise=table.simulation.noise_um * UM,
         machines=table.simulation.machines,
         visits=table.simulation.visits,
         task=_task(table, workspace, path),
         remarks=remarks,
+        further_setups=tuple(others),
+        further_probes=checked_probes(table.workshop, path),
     )
 
 
@@ -232,6 +239,21 @@ def _under_their_names(data: Mapping[str, Any], path: Path) -> tuple[str, ...]:
             wanted[new] = wanted.pop(old)
             remarks.append(f"{path}: standard.{old} is called {new} now, and read as that")
     return tuple(remarks)
+
+
+def _setups(table: ProjectTable, path: Path) -> list[Setup]:
+    """Where the standard is clamped, the first for the design; their programs have their names."""
+    if not table.setup:
+        raise BadFile(path, "setup", "no set-up", "one at least, [setup.a]")
+    letters: list[str] = []
+    for name in table.setup:
+        short = name.upper()
+        is_name = re.fullmatch(r"[A-Z0-9_]{1,6}", short) and short not in letters
+        if len(table.setup) > 1 and not is_name:
+            expected = "1 to 6 letters or digits, as no other set-up has them: names of programs"
+            raise BadFile(path, "setup", repr(name), expected)
+        letters.append(short)
+    return [setup.setup(name) for name, setup in table.setup.items()]
 
 
 def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], path: Path) -> Task:
@@ -253,7 +275,7 @@ def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], pat
 
 def _table_radius(table: ProjectTable, path: Path) -> float:
     """Of the table's face, which is stated once at most."""
-    check_workshop(table.workshop, path)
+    check_workshop(table.workshop, table.setup, path)
     stated = table_radius(table.workshop)
     if stated is None:
         return table.limits.table_radius_mm

@@ -5,10 +5,11 @@ that contradicts itself, or a probe that cannot be, is refused before any work i
 """
 
 import tomllib
+from collections.abc import Collection
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
 from pydantic import Field
 
@@ -55,7 +56,10 @@ class TableTable(Table):
 
 
 class BodyTable(Table):
-    """`[[workshop.bodies]]`: clamp, fixture or cover, in the frame of the table's face."""
+    """`[[workshop.bodies]]`: clamp, fixture or cover, in the frame of the table's face.
+
+    With `setup` it stands there in that set-up alone.
+    """
 
     name: str = Field(pattern=r"^[A-Za-z0-9_.+-]{1,13}$")
     at_mm: Vector = (0.0, 0.0, 0.0)
@@ -65,6 +69,16 @@ class BodyTable(Table):
     stl: str | None = None
     turned_deg: float = 0.0
     on: str = ""
+    setup: str = ""
+
+
+AnyProbe = TypeVar("AnyProbe", bound=ProbeTable)
+
+
+class FurtherProbeTable(ProbeTable):
+    """`[[workshop.probes]]`: a probe for what those before it do not reach, under its own tool."""
+
+    tool: int = Field(ge=1, le=32767)
 
 
 class WorkshopTable(Table):
@@ -72,6 +86,7 @@ class WorkshopTable(Table):
 
     table: TableTable | None = None
     bodies: list[BodyTable] = Field(default_factory=list)
+    probes: list[FurtherProbeTable] = Field(default_factory=list)
     tool: int = Field(default=30, ge=1, le=32767)
     preset: int = Field(default=1, ge=0, le=999)
     folder: str = Field(default="TNC:\\MATSTD", pattern=r"^[A-Z0-9_:\\.-]{1,40}$")
@@ -84,6 +99,7 @@ class WorkshopTable(Table):
     minutes_per_file: float | None = Field(default=None, ge=1.0)
     dry_run_mm: float = Field(default=100.0, ge=10.0)
     height_read: Literal["gauge", "tip"] = "gauge"
+    strategy: Literal["axes", "plane-spatial"] = "axes"
 
 
 @cache
@@ -93,8 +109,13 @@ def probe_models() -> dict[str, ModelTable]:
     return {name: ModelTable.model_validate(keys) for name, keys in tomllib.loads(text).items()}
 
 
-def checked_probe(probe: ProbeTable, path: Path) -> ProbeTable:
+def checked_probe(probe: AnyProbe, path: Path, key: str = "probe") -> AnyProbe:
     """The probe with everything that its model or a rule says of it stated.
+
+    Args:
+        probe: As in the file.
+        path: Of the file.
+        key: Where it stands there.
 
     Raises:
         BadFile: A model that nobody knows, no radius or length, a stack that does not go upwards or
@@ -105,13 +126,13 @@ def checked_probe(probe: ProbeTable, path: Path) -> ProbeTable:
     ways = [given & {"model"}, given & {"stack_mm"}, given & (shaped - {"stack_mm"})]
     if sum(map(bool, ways)) > 1:
         found = ", ".join(sorted(given & (shaped | {"model"})))
-        raise BadFile(path, "probe", found, "its shape by model, by stack_mm or by stylus and body")
+        raise BadFile(path, key, found, "its shape by model, by stack_mm or by stylus and body")
     stated = {"radius_mm": probe.radius_mm, "length_mm": probe.length_mm}
     stack = probe.stack_mm
     if probe.model is not None:
         known = probe_models()
         if probe.model not in known:
-            raise BadFile(path, "probe.model", repr(probe.model), "one of " + ", ".join(known))
+            raise BadFile(path, f"{key}.model", repr(probe.model), "one of " + ", ".join(known))
         model = known[probe.model]
         stack = model.stack_mm
         stated["radius_mm"] = probe.radius_mm or 0.5 * model.ball_diameter_mm
@@ -119,38 +140,54 @@ def checked_probe(probe: ProbeTable, path: Path) -> ProbeTable:
         if "nose_diameter_mm" not in given:
             stated["nose_diameter_mm"] = model.nose_diameter_mm
     radius, length = stated["radius_mm"], stated["length_mm"]
-    for key in ("radius_mm", "length_mm"):
-        if stated[key] is None:
-            raise BadFile(path, f"probe.{key}", "nothing", "a number, or a model of the library")
+    for name in ("radius_mm", "length_mm"):
+        if stated[name] is None:
+            raise BadFile(path, f"{key}.{name}", "nothing", "a number, or a model of the library")
     assert radius is not None
     assert length is not None
-    stack = _plain(probe, radius, length, path) if stack is None else list(stack)
+    stack = _plain(probe, radius, length, path, key) if stack is None else list(stack)
     if stack[-1][0] < length:
         stack.append((length, stack[-1][1]))
     ends = [end for end, _ in stack]
     if ends != sorted(set(ends)) or not radius < ends[0] or ends[-1] > length:
         expected = f"ends that rise from radius_mm = {radius:g} to length_mm = {length:g} at most"
-        raise BadFile(path, "probe.stack_mm", ends, expected)
+        raise BadFile(path, f"{key}.stack_mm", ends, expected)
     if not all(d > 0.0 for _, d in stack) or stack[0][1] >= 2.0 * radius:
-        key = "stylus_diameter_mm" if given & {"stylus_diameter_mm"} else "stack_mm"
+        name = "stylus_diameter_mm" if given & {"stylus_diameter_mm"} else "stack_mm"
         worst = stack[0][1] if stack[0][1] >= 2.0 * radius else min(d for _, d in stack)
         expected = f"less than the ball, {2.0 * radius:g}, for the stylus, and above zero for all"
-        raise BadFile(path, f"probe.{key}", f"{worst:g}", expected)
+        raise BadFile(path, f"{key}.{name}", f"{worst:g}", expected)
     return probe.model_copy(update={**stated, "stack_mm": stack})
 
 
-def _plain(probe: ProbeTable, radius: float, length: float, path: Path) -> list[Pair]:
+def _plain(probe: ProbeTable, radius: float, length: float, path: Path, key: str) -> list[Pair]:
     """Stylus and body; the stylus half the length and two thirds of the ball where not given."""
     end = 0.5 * length if probe.stylus_length_mm is None else probe.stylus_length_mm
     if not radius < end < length:
         expected = f"between radius_mm = {radius:g} and length_mm = {length:g}"
-        raise BadFile(path, "probe.stylus_length_mm", f"{end:g}", expected)
+        raise BadFile(path, f"{key}.stylus_length_mm", f"{end:g}", expected)
     diameter = probe.stylus_diameter_mm or 2.0 * (radius * 2.0 / 3.0)
     return [(end, diameter), (length, probe.body_diameter_mm)]
 
 
-def check_workshop(workshop: WorkshopTable, path: Path) -> None:
-    """Refuse a table or a body that is not one shape.
+def checked_probes(workshop: WorkshopTable, path: Path) -> tuple[FurtherProbeTable, ...]:
+    """The further probes, whole, each a tool of its own.
+
+    Raises:
+        BadFile: As of `checked_probe`; a tool that another probe has.
+    """
+    tools, out = [workshop.tool], []
+    for i, probe in enumerate(workshop.probes):
+        key = f"workshop.probes.{i}"
+        if probe.tool in tools:
+            raise BadFile(path, f"{key}.tool", probe.tool, "a number that no other probe has")
+        tools.append(probe.tool)
+        out.append(checked_probe(probe, path, key))
+    return tuple(out)
+
+
+def check_workshop(workshop: WorkshopTable, setups: Collection[str], path: Path) -> None:
+    """Refuse a table or a body that is not one shape, or stands in no set-up.
 
     Raises:
         BadFile: The key and what was expected.
@@ -171,6 +208,9 @@ def check_workshop(workshop: WorkshopTable, path: Path) -> None:
             raise BadFile(path, f"{where}.sides_mm", list(body.sides_mm), "positive sides")
         if body.name in names[:i] or body.name == "TABLE":
             raise BadFile(path, f"{where}.name", repr(body.name), "a name of its own")
+        if body.setup and body.setup not in setups:
+            expected = f"a set-up of the project: {', '.join(setups)}"
+            raise BadFile(path, f"{where}.setup", repr(body.setup), expected)
 
 
 def table_radius(workshop: WorkshopTable) -> float | None:

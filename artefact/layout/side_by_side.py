@@ -13,7 +13,10 @@ Pairs = NDArray[np.bool_]
 
 
 def most_side_by_side(
-    fits: Pairs, *wanted: int, kind: NDArray[np.int64] | None = None
+    fits: Pairs,
+    *wanted: int,
+    kind: NDArray[np.int64] | None = None,
+    starts: int | None = None,
 ) -> list[int]:
     """Sites all of which can stand beside each other: as many as wanted, else the most found.
 
@@ -24,12 +27,13 @@ def most_side_by_side(
         fits: Which sites can stand beside each other, (S, S).
         wanted: How many of each kind; with so many the search ends.
         kind: Of every site, (S,), those of the first kind are placed first; None for one kind.
+        starts: Most sociable sites from which it begins, None for all: 80 of 400 find as many in
+            ten of twelve blanks, and one less in the others.
     """
     kinds = np.zeros(len(fits), dtype=np.int64) if kind is None else kind
     most: list[int] = []
-    for first in np.argsort(-fits.sum(axis=1), kind="stable"):
-        if kinds[first] != 0:
-            continue
+    sociable = np.argsort(-fits.sum(axis=1), kind="stable")
+    for first in sociable[kinds[sociable] == 0][:starts]:
         chosen, free = [int(first)], fits[first].copy()
         for one, count in enumerate(wanted):
             while np.sum(kinds[chosen] == one) < count and (free & (kinds == one)).any():

@@ -1,7 +1,8 @@
 """Balls and faces of a standard: which of all candidates stand on the blank together.
 
-The balls come first, because they identify; faces take the places between them that tell most. A
-body that breaks a limit is chosen again without the faces that are to blame.
+The balls come first, because they identify; faces are drawn all over the room between them, and of
+those that hide nothing of the balls the ones are taken that tell most. A body that breaks a limit
+is chosen again without the faces that are to blame.
 """
 
 from collections.abc import Sequence
@@ -28,11 +29,27 @@ from information.selection import best_groups
 from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array, inverse, turn
 from twin.machine import table_to_tool
-from twin.record import IntArray
 
 Which = NDArray[np.bool_]
 
+
+@dataclass(frozen=True, eq=False)
+class _Beside:
+    """Faces that stand beside some balls, named by their numbers: F.
+
+    Attributes:
+        faces: The faces.
+        fits: Which of them can stand beside each other, (F, F).
+        hides: Share of the touches on the balls that each stands in the way of, (F,).
+    """
+
+    faces: list[FreeformPatch]
+    fits: Which
+    hides: Array
+
+
 _REBUILDS = 8  # choices of faces tried before giving up
+_STARTS = 80  # of the search for faces side by side
 
 _HIDDEN = (0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 1.0)  # of the touches, that a face may hide
 _WAY, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that is looked at, in steps
@@ -46,17 +63,17 @@ class BodyChoice:
     Attributes:
         criterion: What faces are chosen for, without potential terms.
         blank: On which they stand.
-        faces: F of them, named by their numbers.
-        W: Rows of touches on them, (N, R).
-        group: Face of every row, (N,).
+        poses: Table poses at which faces are looked at, (K, R), rad.
+        tried: Number of random faces beside each choice of balls.
+        rng: Draws them.
         room: Some faces and balls that stand side by side.
     """
 
     criterion: Criterion
     blank: Blank
-    faces: list[FreeformPatch]
-    W: Array
-    group: IntArray
+    poses: Array
+    tried: int
+    rng: np.random.Generator
     room: Room
 
     def standard(
@@ -83,8 +100,7 @@ class BodyChoice:
         Raises:
             NotBuildable: No such body; what binds.
         """
-        hides = self._hidden(touches)
-        wanted = name, serial, hides, count, proving // count
+        wanted = name, serial, touches, count, max(4, proving // count)
         try:
             return self._built(list(balls), *wanted)
         except NotBuildable:
@@ -92,16 +108,32 @@ class BodyChoice:
             return self._built(list(self.room.balls), *wanted)
 
     def _built(
-        self, balls: list[DatumSphere], name: str, serial: str, hides: Array, count: int, take: int
+        self,
+        balls: list[DatumSphere],
+        name: str,
+        serial: str,
+        touches: Requests,
+        count: int,
+        take: int,
     ) -> Standard:
         """A body of some balls with faces between them, chosen again until no limit is broken."""
         limits = self.blank.limits
         standing, holes = self._screwed(balls)
-        fits = faces_fit(self.faces, holes, limits)
+        there, standing = self._beside(standing, holes, touches, count)
         refused, binding = "", list[str]()
         for _ in range(_REBUILDS):
-            chosen, standing = self._between(standing, hides, count, fits, take, refused)
-            faces = sorted((self.faces[k] for k in chosen), key=_azimuth_of_face)
+            chosen = self._chosen(there, count, take)
+            while len(chosen) < count and len(standing) > FEWEST_BALLS:
+                there, standing = self._beside(standing[:-1], holes, touches, count)
+                chosen = self._chosen(there, count, take)
+            if len(chosen) < count:
+                raise NotBuildable(
+                    f"only {len(chosen)} of {count} patches fit on the blank beside "
+                    f"{len(standing)} balls; between two of them cutter and probe need "
+                    f"{least_gap(limits):g} mm{refused}",
+                    fitting=len(chosen),
+                )
+            faces = sorted((there.faces[k] for k in chosen), key=_azimuth_of_face)
             made = self._put_together(name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
             if not broken:
@@ -109,7 +141,7 @@ class BodyChoice:
             refused, binding = f"; {broken[0]}", [c.name for c in broken]
             in_order = [int(face.name) for face in faces]
             for constraint in broken:
-                _blame(fits, constraint.features, [p.name for p in made.patches], in_order)
+                _blame(there.fits, constraint.features, [p.name for p in made.patches], in_order)
         raise NotBuildable(
             f"no choice of {count} patches meets every limit{refused}", binding=binding
         )
@@ -126,30 +158,38 @@ class BodyChoice:
                     raise
                 balls = balls[:-1]
 
-    def _between(
+    def _beside(
         self,
         balls: list[DatumSphere],
-        hides: Array,
+        holes: tuple[MountingHole, ...],
+        touches: Requests,
         count: int,
-        fits: Which,
-        take: int,
-        refused: str,
-    ) -> tuple[list[int], list[DatumSphere]]:
-        """Faces between some balls, and the balls: the last is left out until the faces fit."""
+    ) -> tuple["_Beside", list[DatumSphere]]:
+        """Faces between some balls, and the balls: the last goes until so many faces fit."""
         while True:
-            free = faces_beside(self.faces, balls, self.blank)
-            for most in _HIDDEN:
-                chosen = self._side_by_side(count, max(4, take), fits, free & (hides <= most))
-                if len(chosen) == count and len(balls) >= FEWEST_BALLS:
-                    return chosen, balls
-            if len(balls) <= FEWEST_BALLS:
-                raise NotBuildable(
-                    f"only {len(chosen)} of {count} patches fit on the blank beside {len(balls)} "
-                    f"balls; between two of them cutter and probe need "
-                    f"{least_gap(self.blank.limits):g} mm{refused}",
-                    fitting=len(chosen),
-                )
+            faces = freeform_faces(self.blank, count, self.tried, self.rng, balls, holes)
+            fits = faces_fit(faces, holes, self.blank.limits)
+            if (
+                len(balls) <= FEWEST_BALLS
+                or len(most_side_by_side(fits, count, starts=_STARTS)) == count
+            ):
+                return _Beside(faces, fits, self._in_the_way(faces, touches).mean(axis=1)), balls
             balls = balls[:-1]  # the last one chosen tells least
+
+    def _chosen(self, there: "_Beside", count: int, take: int) -> list[int]:
+        """Of the faces that hide fewest touches those worth most; fewer where no other fits."""
+        longest = list[int]()
+        for most in _HIDDEN:
+            free = np.flatnonzero(there.hides <= most)
+            fits = there.fits[np.ix_(free, free)]
+            found = most_side_by_side(fits, count, starts=_STARTS)
+            if len(found) == count:
+                found = self._worth_most([there.faces[k] for k in free], fits, count, take)
+            if len(found) > len(longest):
+                longest = [int(free[i]) for i in found]
+            if len(longest) == count:
+                break
+        return longest
 
     def rearranged(self, made: Standard, places: BallPlaces, touches: int) -> Standard | None:
         """The same faces with the balls that tell most beside them; None where a limit is broken.
@@ -178,10 +218,6 @@ class BodyChoice:
         broken = any(c.slack < 0.0 for c in constraints(again, self.blank.limits))
         return again if is_whole and not broken else None
 
-    def _hidden(self, touches: Requests) -> Array:
-        """Share of some touches that every face stands in the way of, (F,)."""
-        return np.asarray(self._in_the_way(self.faces, touches).mean(axis=1))
-
     def _in_the_way(self, faces: list[FreeformPatch], touches: Requests) -> Which:
         """Whether a face stands in the way of the probe at a touch, (F, N)."""
         reach = self.criterion.reach
@@ -199,12 +235,16 @@ class BodyChoice:
         near = [column.distance(where) < least for column in bare.columns.values()]
         return np.array([n.reshape(-1, len(ball)).any(axis=0) for n in near])
 
-    def _side_by_side(self, count: int, take: int, fits: Which, free: Which) -> list[int]:
+    def _worth_most(
+        self, faces: list[FreeformPatch], fits: Which, count: int, take: int
+    ) -> list[int]:
         """The faces worth most; if their neighbours run out, begun from some that all fit."""
-        rows = free[self.group]
-        W, group, objective = self.W[rows], self.group[rows], self.criterion.objective
-        if not len(W):
+        wanted = _touches_on(faces, self.poses)
+        wanted = wanted[self.criterion.reach.is_reachable(wanted)]
+        if not len(wanted):
             return []
+        W, objective = self.criterion.rows(wanted), self.criterion.objective
+        group = np.searchsorted([int(p.name) for p in faces], wanted.feature.astype(np.int64))
         chosen = best_groups(objective, W, group, count, take, apart=fits)
         if len(chosen) < count:
             touched = np.isin(np.arange(len(fits)), group)
@@ -257,21 +297,17 @@ def body_choice(
     room = room_among(all_faces, places.balls, faces, blank)
     check_room(room)
     few = spread_poses(poses, _POSES)
-    wanted = joined([each_at(p, face_grid(p.half_size, 3)[::2], few) for p in all_faces])
-    wanted = wanted[criterion.reach.is_reachable(wanted)]
-    if not len(wanted):
+    if not criterion.reach.is_reachable(_touches_on(all_faces, few)).any():
         raise NotReachable(
             f"no face at any of {len(all_faces)} places can be touched at a table pose with every "
             "axis within its travel"
         )
-    return BodyChoice(
-        criterion=criterion,
-        blank=blank,
-        faces=all_faces,
-        W=criterion.rows(wanted),
-        group=wanted.feature.astype(np.int64),
-        room=room,
-    )
+    return BodyChoice(criterion=criterion, blank=blank, poses=few, tried=tried, rng=rng, room=room)
+
+
+def _touches_on(faces: list[FreeformPatch], poses: Array) -> Requests:
+    """A few touches on every face."""
+    return joined([each_at(p, face_grid(p.half_size, 3)[::2], poses) for p in faces])
 
 
 def _azimuth_of_face(face: FreeformPatch) -> float:

@@ -28,7 +28,7 @@ from artefact.compare import (
 )
 from artefact.layout import Blank, with_spheres
 from artefact.place.body_choice import BodyChoice, body_choice
-from artefact.place.proving import proving_touches
+from artefact.place.proving import proving_touches, telling_touches, touches_on_faces
 from artefact.reach import Mask, ProbeReach, Requests, joined
 from artefact.worth import (
     BallPlaces,
@@ -60,6 +60,7 @@ __all__ = ["Placement", "PlacementOptions", "design_standard"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
 _BASES = 3  # sets of balls tried at most
+_NEXT_TO_NOTHING = 1.005  # times what the balls alone leave, a quarter of a per cent in µm
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,7 @@ class Placement:
         power_in_volume: The same of a model that is wrong there in whatever direction.
         power_of_balls: That of as many further touches on the balls, which are no proof: what is
             wrong with a ball went into the model.
+        power_exact: As `power`, were the places of the faces known exactly.
         unreachable: Artefacts that are not compared: this machine can make no touch on them.
     """
 
@@ -119,6 +121,7 @@ class Placement:
     power: Power
     power_in_volume: Power
     power_of_balls: Power
+    power_exact: Power
     unreachable: tuple[str, ...] = ()
 
     @property
@@ -180,19 +183,17 @@ def design_standard(
     places = ball_places(criterion.plain, blank, all_poses, rng)
     bodies = body_choice(places, all_poses, options.patches, options.sites, rng)
     progress("placement", 2, 6)
-    free = random_touches(
-        reach, criterion.volume, criterion.rotary, max(choice.touches, _FREE), rng
-    )
-    library = visibility(criterion, free)
+    library = _effects(criterion, max(choice.touches, _FREE), rng)
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", 4, 6)
     bases = _bases(criterion.plain, rivals, places, all_poses, options)
     first = _identifying(criterion, bodies, bases, options)
-    found = _rearranged(criterion, bodies, places, first, all_poses, choice)
-    standard, tried, chosen = found.standard, found.tried, found.chosen
-    requests, here = tried[chosen], criterion.on(replace(standard, patches=()))
-    proof, powers = _proving(criterion.on(standard), found, choice.proof, library, rng)
-    standard = _with_shares(criterion, standard, proof)
+    found = _rearranged(criterion, bodies, places, first, bases[0].value, all_poses, choice)
+    found, on_faces = _with_proof([found, first], reach, choice.proof)
+    on_body, here = criterion.on(found.standard), criterion.on(replace(found.standard, patches=()))
+    proof, powers = _proving(on_body, found, on_faces, choice.proof, library, rng)
+    requests, tried = found.tried[found.chosen], found.tried
+    standard = _with_shares(criterion, found.standard, proof)
     progress("placement", 5, 6)
     lots = random_lots(tried, len(requests), rng)
     own = evaluated(f"standard {options.name}", here, requests, lots, library, len(tried), standard)
@@ -208,8 +209,18 @@ def design_standard(
         power=powers[0],
         power_in_volume=powers[1],
         power_of_balls=powers[2],
+        power_exact=powers[3],
         unreachable=unreachable,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Base:
+    """Balls to build on, touches on them, and the value of these where no face is in the way."""
+
+    balls: tuple[DatumSphere, ...]
+    touches: Requests
+    value: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,8 +240,8 @@ def _bases(
     places: BallPlaces,
     all_poses: Array,
     options: PlacementOptions,
-) -> list[tuple[tuple[DatumSphere, ...], Requests]]:
-    """Balls to build on, with touches: the rivals', the best first, or as many as find room."""
+) -> list[_Base]:
+    """Those of the rivals, the best first, or as many balls as find room."""
     of_balls = [
         r
         for r in rivals
@@ -238,7 +249,7 @@ def _bases(
     ]
     if of_balls:
         return [
-            (r.body.spheres, r.touches)
+            _Base(r.body.spheres, r.touches, r.value)
             for r in sorted(of_balls, key=lambda r: r.value)
             if r.body is not None
         ]
@@ -248,13 +259,13 @@ def _bases(
     tried = touches_to_choose_from(
         criterion.reach, body, body.spheres, poses, options.choice.touches
     )
-    return [(body.spheres, tried)]
+    return [_Base(body.spheres, tried, 0.0)]
 
 
 def _identifying(
     criterion: Criterion,
     bodies: BodyChoice,
-    bases: list[tuple[tuple[DatumSphere, ...], Requests]],
+    bases: list[_Base],
     options: PlacementOptions,
 ) -> _Identifying:
     """The best balls that leave room for the faces, and the touches that identify by them.
@@ -264,10 +275,10 @@ def _identifying(
     """
     best: _Identifying | None = None
     choice, refused = options.choice, NotReachable("no ball")
-    for balls, touches in bases[:_BASES]:
-        poses = np.unique(touches.rotary, axis=0)
+    for base in bases[:_BASES]:
+        poses = np.unique(base.touches.rotary, axis=0)
         standard = bodies.standard(
-            options.name, options.serial, balls, touches, options.patches, choice.proof
+            options.name, options.serial, base.balls, base.touches, options.patches, choice.proof
         )
         here, reach = criterion.on(replace(standard, patches=())), criterion.reach
         tried = touches_to_choose_from(reach, standard, standard.spheres, poses, choice.touches)
@@ -280,7 +291,7 @@ def _identifying(
             best = _Identifying(
                 standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
             )
-        if len(standard.spheres) == len(balls):
+        if len(standard.spheres) == len(base.balls):
             break
     if best is None:
         raise refused
@@ -292,10 +303,16 @@ def _rearranged(
     bodies: BodyChoice,
     places: BallPlaces,
     found: _Identifying,
+    alone: float,
     all_poses: Array,
     choice: TouchOptions,
 ) -> _Identifying:
-    """The same faces with balls and table poses chosen anew beside them, if that tells more."""
+    """The same faces with balls and table poses chosen anew beside them, if that tells more.
+
+    Nothing is tried where the faces cost next to nothing of what the balls alone are worth.
+    """
+    if found.nearness.value <= _NEXT_TO_NOTHING * alone:
+        return found
     standard = bodies.rearranged(found.standard, places, choice.touches)
     if standard is None:
         return found
@@ -311,36 +328,54 @@ def _rearranged(
         return found
     if nearness.value >= found.nearness.value:
         return found
-    proof = touches_to_choose_from(here.reach, standard, standard.patches, poses, choice.proof)
-    if len(proof) < choice.proof:
-        return found
     return _Identifying(
         standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
     )
 
 
+def _with_proof(
+    choices: list[_Identifying], reach: ProbeReach, count: int
+) -> tuple[_Identifying, Requests]:
+    """The first choice on whose faces touches enough can be made, or the last; those touches."""
+    for found in choices:
+        on_faces = touches_on_faces(reach, found.standard, found.poses, count)
+        if len(on_faces) >= count:
+            break
+    return found, on_faces
+
+
 def _proving(
     criterion: Criterion,
     found: _Identifying,
+    on_faces: Requests,
     count: int,
     library: Visibility,
     rng: np.random.Generator,
-) -> tuple[Requests, tuple[Power, Power, Power]]:
-    """Touches that prove; their power over the task and in the volume, and that of the balls."""
+) -> tuple[Requests, tuple[Power, Power, Power, Power]]:
+    """Touches that prove, and their powers.
+
+    Over the task, in the volume, that of the balls, and over the task were the faces known exactly.
+    """
     standard, requests = found.standard, found.tried[found.chosen]
-    on_faces = touches_to_choose_from(
-        criterion.reach, standard, standard.patches, found.poses, count
-    )
-    proof = proving_touches(criterion, on_faces, requests, count)
+    proof = proving_touches(criterion, standard, on_faces, requests, count)
     others = found.tried[~found.chosen]
     others = others if len(others) >= count else found.tried  # the same ones once more
-    more = proving_touches(criterion, others, requests, min(count, len(others)))
+    more = telling_touches(criterion, others, requests, min(count, len(others)))
     effects, normals = library.effects, task_normals(criterion, proof, rng)
+    known = replace(criterion.calibration, patch=0.0, patch_tilt=0.0)
+    exact = replace(criterion, calibration=known)
     return proof, (
         proof_power(criterion, requests, proof, effects, rng, normals),
         proof_power(criterion, requests, proof, effects, rng),
         proof_power(criterion, requests, more, effects, rng),
+        proof_power(exact, requests, proof, effects, rng, normals),
     )
+
+
+def _effects(criterion: Criterion, count: int, rng: np.random.Generator) -> Visibility:
+    """Effects of the library that touches taken at random could show."""
+    free = random_touches(criterion.reach, criterion.volume, criterion.rotary, count, rng)
+    return visibility(criterion, free)
 
 
 def _check_blank(base: Base, reach: ProbeReach) -> None:

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Literal, Protocol
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from compensation.field.state import SWITCHED_ON, State
 from diagnosis.files import SavedModel
@@ -102,14 +103,22 @@ class MachineErrors:
             left_out=tuple(e.name for (e, _), kept in zip(known, is_kept, strict=True) if not kept),
         )
 
-    def with_known(self, errors: Sequence[tuple[Effect, Array]]) -> "MachineErrors":
-        """The same with further errors that are known without uncertainty."""
+    def with_known(
+        self, errors: Sequence[tuple[Effect, Array]], root: Array | None = None
+    ) -> "MachineErrors":
+        """The same with further errors that are known by themselves.
+
+        Args:
+            errors: Effects with their parameters.
+            root: Of the covariance of those, (P', K'); None without uncertainty.
+        """
         count = sum(len(e.parameters) for e, _ in errors)
+        own = np.zeros((count, 0)) if root is None else root
         return replace(
             self,
             effects=(*self.effects, *(e for e, _ in errors)),
             theta=(*self.theta, *(t for _, t in errors)),
-            root=np.vstack([self.root, np.zeros((count, self.root.shape[1]))]),
+            root=block_diag(self.root, own),
             tool_root=np.vstack([self.tool_root, np.zeros((count, self.tool_root.shape[1]))]),
         )
 

@@ -90,7 +90,7 @@ def _check(endpoint: str) -> None:
 
 
 async def _follow(service: Service, nodes: _Nodes, until: asyncio.Event) -> None:
-    """Temperatures and uncertainty, beside the fast loop."""
+    """Temperatures, probings and uncertainty, beside the fast loop."""
     begun = time.monotonic()
     driven = begun
     while not until.is_set():
@@ -99,6 +99,8 @@ async def _follow(service: Service, nodes: _Nodes, until: asyncio.Event) -> None
         if now - driven >= _DRIVEN_EVERY:
             driven = now
             await nodes.drive(service, service.errors.state.time + now - begun)
+            await nodes.tell_drift(service)
+        await nodes.learn(service)
         if now - nodes.known_at >= _KNOWN_EVERY:
             nodes.known_at = now
             await nodes.tell_uncertainty(service)
@@ -111,6 +113,7 @@ class _Nodes:
         self.inputs, self.outputs = inputs, outputs
         self.known_at, self._answered, self._undriven = 0.0, 0, ""
         self._shown: dict[str, Any] = {}
+        self._probed, self._unlearnt = 0, ""
 
     @classmethod
     async def add(cls, server: Server, service: Service) -> _Nodes:
@@ -127,6 +130,9 @@ class _Nodes:
             "Temperatures": (list(state.temperature.values()), double),
             "SpindleSpeed": (state.spindle_rpm or 0.0, double),
             "Sequence": (0, whole),
+            "Probed": ([0.0] * len(service.drifts.columns), double),
+            "ProbedUncertainty": ([0.0] * len(service.drifts.columns), double),
+            "ProbedSequence": (0, whole),
         }
         told = {
             "Axes": (list(chain.axes), text),
@@ -142,6 +148,10 @@ class _Nodes:
             "Age": (0.0, double),
             "Lag": (0.0, double),
             "Refused": ("", text),
+            "DriftColumns": (list(service.drifts.columns), text),
+            "Drift": (service.drifts.drift, double),
+            "DriftUncertainty": (service.drifts.u, double),
+            "ProbedAnswered": (0, whole),
         }
         inputs = {k: await parent.add_variable(space, k, *v) for k, v in given.items()}
         outputs = {k: await parent.add_variable(space, k, *v) for k, v in told.items()}
@@ -169,7 +179,7 @@ class _Nodes:
             "Quality": str(sent.quality),
             "Age": round(min(sent.age, 1e9), 2),
             "Lag": sent.lag,
-            "Refused": "; ".join(filter(None, (answer.refused, self._undriven))),
+            "Refused": "; ".join(filter(None, (answer.refused, self._undriven, self._unlearnt))),
             "Answered": answer.sequence,  # last: who sees it finds the others
         }
         for name, value in values.items():
@@ -188,6 +198,27 @@ class _Nodes:
             self._undriven = ""
         except DesignError as error:
             self._undriven = str(error)
+
+    async def learn(self, service: Service) -> None:
+        """What was probed, if it is new; what is not understood changes nothing."""
+        sequence = await self.inputs["ProbedSequence"].read_value()
+        if sequence == self._probed:
+            return
+        left = await self.inputs["Probed"].read_value() or []
+        u = await self.inputs["ProbedUncertainty"].read_value() or []
+        try:
+            await asyncio.to_thread(service.probed, left, u)
+            self._unlearnt = ""
+        except DesignError as error:
+            self._unlearnt = str(error)
+        self._probed = sequence
+        await self.outputs["ProbedAnswered"].write_value(sequence)
+
+    async def tell_drift(self, service: Service) -> None:
+        """Columns of saved laws since the preset."""
+        if service.drifts.columns:
+            await self.outputs["Drift"].write_value(service.drifts.drift)
+            await self.outputs["DriftUncertainty"].write_value(service.drifts.u)
 
     async def tell_uncertainty(self, service: Service) -> None:
         """Of the last readings."""

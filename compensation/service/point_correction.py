@@ -7,7 +7,7 @@ second order: what is left out is a sixth of the third power of an angle, 0.2 nm
 1 mrad.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from itertools import pairwise
 from math import cos, sin
@@ -129,13 +129,19 @@ class PointCorrection:
         self._aim = (0.0, 0.0, 0.0) if datum is None else _point(datum.deviation(errors))
         self._steps = _way(chain, self._places, self._tables)
 
-    def following(self, history: History) -> "PointCorrection":
+    def following(
+        self, history: History, learnt: Mapping[str, Array] | None = None
+    ) -> "PointCorrection":
         """The same machine at the end of a history; what it stands on is not made again.
 
         The datum stays where it was set, so that what the machine has drifted since is corrected.
+
+        Args:
+            history: Of the machine.
+            learnt: Parameters that are other ones by now, by the name of their effect.
         """
         other = copy(self)
-        other._tables = [t.following(history) if t.is_driven else t for t in self._tables]
+        other._tables = [t.following(history, learnt) if t.is_driven else t for t in self._tables]
         other._steps = _way(self._chain, self._places, other._tables)
         return other
 

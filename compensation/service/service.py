@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compensation.field import Datum, MachineErrors, relative_columns
+from compensation.service.drifts import Drifts
 from compensation.service.history import History
-from compensation.service.output import Output, OutputLimits, Sent
+from compensation.service.output import Output, OutputLimits, Quality, Sent
 from compensation.service.point_correction import Point, PointCorrection
 from twin.errors import DesignError, OutsideTravel
 from twin.units import DEG
@@ -63,7 +64,9 @@ class Service:
         self.errors, self.length, self.datum = errors, length, datum
         self.correction = PointCorrection(errors, length, datum)
         self._history = History((errors.state,))
+        self.drifts = Drifts(errors, datum)
         self._output = Output(limits or OutputLimits())
+        self._quality = Quality.FADING
         zero = (0.0, 0.0, 0.0)
         self._sequence, self._refused, self._linear = 0, "", (zero, zero, zero)
 
@@ -124,14 +127,35 @@ class Service:
             spindle_rpm=spindle_rpm,
         )
         self._history = self._history.then(state)
-        self.correction = self.correction.following(self._history)
+        self.drifts.follow(self._history)
+        self.correction = self.correction.following(self._history, self.drifts.learnt)
+
+    def probed(self, left: Sequence[float], u: Sequence[float]) -> None:
+        """A standard was probed with the corrections on: what is left of the thermal drift.
+
+        The law of the drift is corrected by it, and its uncertainty.
+
+        Args:
+            left: Of every column of `drifts.columns`, mm or rad; NaN where nothing was probed.
+            u: Standard uncertainty of each.
+
+        Raises:
+            DesignError: No law is followed, other numbers of values, or a correction that was not
+                valid: nobody knows then what was left by the law and what by its limits.
+        """
+        if self._quality is not Quality.VALID:
+            raise DesignError(f"probed while the correction was {self._quality}, expected valid")
+        self.drifts.probed(left, u)
+        self.correction = self.correction.following(self._history, self.drifts.learnt)
 
     def tick(self, now: float) -> Answer:
         """What a control reads at this moment."""
         k0, k1, p0 = self._linear
+        sent = self._output.step(now)
+        self._quality = sent.quality
         return Answer(
             sequence=self._sequence,
-            sent=self._output.step(now),
+            sent=sent,
             k0=k0,
             k1=k1,
             p0=p0,
@@ -146,7 +170,10 @@ class Service:
         """
         q, _ = self._understood(readings, None)
         touches = self.errors.touches(np.array([q]), self.length)
-        spread = relative_columns(self.errors, touches, self.datum)[0] @ self.errors.root
+        columns = relative_columns(self.errors, touches, self.datum)[0][:, self.drifts.others]
+        spread = np.hstack(
+            [columns @ self.errors.root[self.drifts.others], self.drifts.at(touches)]
+        )
         x, y, z = np.sqrt((spread**2).sum(axis=1)).tolist()
         return x, y, z
 

@@ -6,6 +6,7 @@ one reading changed. Tables are made finer until straight lines between their po
 a stated amount; a table that follows temperatures is made again on the same points.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
 
@@ -87,8 +88,18 @@ class ErrorTable:
                 )
             counts = np.where(left > 0.5 * close / len(counts), 2 * counts - 1, counts)
 
-    def following(self, history: History | None) -> "ErrorTable":
-        """The same points at the end of a history; None for the state of the errors."""
+    def following(
+        self, history: History | None, learnt: Mapping[str, Array] | None = None
+    ) -> "ErrorTable":
+        """The same points at the end of a history; None for the state of the errors.
+
+        Args:
+            history: Of the machine.
+            learnt: Parameters that are other ones by now, by the name of their effect.
+        """
+        if learnt:
+            terms = [(effect, learnt.get(effect.name, theta)) for effect, theta in self.terms]
+            return replace(self, terms=terms).following(history)
         lines = [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
         rows = self._at(lines, history)
         return replace(self, rows=rows.reshape(*self.counts, *rows.shape[1:]))

@@ -3,36 +3,37 @@
 In: logs of temperatures, speeds and displacements (`read_log`). Out: laws beside one another
 (`judge`), each with what it leaves one step ahead, in blocks left out, and running freely in
 held-out hours; the one that was `chosen` inside the training part, its uncertainty, and what
-probing now and then makes of it (`kept`). A new law is a module with a function that fits it, and
-a line in `judged.offered`.
+probing now and then makes of it (`kept`). A saved law is an effect of a machine's model
+(`DriftLaw`), which `LiveDrift` keeps right while the machine works. A new law is a module with a
+function that fits it, and a line in `judged.offered`.
 """
 
 from diagnosis.drift.arx import ArxInputs
 from diagnosis.drift.arx import coefficients as arx_coefficients
-from diagnosis.drift.beams import Beam, beam_estimate, read_beams
+from diagnosis.drift.beams import read_beams
 from diagnosis.drift.clocks import lead
 from diagnosis.drift.drift_file import read_law, write_drift, write_prediction
-from diagnosis.drift.judged import Judged, Law, chosen, judge, offered
+from diagnosis.drift.drift_law import DriftLaw, drift_law_of
+from diagnosis.drift.judged import Judged, chosen, judge, offered
 from diagnosis.drift.linear import LinearLaw
+from diagnosis.drift.live import LiveDrift
 from diagnosis.drift.log_file import check_alike, read_log, read_probed
-from diagnosis.drift.network import has_network
 from diagnosis.drift.probing import Kept, kept
 from diagnosis.drift.record import DriftRecord, IntArray, joined, varying
 
 __all__ = [
     "ArxInputs",
-    "Beam",
+    "DriftLaw",
     "DriftRecord",
     "IntArray",
     "Judged",
     "Kept",
-    "Law",
     "LinearLaw",
+    "LiveDrift",
     "arx_coefficients",
-    "beam_estimate",
     "check_alike",
     "chosen",
-    "has_network",
+    "drift_law_of",
     "joined",
     "judge",
     "kept",

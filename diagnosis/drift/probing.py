@@ -59,7 +59,7 @@ def kept(judged: Judged, record: DriftRecord, rows: IntArray, u: float | Array) 
     for k in range(free.shape[1]):
         variance = float(judged.factor[k] * law.residual[k]) ** 2
         misses = record.displacement[:, k] - free[:, k]
-        filtered = _Filter(variance, unit, law.memory)
+        filtered = Unknowns(variance, unit, law.memory)
         for t in range(len(record)):
             if t:
                 filtered.advance(record.step)
@@ -77,23 +77,27 @@ def _held(record: DriftRecord, known: np.ndarray) -> Array:
     return record.displacement[np.where(at < 0, first, at)]
 
 
-class _Filter:
-    """State: what is wrong with every coefficient, then what passes.
+class Unknowns:
+    """State of one component: what is wrong with every coefficient, then what passes.
 
     Args:
         variance: Of what passes.
         unit: Covariance of the coefficients per unit of it.
         memory: Of what passes, s.
+        is_since: Whether the drift counts from now on: what passes at this moment is then a part
+            of the zero, and stays in it.
     """
 
-    def __init__(self, variance: float, unit: Array, memory: float) -> None:
+    def __init__(self, variance: float, unit: Array, memory: float, is_since: bool = False) -> None:
         m = len(unit)
         self.first = variance * unit
         self.variance, self.memory = variance, memory
-        self.mean = np.zeros(m + 1)
-        self.covariance = np.zeros((m + 1, m + 1))
+        self._ends = np.array([1.0, -1.0] if is_since else [1.0])
+        count = m + len(self._ends)
+        self.mean = np.zeros(count)
+        self.covariance = np.zeros((count, count))
         self.covariance[:m, :m] = self.first
-        self.covariance[m, m] = variance
+        self.covariance[m:, m:] = variance
 
     def advance(self, step: float) -> None:
         """By some time, s."""
@@ -106,8 +110,8 @@ class _Filter:
         self.covariance[:m, :m] += self.first * step / RENEWED
 
     def update(self, row: Array, value: float, noise: float) -> None:
-        """With a probed value of what the law misses."""
-        h = np.append(row, 1.0)
+        """With a probed value of what the law misses, and its variance."""
+        h = np.append(row, self._ends)
         across = self.covariance @ h
         gain = across / (h @ across + noise)
         self.mean += gain * (value - h @ self.mean)
@@ -115,5 +119,5 @@ class _Filter:
 
     def at(self, row: Array) -> tuple[float, float]:
         """What the law misses now, and its variance."""
-        h = np.append(row, 1.0)
+        h = np.append(row, self._ends)
         return float(h @ self.mean), float(h @ self.covariance @ h)

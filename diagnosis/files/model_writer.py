@@ -167,8 +167,9 @@ def _machine(chain: Chain) -> dict[str, Any]:
             "point": [float(v) for v in link.point],
             "direction": [float(v) for v in link.direction],
         }
-        if link.pitch is not None:
-            axes[link.name]["pitch"] = link.pitch
+        for key, value in (("pitch", link.pitch), ("expected", link.expected)):
+            if value is not None:
+                axes[link.name][key] = value
     origin = [float(v) for v in chain.table_origin]
     return {
         "name": chain.name,

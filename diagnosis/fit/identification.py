@@ -26,7 +26,7 @@ from diagnosis.regression import (
     whitener,
 )
 from twin.display import Shown
-from twin.effects import SetupError, setup_errors
+from twin.effects import Free, setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Effect, Model, Parameter, columns
@@ -55,7 +55,7 @@ class Fit(Shown):
     Parameters stand in the order: effects of the model, set-ups, tangents of inner parameters.
 
     Attributes:
-        setups: The free set-ups of the standard.
+        setups: The free set-ups of the standard, and every further stylus.
         tangents: Displacements of inner parameters that were left free.
         prior: Of all parameters, as it was used.
         X: Columns of all rows times the root of the prior over the noise, (N, P).
@@ -71,7 +71,7 @@ class Fit(Shown):
 
     run: Run
     model: Model
-    setups: tuple[SetupError, ...]
+    setups: tuple[Free, ...]
     tangents: tuple[Tangent, ...]
     prior: Prior
     X: Array
@@ -135,10 +135,8 @@ class Fit(Shown):
 
     @cached_property
     def unseen_setups(self) -> tuple[tuple[NDArray[np.int64], slice], ...]:
-        """Rows and parameters of every set-up of which no touch was used."""
-        setup = self.run.touches.setup
-        numbers = {s.name: i for i, s in enumerate(self.run.touches.setups)}
-        rows = [(np.flatnonzero(setup == numbers[s.setup]), s.name) for s in self.setups]
+        """Rows and parameters of every set-up, or further stylus, of which no touch was used."""
+        rows = [(np.flatnonzero(s.here(self.run.touches)), s.name) for s in self.setups]
         return tuple((r, self.of_effect(name)) for r, name in rows if not self.used[r].any())
 
     @property

@@ -1,9 +1,11 @@
 """The machine of a serial arm as a run has it: lines of all joints in one gauge, to put to use.
 
 The lines of an arm's joints are known only together: one that is copied without the others is a
-displaced tracker or the zero of a neighbour. So all location errors of a fit become the places and
-directions of all lines at once. The zero of a joint, about its own line, turns everything that
-follows it; where the reflector sits after that is found anew by whoever imports the run.
+displaced tracker or the zero of a neighbour. So all location errors become the places and
+directions of all lines at once, fitted by themselves: beside errors of joints and effects, which a
+machine file cannot hold, a line takes a share that makes the arm worse without them. The zero of a
+joint, about its own line, turns everything that follows it; where the reflector sits after that is
+found anew by whoever imports the run.
 """
 
 from dataclasses import dataclass, replace
@@ -34,15 +36,17 @@ class FoundArm:
 
 
 def found_arm(fit: Fit) -> FoundArm | None:
-    """The arm that a fit has learnt; None where the machine is no arm, or nothing was learnt."""
+    """The arm by the rows of a fit; None where it is none, or where lines make nothing better."""
     chain = fit.model.chain
+    lines = tuple(e for _, e in geometric_effects(fit) if isinstance(e, LocationError))
+    if not chain.is_serial_arm or not lines:
+        return None
+    fit = fit_run(fit.run, Model(chain, lines), gross=fit.gross)
     sizes = {
         (e.symbol.link, e.symbol.component): (start, float(fit.theta[start]))
         for start, e in geometric_effects(fit)
         if isinstance(e, LocationError)
     }
-    if not chain.is_serial_arm or not sizes:
-        return None
     links, after = [], np.eye(4)  # what the zeros of the joints before do to everything behind
     for link in chain.links:
         if link.name in chain.arm_joints:
@@ -59,6 +63,8 @@ def found_arm(fit: Fit) -> FoundArm | None:
     alone = Model(chain, ())
     found = fit_run(replace(fit.run, deviation=fit.run.deviation - moved), alone, gross=fit.gross)
     before = fit_run(fit.run, alone, gross=fit.gross)
+    if found.rms >= before.rms:
+        return None
     return FoundArm(replace(chain, links=tuple(links)), before.rms, found.rms)
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from diagnosis.fit import Fit, Prior, fit_run
 from diagnosis.geometry.changes import changed_since, of_first, since_first_run, standing, state
+from diagnosis.geometry.expected import expected_size
 from diagnosis.geometry.functionals import functionals
 from diagnosis.geometry.quantities import Functional, Quantity
 from twin.frames import Array
@@ -268,7 +269,7 @@ def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | Non
         unit=one.unit,
         estimate=values[-1],
         lever=one.lever,
-        expected=_expected(fit, one.weights),
+        expected=expected_size(fit, one.weights),
         is_determined=is_known[-1],
         shared_with=() if is_known[-1] else _shared_with(fit, every[-1]),
         before=earlier,
@@ -276,12 +277,6 @@ def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | Non
         course=course if steps else (),
         steps=tuple(steps),
     )
-
-
-def _expected(fit: Fit, weights: Array) -> float:
-    """Standard deviation before the run, as the class of the machine has it."""
-    root = fit.prior.root[: len(weights), : len(weights)]
-    return float(np.linalg.norm((weights / fit.prior.factor[: len(weights)]) @ root)) / fit.widened
 
 
 def _of(fit: Fit, weights: Array) -> Estimate:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import gammainc, ndtri
 
 from diagnosis.regression.linear import BoolArray, Solution, solve
 from twin.frames import Array
@@ -13,10 +13,26 @@ CHANCE = 1e-3
 """Probability that a run without gross errors is said to have one."""
 
 MOST = 0.05
-"""Largest share of touches that may be gross errors; more of them are structure, not accidents."""
+"""Share of touches up to which what stands out is an accident by itself; more must look like it."""
+
+LARGEST = 0.2
+"""Largest share of touches that may be gross errors: of more a median is no longer free."""
+
+UNEVEN = 0.2
+"""Coefficient of variation from which sizes, or gaps, are those of accidents: one shift of many
+touches, or of every tenth, has a cause. Sizes beyond a limit have 0.4 and more, gaps nearly 1."""
+
+ALIKE = 7
+"""So many shots have sizes and gaps that can be called even: of four it happens by chance."""
+
+APART = 1.25
+"""Median of the scores of many accidents over the limit; a tail of wide noise has 1.1 to 1.2."""
+
+TOGETHER = 1e-2
+"""Probability of so many neighbours among accidents, below which they are a crowd."""
 
 CROWD = 3
-"""Of a touch's four neighbours in the run, so many also apart make it part of a crowd, which has a
+"""Of a shot's four neighbours in the run, so many also apart make it part of a crowd, which has a
 cause of its own and is not a row of accidents."""
 
 BY_HALVES = 0.5
@@ -39,7 +55,8 @@ class GrossErrors:
         size: Left-out prediction error of every touch, (N,), in units of the stated noise.
         score: The same in units of its standard deviation, (N,).
         limit: Score above which a touch is a gross error.
-        too_many: Whether more than `MOST` of the touches stood out, so that none was taken out.
+        too_many: Whether more stood out than accidents can explain, so that none was taken out.
+        standing: Those that stood out then, (N,); None where none did.
     """
 
     rows: BoolArray
@@ -47,6 +64,12 @@ class GrossErrors:
     score: Array
     limit: float
     too_many: bool = False
+    standing: BoolArray | None = None
+
+    @property
+    def are_many(self) -> bool:
+        """Whether more than usual were taken out: the error with all of them is worth telling."""
+        return float(self.rows.sum()) > MOST * len(self.rows)
 
 
 def robust_scale(values: Array) -> float:
@@ -100,6 +123,7 @@ def find_gross(
     Returns:
         The fit to the used rows, in their order, and the gross errors of all rows.
     """
+    shot = np.arange(len(y)) if shot is None else shot
     n = int(allowed.sum())
     limit = float(-ndtri(0.5 * CHANCE / max(n, 1)))
     used = allowed.copy()
@@ -115,28 +139,54 @@ def find_gross(
         inside = np.abs(score[used])
         bar = max(limit, BY_HALVES * float(inside.max(initial=0.0)))
         far = np.abs(score) > np.where(used, bar, limit)
-        wanted = allowed & ~_whole(_alone(far), shot)
+        wanted = allowed & ~_alone(far, shot)
         if (wanted == used).all():
             break
-        if n - int(wanted.sum()) > MOST * n:
-            fit = solve(X[allowed], y[allowed])
-            nothing = np.zeros(len(y), dtype=bool)
-            return fit, GrossErrors(
-                rows=nothing, size=error, score=score, limit=limit, too_many=True
-            )
         used = wanted
+        if n - int(wanted.sum()) > LARGEST * n:
+            break
         fit = solve(X[used], y[used])
-    return fit, GrossErrors(rows=allowed & ~used, size=error, score=score, limit=limit)
+    out = allowed & ~used
+    if out.sum() <= MOST * n or _are_accidents(out, allowed, score / limit, shot):
+        return fit, GrossErrors(rows=out, size=error, score=score, limit=limit)
+    nothing = np.zeros(len(y), dtype=bool)
+    kept = GrossErrors(
+        rows=nothing, size=error, score=score, limit=limit, too_many=True, standing=out
+    )
+    return solve(X[allowed], y[allowed]), kept
 
 
-def _whole(rows: BoolArray, shot: IntArray | None) -> BoolArray:
-    """Those rows, and the others of their shots."""
-    return rows if shot is None else np.isin(shot, shot[rows])
+def _are_accidents(out: BoolArray, allowed: BoolArray, score: Array, shot: IntArray) -> bool:
+    """Whether many touches that stand out look like accidents.
+
+    They are far from the rest, differ in size, come at uneven gaps, and are not together.
+
+    Args:
+        score: In units of the limit, (N,).
+    """
+    every, place = np.unique(shot[allowed], return_inverse=True)
+    size = np.zeros(len(every))
+    np.maximum.at(size, place, np.abs(score[allowed]))
+    bad = np.flatnonzero(np.isin(every, shot[out]))
+    n, g = len(every), len(bad)
+    if g > LARGEST * n or np.median(size[bad]) < APART:
+        return False
+    gaps = np.diff(bad)
+    pairs, mean = int((gaps == 1).sum()), g * (g - 1) / n
+    is_crowd = pairs > 0 and float(gammainc(pairs, mean)) < TOGETHER
+    if is_crowd or g < ALIKE:
+        return not is_crowd
+    return all(float(np.std(v, ddof=1)) > UNEVEN * float(np.mean(v)) for v in (size[bad], gaps))
 
 
-def _alone(far: BoolArray) -> BoolArray:
-    """Those far rows that are not in a crowd of far rows; the run is in the order of probing."""
-    padded = np.pad(far, 2).astype(int)
-    n = len(far)
+def _alone(far: BoolArray, shot: IntArray) -> BoolArray:
+    """Rows of those shots with a far row that are in no crowd of such; the run is in the order of
+    probing.
+    """  # noqa: D205
+    every, place = np.unique(shot, return_inverse=True)
+    is_far = np.zeros(len(every), dtype=bool)
+    is_far[place[far]] = True
+    padded = np.pad(is_far, 2).astype(int)
+    n = len(every)
     crowd = padded[0:n] + padded[1 : n + 1] + padded[3 : n + 3] + padded[4 : n + 4]
-    return np.asarray(far & (crowd < CROWD))
+    return np.asarray((is_far & (crowd < CROWD))[place])

@@ -3,11 +3,11 @@
 Records carry the numbers; the sentences are made in `report`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.fit import MIN_POSES, Fit, UnitMistake, unit_mistake
+from diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
 from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from twin.elastic import short_beams
 
@@ -23,6 +23,9 @@ they do not feel it: a rotary axis that stands still."""
 
 LOADED = ("stiffness", "tool-point-stiffness")
 """Kinds of effects of which a touch tells nothing but by its load."""
+
+STANDS = 1e-3
+"""Range of readings (rad) below which a joint of an arm stood still: a jitter tells nothing."""
 
 FEWEST_REPLICATES = 10
 """Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
@@ -66,6 +69,13 @@ class FewPoses:
 
 
 @dataclass(frozen=True, slots=True)
+class JointsStood:
+    """Joints of a serial arm that stood still in all poses."""
+
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class WorseThanReplicates:
     """Residuals over the scatter of replicates, with the replicates' degrees of freedom."""
 
@@ -99,6 +109,24 @@ class OutliersLeftOut:
     lines: tuple[int, ...]
     largest: float
     runs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ManyStoodOut:
+    """So many touches stood out that the error is told both ways.
+
+    Attributes:
+        touches: That stood out, of `of`.
+        left_out: Whether they were left out.
+        without: Error of held-out touches with them left out, mm.
+        whole: With all touches in the fit, and judged, mm.
+    """
+
+    touches: int
+    of: int
+    left_out: bool
+    without: float
+    whole: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,10 +236,12 @@ Remark = (
     | FewDegreesOfFreedom
     | HeldOutInDoubt
     | FewPoses
+    | JointsStood
     | WorseThanReplicates
     | NoiseMisstated
     | OutliersKept
     | OutliersLeftOut
+    | ManyStoodOut
     | PriorWidened
     | SearchEnded
     | NotSignificant
@@ -253,6 +283,10 @@ def _touches(fit: Fit) -> list[Remark]:
     if poses < MIN_POSES:
         turns = bool(t.chain.rotary_axes) and not t.instrument.reads_angle
         out.append(FewPoses(poses, turns))
+    joints = t.chain.arm_joints if t.chain.is_serial_arm else ()
+    stood = tuple(j for j in joints if np.ptp(t.reading(j)[fit.used]) < STANDS)
+    if stood:
+        out.append(JointsStood(stood))
     return out
 
 
@@ -310,8 +344,9 @@ def _noise(fit: Fit) -> list[Remark]:
 def _outliers(fit: Fit) -> list[Remark]:
     """Touches that were left out, or should have been if they were not so many."""
     gross = fit.gross
+    both = _both_ways(fit)
     if gross.too_many:
-        return [OutliersKept()]
+        return [OutliersKept(), *both]
     rows = np.flatnonzero(gross.rows)
     if len(rows) == 0:
         return []
@@ -319,4 +354,24 @@ def _outliers(fit: Fit) -> list[Remark]:
     largest = float(fit.residual[rows[np.argmax(np.abs(fit.residual[rows]))]])
     t = fit.run.touches
     of = tuple(t.runs[k] for k in t.run[rows]) if len(t.runs) > 1 else ()
-    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest, of)]
+    return [OutliersLeftOut(tuple(int(line) for line in fit.run.line[rows]), largest, of), *both]
+
+
+def _both_ways(fit: Fit) -> list[Remark]:
+    """The error without the touches that stand out, and with them, where they are many."""
+    gross = fit.gross
+    out = gross.standing if gross.too_many else gross.rows
+    if out is None or not (gross.too_many or gross.are_many):
+        return []
+    other = replace(gross, rows=out & gross.too_many, too_many=False)
+    beside = fit_run(fit.run, fit.model, gross=other, memory=fit.memory)
+    without, whole = (beside, fit) if gross.too_many else (fit, beside)
+    return [
+        ManyStoodOut(
+            touches=int(out.sum()),
+            of=len(out),
+            left_out=not gross.too_many,
+            without=without.test_rms,
+            whole=whole.test_rms,
+        )
+    ]

@@ -23,19 +23,21 @@ from diagnosis.fit import fit_run
 from matstd.stages.budgets import virtual_budgets
 from matstd.stages.from_project import (
     blank,
+    clampings,
     dialect,
+    dialects,
     feeds,
     placement_options,
     plan_options,
-    probe,
     probe_reach,
+    probes,
 )
 from matstd.stages.reach import check_reach, check_space
 from matstd.stages.streams import streams
 from matstd.stages.study_run import study_and_maps
 from probe_paths.campaign import Campaign, VirtualMachine, simulate
-from probe_paths.emit import make_programs
-from probe_paths.plan import TouchPlan, plan_touches
+from probe_paths.plan import TouchPlan
+from probe_paths.stations import all_programs, make_stations, plan_campaign
 from report.drawing import Issuer, write_drawing
 from report.identifiability import write_identifiability, write_identification
 from report.pages import Design, Proven
@@ -71,7 +73,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
     placement = _placement(project, workspace, rng.placement, progress, poses)
-    plan = _plan(project, placement)
+    plans = _plans(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
     write_whole(folder / "cmm.dmi", dmis_program(placement.standard), newline="\r\n")
     with ThreadPoolExecutor(1) as beside:  # the kernel works in processes of its own
@@ -88,8 +90,8 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         conformity = cad.result()
     _draw(project, placement.standard, conformity, folder)
     progress("probing programs", 0, 1)
-    programs = make_programs(plan, dialect(project), feeds(project))
-    paths = programs.write(folder / "programs")
+    stations = make_stations(plans, dialects(project), feeds(project))
+    paths = all_programs(stations).write(folder / "programs")
     machines = []
     for seed in range(project.machines):
         progress("proof on the twin", seed, project.machines)
@@ -114,8 +116,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         placement=placement,
         conformity=conformity,
         making=making,
-        plan=plan,
-        programs=programs,
+        stations=stations,
         machines=tuple(machines),
         known=known,
         effective=found.effective,
@@ -160,13 +161,13 @@ def _placement(
     return placement
 
 
-def _plan(project: Project, placement: Placement) -> TouchPlan:
-    """Touches that the placement wants, in the order of a cautious operator."""
-    return plan_touches(
+def _plans(project: Project, placement: Placement) -> list[tuple[int, TouchPlan]]:
+    """Touches that the placement wants, in the order of a cautious operator, by probe."""
+    return plan_campaign(
         placement.standard,
         project.chain,
-        probe(project),
-        project.setup,
+        probes(project),
+        clampings(project),
         placement.touches,
         plan_options(project),
     )

@@ -5,14 +5,15 @@ from dataclasses import replace
 import numpy as np
 
 from artefact.body import Base, Limits, Material
-from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, BodyTable, Project
+from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, BodyTable, ProbeTable, Project
 from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
 from artefact.reach import ProbeReach, Solid, Workshop, covering_solids, round_table, still_frames
 from artefact.worth import Calibration, CriterionOptions, TouchOptions
-from probe_paths.emit import Feeds
-from probe_paths.language import Dialect, read_dialect
+from probe_paths.emit import SEARCH, Feeds
+from probe_paths.language import Dialect, checked_name, read_dialect
 from probe_paths.plan import PlanOptions, Probe
+from probe_paths.stations import Clamping, with_tool
 from twin.errors import BadFile
 from twin.frames import pose, rotation
 from twin.units import DEG, KG_M3, UM, URAD
@@ -31,18 +32,38 @@ the plan of every move."""
 
 
 def probe(project: Project) -> Probe:
-    """The probe in the spindle."""
-    stated = project.probe
+    """The probe that the standard is designed for."""
+    return _probe(project.probe)
+
+
+def probes(project: Project) -> list[Probe]:
+    """That probe, then those that make what it does not reach."""
+    return [probe(project), *map(_probe, project.further_probes)]
+
+
+def _probe(stated: ProbeTable) -> Probe:
+    assert stated.radius_mm is not None
+    assert stated.length_mm is not None
     return Probe(
-        radius=project.probe_radius,
-        length=project.probe_length,
+        radius=stated.radius_mm,
+        length=stated.length_mm,
         stack=tuple((end, 0.5 * diameter) for end, diameter in stated.stack_mm or ()),
         nose_radius=0.5 * stated.nose_diameter_mm,
     )
 
 
-def workshop(project: Project) -> Workshop:
+def clampings(project: Project) -> list[Clamping]:
+    """Where the standard is clamped, the first for the design, and what stands beside it there."""
+    setups = [project.setup, *project.further_setups]
+    return [Clamping(setup, workshop(project, setup.name)) for setup in setups]
+
+
+def workshop(project: Project, setup: str = "") -> Workshop:
     """What stands beside the standard; bodies that are drawn elsewhere are covered by boxes.
+
+    Args:
+        project: What is wanted.
+        setup: Name of a set-up; empty for the first.
 
     Raises:
         BadFile: A mesh that cannot be read.
@@ -60,7 +81,9 @@ def workshop(project: Project) -> Workshop:
             stated.height_mm - stated.thickness_mm,
             stated.height_mm,
         )
-    bodies = [solid for body in project.workshop.bodies for solid in _solids(project, body)]
+    here = ("", setup or project.setup.name)
+    stated_here = [body for body in project.workshop.bodies if body.setup in here]
+    bodies = [solid for body in stated_here for solid in _solids(project, body)]
     made = Workshop(table, tuple(bodies))
     still_frames(made.on, project.chain, np.zeros((1, len(project.chain.axes))))
     return made
@@ -93,7 +116,8 @@ def dialect(project: Project) -> Dialect:
     """Words of the control for which programs are written, and numbers of this workshop.
 
     Raises:
-        BadFile: A folder for a control that takes none.
+        BadFile: A folder for a control that takes none, planes of one that has none, or of a
+            machine that turns its tool.
     """
     stated = project.workshop
     words = read_dialect(project.control, project.path.parent)
@@ -101,7 +125,37 @@ def dialect(project: Project) -> Dialect:
         raise BadFile(project.path, "workshop.folder", stated.folder, "nothing for this control")
     keys = {"folder": "folder", "tool": "tool", "preset": "preset", "height_read": "result_height"}
     given = {keys[k]: getattr(stated, k) for k in keys if k in stated.model_fields_set}
-    return replace(words, **given)
+    return replace(words, is_tilted=_is_tilted(project, words), **given)
+
+
+def _is_tilted(project: Project, words: Dialect) -> bool:
+    """Whether programs use planes, which control and machine must be made for."""
+    asked = project.workshop.strategy
+    if asked != "plane-spatial":
+        return False
+    chain = project.chain
+    turns = [a for a in chain.rotary_axes if not chain.link(a).carries_workpiece]
+    for why in (
+        "a dialect with has_planes = true" if not words.has_planes else "",
+        f"axes on this machine, whose tool {turns[0]} turns" if turns else "",
+    ):
+        if why:
+            raise BadFile(project.path, "workshop.strategy", repr(asked), why)
+    return True
+
+
+def dialects(project: Project) -> list[Dialect]:
+    """The same for every probe.
+
+    Raises:
+        BadFile: As of `dialect`.
+        DesignError: Names of programs that no control takes.
+    """
+    first = dialect(project)
+    words = [first, *(with_tool(first, one.tool) for one in project.further_probes)]
+    for setup in project.further_setups:
+        checked_name(f"{words[-1].prefix}_{setup.name.upper()}_{SEARCH}")
+    return words
 
 
 def feeds(project: Project) -> Feeds:

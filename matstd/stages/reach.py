@@ -102,7 +102,8 @@ def check_reach(project: Project, folder: Path) -> Array:
         BadFile: A standard that stands in the table or hangs under it.
         NotReachable: Fewer places than a standard needs; which limit binds, the nearest wish.
     """
-    _check_standing(project)
+    for setup in (project.setup, *project.further_setups):
+        _check_standing(project, setup)
     wanted, rotary = probe_reach(project), _rotary(project)
     poses = poses_within(project.chain, rotary, placement_options(project).choice.poses)
     places, enough = places_on(blank(project)), _enough(project)
@@ -136,8 +137,8 @@ def check_reach(project: Project, folder: Path) -> Array:
     raise NotReachable(f"{project.path}: {against}; {nearest}")
 
 
-def _check_standing(project: Project) -> None:
-    setup, face = project.setup, workshop(project).table.high
+def _check_standing(project: Project, setup: Setup) -> None:
+    face = workshop(project).table.high
     key, T = f"setup.{setup.name}", setup.T_table_artefact
     above = seat_height(T, blank(project).base.half_size) - face
     if above < -_SUNK:

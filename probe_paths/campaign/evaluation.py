@@ -1,6 +1,7 @@
 """From logs to measurements: calibrated foot points, deviations, and where the standard stands."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -36,7 +37,9 @@ def evaluate(
     u: float,
     dialect: Dialect | None = None,
 ) -> Run:
-    """Measurements from the logs of one probe; remarks of the run tell what was left out.
+    """Measurements from logs of one or several probes; the run's remarks tell what was left out.
+
+    Every touch has the length and radius that its own probe was calibrated with.
 
     The ball centre that a nominal machine would have is taken into the frame of the standard. The
     set-up is fitted first (six parameters each, Gauss-Newton on the deviations, foot points anew
@@ -52,21 +55,21 @@ def evaluate(
         u: Standard uncertainty of one touch, mm; that of the calibrated surface comes to it.
 
     Raises:
-        BadFile: Many touches far from the features they are said to be on; logs of two probes, of
-            another standard or serial number, or two versions of one log.
+        BadFile: Many touches far from the features they are said to be on; a probe with two
+            calibrations, logs of another standard or serial number, or two versions of one log.
         NotEnoughData: No touch at all.
     """
     measured = [part for part in parts if part.is_measuring]
     parts, remarks = checked_parts(distinct_parts(measured), standard)
     if not sum(len(part.number) for part in parts):
         raise NotEnoughData("the logs hold no touch")
-    probe = _probe(parts)
+    _check_calibrations(parts)
     dialect = dialect or Dialect()
-    touches, gap = _placed(parts, standard, chain, dialect, probe, is_fitted=False)
+    touches, gap = _placed(parts, standard, chain, dialect, is_fitted=False)
     good, far = _near(parts, gap, BESIDE)
     while True:
         parts, remarks = without_rows(parts, good), [*remarks, *far]
-        touches, gap = _placed(parts, standard, chain, dialect, probe, is_fitted=True)
+        touches, gap = _placed(parts, standard, chain, dialect, is_fitted=True)
         good, far = _near(parts, gap, ABSURD)
         if not far:
             break
@@ -88,11 +91,12 @@ def _placed(
     standard: Standard,
     chain: Chain,
     dialect: Dialect,
-    probe: tuple[float, float],
     is_fitted: bool,
 ) -> tuple[Touches, Array]:
     """Touches on the standard where it is believed to stand or fitted, and their gaps (N,), mm."""
-    radius, length = probe
+    count = [len(part.number) for part in parts]
+    radius = np.repeat([part.radius for part in parts], count)
+    length = np.repeat([part.tool_length - part.radius for part in parts], count)
     names = np.array(list(standard.features))
     q = np.concatenate([_readings(part, chain, dialect) for part in parts])
     feature = np.concatenate([names[part.feature - 1] for part in parts])
@@ -100,9 +104,10 @@ def _placed(
     ball_table = tip(chain, q, length)
     for i, believed in enumerate(setups if is_fitted else ()):
         rows = np.flatnonzero(setup == i)
-        setups[i] = _fitted(believed, standard, feature[rows], ball_table[rows], radius)
+        setups[i] = _fitted(believed, standard, feature[rows], ball_table[rows], radius[rows])
     point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius)
-    return _touches(parts, chain, q, probe, setups, setup, feature, point, normal), gap
+    made = _touches(parts, chain, q, setups, setup, feature, point, normal)
+    return replace(made, length=length, radius=radius), gap
 
 
 def _gaps(
@@ -111,7 +116,7 @@ def _gaps(
     setup: IntArray,
     feature: Labels,
     ball_table: Array,
-    radius: float,
+    radius: Array,
 ) -> tuple[Array, Array, Array]:
     """Foot points and normals in the artefact frame, and gaps between balls and surfaces, mm."""
     T_artefact_table = inverse(np.stack([s.T_table_artefact for s in setups])[setup])
@@ -120,17 +125,24 @@ def _gaps(
     return point, normal, np.einsum("ni,ni->n", normal, ball - point) - radius
 
 
-def _probe(parts: Sequence[LogPart]) -> tuple[float, float]:
-    """Radius and length to the ball centre, the same in all logs, mm."""
-    radius, tool_length = parts[0].radius, parts[0].tool_length
+def _check_calibrations(parts: Sequence[LogPart]) -> None:
+    """Refuse a probe that was calibrated anew between its programs."""
+    first: dict[tuple[str, float, float], LogPart] = {}
     for part in parts:
-        if abs(part.radius - radius) > NM or abs(part.tool_length - tool_length) > NM:
+        planned = part.heading.probe
+        known = first.setdefault((_family(part), planned.radius, planned.length), part)
+        radius, length = known.radius, known.tool_length
+        if abs(part.radius - radius) > NM or abs(part.tool_length - length) > NM:
             raise BadFile(
                 part.path, f"program {part.program}",
                 f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm",
-                f"{radius:g} and {tool_length:g} mm as in {parts[0].program}: one run file a probe",
+                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe",
             )  # fmt: skip
-    return radius, tool_length - radius
+
+
+def _family(part: LogPart) -> str:
+    """Name of a program without set-up and number: what all programs of one probe share."""
+    return part.program.rsplit("_", 2)[0]
 
 
 def ball_centres(part: LogPart, chain: Chain, dialect: Dialect | None = None) -> Array:
@@ -143,13 +155,17 @@ def _readings(part: LogPart, chain: Chain, dialect: Dialect) -> Array:
     """Axis readings (N, A) of a log's touches, from what cycle 4 returned."""
     frame = ProgramFrame(chain, Probe(part.radius, part.tool_length - part.radius))
     q = np.zeros((len(part.number), len(chain.axes)))
+    for letter, degrees in part.rotary.items():
+        q[:, chain.axis_index(letter)] = degrees * DEG
+    frames = [frame] * len(q)
+    if part.heading.is_tilted:
+        frames = [frame.tilted(rotary) for rotary in q[:, frame.rotary]]
     for i, letter in enumerate(LINEAR):
         word = part.xyz[:, i]
         if letter == "Z" and dialect.result_height == "gauge":
             word = word - part.tool_length
-        q[:, chain.axis_index(letter)] = [frame.reading(letter, float(v)) for v in word]
-    for letter, degrees in part.rotary.items():
-        q[:, chain.axis_index(letter)] = degrees * DEG
+        values = zip(frames, word.tolist(), strict=True)
+        q[:, chain.axis_index(letter)] = [f.reading(letter, v) for f, v in values]
     return q
 
 
@@ -170,7 +186,7 @@ def _setups(parts: Sequence[LogPart]) -> tuple[list[Setup], IntArray]:
 
 
 def _fitted(
-    setup: Setup, standard: Standard, feature: Labels, ball_table: Array, radius: float
+    setup: Setup, standard: Standard, feature: Labels, ball_table: Array, radius: Array
 ) -> Setup:
     """The set-up that makes the deviations smallest.
 
@@ -221,14 +237,16 @@ def _touches(
     parts: Sequence[LogPart],
     chain: Chain,
     q: Array,
-    probe: tuple[float, float],
     setups: list[Setup],
     setup: IntArray,
     feature: Labels,
     point: Array,
     normal: Array,
 ) -> Touches:
-    """The record of all touches; time counts from the start of the first program."""
+    """The record of all touches without their probes; time counts from the first program's start.
+
+    A pose that two probes visit counts as two: what they have in common is the reading alone.
+    """
     start = parts[0].begin
     T_table_artefact = np.stack([s.T_table_artefact for s in setups])[setup]
     normal_table = np.einsum("nij,nj->ni", T_table_artefact[:, :3, :3], normal)
@@ -236,12 +254,15 @@ def _touches(
     for letter in chain.rotary_axes:
         approach[:, chain.axis_index(letter)] = np.concatenate([p.side[letter] for p in parts])
     number = np.concatenate([part.pose for part in parts])
-    pose_label = np.unique(np.column_stack([setup, number]), axis=0, return_inverse=True)[1]
+    families = list(dict.fromkeys(map(_family, parts)))
+    family = np.repeat([families.index(_family(p)) for p in parts], [len(p.number) for p in parts])
+    visited = np.column_stack([setup, family, number])
+    pose_label = np.unique(visited, axis=0, return_inverse=True)[1]
     return Touches(
         chain=chain,
         q=q,
-        length=np.full(len(q), probe[1]),
-        radius=np.full(len(q), probe[0]),
+        length=np.zeros(len(q)),
+        radius=np.zeros(len(q)),
         point=point,
         normal=normal,
         setups=tuple(setups),

@@ -232,9 +232,15 @@ class _Control:
         """X, Y, Z and status of every touch as cycle 4 returns them, (N, 4)."""
         q = self.contacts.q
         out = np.empty((len(q), 4))
+        frames = [self.frame] * len(q)
+        if self.program.heading.is_tilted:
+            frames = [
+                self.frame.tilted(touch.q[self.frame.rotary]) for touch in self.program.touches
+            ]
         for i, letter in enumerate(LINEAR):
             column = self.frame.chain.axis_index(letter)
-            out[:, i] = [self.frame.coordinate(letter, v) for v in q[:, column]]
+            values = zip(frames, q[:, column], strict=True)
+            out[:, i] = [frame.coordinate(letter, v) for frame, v in values]
         if self.dialect.result_height == "gauge":
             out[:, 2] += self.frame.probe.tool_length
         out[:, STATUS] = np.where(self.contacts.is_contact, 0.0, -1.0)

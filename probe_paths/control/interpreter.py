@@ -103,13 +103,13 @@ def interpret(
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head.log_lines)
-    state = _begun(path, frame, stated)
+    state = _begun(path, frame, stated, head.is_tilted)
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
     for test in interlocks(language_of(path), frame, stated.is_first):
         for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
-            runner.run(0, replace(_begun(path, frame, stated), fault=test, off=off))
+            runner.run(0, replace(_begun(path, frame, stated, head.is_tilted), fault=test, off=off))
     for touch in steps:
         if not isinstance(touch, ProbeStep) or touch.is_air:
             continue
@@ -131,7 +131,7 @@ def interpret(
     )
 
 
-def _begun(path: Path, frame: ProgramFrame, stated: Promise) -> State:
+def _begun(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) -> State:
     """The control when a program is started: nobody knows where its axes stand."""
     axes = len(frame.chain.axes)
     return State(
@@ -141,6 +141,7 @@ def _begun(path: Path, frame: ProgramFrame, stated: Promise) -> State:
         np.zeros(axes),
         is_search=stated.is_search,
         is_first=stated.is_first,
+        is_tilted=is_tilted,
     )
 
 

@@ -58,7 +58,7 @@ def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
     letter, frame = places[datum], state.frame
     reading = float(np.nan_to_num(state.q[frame.chain.axis_index(letter)], nan=_ANYWHERE))
     if datum.startswith(_PRESET):
-        return frame.coordinate(letter, reading)
+        return (state.plane or frame).coordinate(letter, reading)
     return reading if letter in LINEAR else reading / DEG
 
 
@@ -101,7 +101,27 @@ def _shorter_way(block: Block, state: State) -> None:
 
 
 def _plane_off(block: Block, state: State) -> None:
-    state.is_plane_off = True
+    state.is_plane_off, state.plane = True, None
+
+
+def _plane(block: Block, state: State) -> None:
+    """A tilted plane: square to the tool, where the head says so, above everything."""
+    rotary = state.q[state.frame.rotary]
+    if not state.is_tilted:
+        raise state.refusal(block, repr(block.text), "a head that says FRAME SPATIAL")
+    if not state.is_retracted or not np.all(np.isfinite(rotary)):
+        retract = state.says.retract
+        raise state.refusal(block, repr(block.text), f"a retract ({retract}) and the turn before")
+    angles = np.array([block.number(a) for a in "abc"])
+    if not state.frame.is_plane(angles, rotary):
+        angles = state.frame.plane(rotary)
+        words = " ".join(f"SP{a}{v:+.4f}" for a, v in zip("ABC", angles, strict=True))
+        raise state.refusal(block, repr(block.text), f"{words}, square to the tool as it stands")
+    master = float(rotary[-1]) if len(rotary) else 0.0
+    stated = float(f"{block.words['which']}1") if block.words["which"] else 0.0
+    if stated != np.sign(round(master / DEG, 4)):
+        raise state.refusal(block, repr(block.text), "the solution that the axes stand at")
+    state.plane = state.frame.tilted(rotary)
 
 
 def _shift(block: Block, state: State) -> None:
@@ -162,6 +182,7 @@ _SETTERS = {
     Kind.SHORTER_WAY: _shorter_way,
     Kind.SHORTER_WAY_OFF: _shorter_way,
     Kind.PLANE_OFF: _plane_off,
+    Kind.PLANE: _plane,
     Kind.SHIFT: _shift,
     Kind.PRESET: _preset,
     Kind.TOOL_CALL: _tool_call,

@@ -65,9 +65,13 @@ def _target(state: State, block: Block, is_machine_datum: bool) -> tuple[Array, 
         if is_machine_datum and letter in LINEAR:
             target[column] = float(number)
         else:
-            target[column] = state.frame.reading(letter, float(number))
+            target[column] = (state.plane or state.frame).reading(letter, float(number))
     if not is_machine_datum:
         state.check_ready(block, repr(block.text))
+        if state.is_tilted and state.plane is None and not set(letters).isdisjoint(LINEAR):
+            raise state.refusal(
+                block, repr(block.text), "PLANE SPATIAL before it, as the head says"
+            )
     return target, letters
 
 
@@ -93,6 +97,8 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
         raise state.refusal(block, repr(block.text), "rotary axes in a block of their own")
     if not state.is_retracted:
         raise state.refusal(block, repr(block.text), f"a retract ({state.says.retract}) before it")
+    if state.plane is not None:
+        raise state.refusal(block, repr(block.text), f"{state.says.plane} before it")
     state.stale |= {Q.POSE, Q.SIDE_1, Q.SIDE_2}
     for letter in rotary:
         column = state.frame.chain.axis_index(letter)

@@ -34,6 +34,8 @@ class State:
         is_radius_off: R0 has been read.
         is_shorter_way: M126 is active.
         is_plane_off: PLANE RESET has been read.
+        is_tilted: The head says that coordinates are those of tilted planes.
+        plane: Of the plane that is active; None where none is.
         shift_off: Axes whose datum shift was set to zero.
         preset: Active row.
         tool: Called tool.
@@ -60,6 +62,8 @@ class State:
     is_radius_off: bool = False
     is_shorter_way: bool = False
     is_plane_off: bool = False
+    is_tilted: bool = False
+    plane: ProgramFrame | None = None
     shift_off: set[str] = field(default_factory=set)
     preset: int | None = None
     tool: int | None = None

@@ -31,6 +31,7 @@ from probe_paths.plan import (
     stated_serial,
     waypoints,
 )
+from twin.errors import DesignError
 from twin.frames import Array, apply
 from twin.record import IntArray
 from twin.units import DEG, MINUTE
@@ -99,6 +100,10 @@ class Writer:
         self.special = special
         self.raised = special.raised if special else None
         self.language = LANGUAGES[dialect.language]
+        tilted = dialect.is_tilted and not (special is not None and special.is_first)
+        self.tilting = self.language.TILTING if tilted and dialect.has_planes else None
+        if tilted and self.tilting is None:
+            raise DesignError("coordinates of tilted planes: the control has no PLANE SPATIAL")
         self.frame = ProgramFrame(plan.chain, plan.probe)
         self.rotary = plan.chain.rotary_axes
         self.tests = interlocks(self.language, self.frame)
@@ -110,6 +115,7 @@ class Writer:
             workshop=plan.options.workshop,
             serial=stated_serial(plan.standard.serial),
             calibration=calibration_hash(plan.standard),
+            is_tilted=self.tilting is not None,
         )
         top = plan.chain.link("Z").range[1]
         self.top = top - plan.options.retract
@@ -242,21 +248,38 @@ class Writer:
 
     def _turn(self, here: Array, visit: Visit) -> list[str]:
         """Retract, turn past the position, then to it from the stated side."""
-        k, out = self.language, [self.retract]
+        k, out = self.language, [self.retract, *self._flat()]
         if self.rotary:
             out += [k.turn(self._words(place)) for place in waypoints(here, visit.before)]
             out.append(k.line(self._words(visit.rotary), self.feeds.turning))
+        out += self._plane(visit)
         sides = zip((Q.SIDE_1, Q.SIDE_2), visit.side, strict=False)
         return [*out, k.assign(Q.POSE, visit.pose + 1), *(k.assign(q, s) for q, s in sides)]
+
+    def _flat(self) -> list[str]:
+        """End of a tilted plane, before the table turns."""
+        return [self.tilting.off] if self.tilting else []
+
+    def _plane(self, visit: Visit) -> list[str]:
+        """The plane square to the tool, where coordinates are those of planes."""
+        if self.tilting is None:
+            return []
+        master = float(visit.rotary[-1]) / DEG if self.rotary else 0.0
+        return [self.tilting.on(list(self.frame.plane(visit.rotary)), master)]
+
+    def _frame(self, visit: Visit) -> ProgramFrame:
+        """Coordinates of a visit."""
+        return self.frame.tilted(visit.rotary) if self.tilting else self.frame
 
     def _touches(self, visit: Visit, rows: IntArray) -> list[str]:
         """All touches of a visit, each from the clearance height and back to it."""
         k, options, feeds = self.language, self.plan.options, self.feeds
         if self.raised is not None:
             return self._dry(visit, rows)
-        up, out = k.line({"Z": self.frame.coordinate("Z", visit.height)}, None), []
+        frame = self._frame(visit)
+        up, out = k.line({"Z": frame.coordinate("Z", visit.height)}, None), []
         for count, row in enumerate(rows):
-            start = self.frame.coordinates(self.plan.start[row], LINEAR)
+            start = frame.coordinates(self.plan.start[row], LINEAR)
             feature = str(self.plan.feature[row])
             anchor = " (ANCHOR)" if self.plan.request[row] < 0 else ""
             direction = list(self.plan.direction[row])
@@ -280,16 +303,16 @@ class Writer:
         """The same places, higher, without a touch."""
         assert self.raised is not None
         k, z = self.language, self.plan.chain.axis_index("Z")
-        high = min(visit.height + self.raised, self.top)
-        up, out = k.line({"Z": self.frame.coordinate("Z", high)}, None), []
+        high, frame = min(visit.height + self.raised, self.top), self._frame(visit)
+        up, out = k.line({"Z": frame.coordinate("Z", high)}, None), []
         for count, row in enumerate(rows):
-            start = self.frame.coordinates(self.plan.start[row], "XY")
+            start = frame.coordinates(self.plan.start[row], "XY")
             low = min(float(self.plan.start[row, z]) + self.raised, high)
             out += [
                 k.comment(f"PLACE OF TOUCH {row + 1} ON {self.plan.feature[row]}"),
                 k.line(start, None),
                 *([up] if count == 0 else []),
-                k.line({"Z": self.frame.coordinate("Z", low)}, self.feeds.approach),
+                k.line({"Z": frame.coordinate("Z", low)}, self.feeds.approach),
                 up,
             ]
         return out
@@ -298,7 +321,7 @@ class Writer:
         k, printed = self.language, self._print(f"{SharedMask.END}.A", name)
         logged = [k.WAIT, printed] if self.raised is None else []
         end = [k.structure("END"), self.retract, *logged]
-        return [*end, *self._home(), k.PROGRAM_STOP]
+        return [*end, *self._flat(), *self._home(), k.PROGRAM_STOP]
 
     def _subprograms(self, name: str) -> list[str]:
         """Look at the status and log; retract and stop where there was no contact."""

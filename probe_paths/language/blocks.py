@@ -33,6 +33,10 @@ class Kind(Enum):
     SHORTER_WAY = r"M126"
     SHORTER_WAY_OFF = r"M127"
     PLANE_OFF = r"PLANE RESET STAY"
+    PLANE = (
+        rf"PLANE SPATIAL SPA(?P<a>{_NUM}) SPB(?P<b>{_NUM}) SPC(?P<c>{_NUM}) STAY"
+        r" (?:SEQ(?P<which>[+-])|TABLE ROT)"
+    )
     SHIFT_NAME = r"CYCL DEF 7\.0 DATUM SHIFT"
     SHIFT = rf"CYCL DEF 7\.(?P<index>[123]) (?P<axis>[XYZ])(?P<value>{_NUM})"
     PRESET = r"CYCL DEF 247 DATUM SETTING ~ Q339 ?= ?(?P<row>[+]\d+)(?: ;.*)?"
@@ -71,7 +75,11 @@ _PATTERNS = {kind: re.compile(kind.value + r"\Z") for kind in Kind}
 _REMARK_KINDS = (Kind.COMMENT, Kind.STRUCTURE, Kind.PRESET)
 
 _KNOWN_OTHERS = (
-    (r"PLANE ", "PLANE RESET STAY: our programs swivel by L blocks with readings of their own"),
+    (
+        r"PLANE ",
+        "PLANE RESET STAY, or PLANE SPATIAL SPA<signed> SPB<signed> SPC<signed> STAY "
+        "SEQ+|SEQ-|TABLE ROT: our programs turn by L blocks with readings of their own",
+    ),
     (r"M0?[34]\b|M1[34]\b", "no spindle start: there is a probe in the spindle"),
     (r"TCH PROBE 4\.0", f"TCH PROBE 4.0 and one of {', '.join(CYCLE_NAMES)}"),
     (r"TCH PROBE 4\.1", "TCH PROBE 4.1 Q<first result>"),

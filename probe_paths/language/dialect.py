@@ -114,6 +114,8 @@ class Dialect:
         log_decimals: Of coordinates in the log.
         slow_feed: Of the second touch, mm/min, where the control measures by a second, slow one.
         step_back: From the surface before the second touch, mm.
+        has_planes: The control has PLANE SPATIAL.
+        is_tilted: Programs use it: coordinates are those of planes tilted with the table.
     """
 
     language: Literal["klartext", "gcode"] = "klartext"
@@ -127,6 +129,8 @@ class Dialect:
     log_decimals: int = 6
     slow_feed: float = 0.0
     step_back: float = 0.0
+    has_planes: bool = True
+    is_tilted: bool = False
 
     def on_control(self, name: str) -> str:
         """Full name of a file on the control."""

@@ -29,6 +29,7 @@ class DialectTable(Table):
     log_decimals: int = Field(default=6, ge=4, le=6)
     slow_feed: float = Field(default=0.0, ge=0.0, le=100.0)
     step_back: float = Field(default=0.0, ge=0.0, le=2.0)
+    has_planes: bool = False
 
 
 def known_controls() -> list[str]:

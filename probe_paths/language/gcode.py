@@ -12,7 +12,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from probe_paths.language.dialect import TOOL_LENGTH, Dialect, Label, Q
-from probe_paths.language.language import Datum, Says, Touch
+from probe_paths.language.language import Datum, Says, Tilting, Touch
 from probe_paths.language.masks import LogForm, MaskLine
 from probe_paths.language.text import axis_words, checked_line, checked_name, parameter, signed
 
@@ -27,6 +27,7 @@ SUBPROGRAMS_FIRST = True
 MODES = "G17 G21 G40 G49 G80 G90 G94"
 """Plane, millimetres, no radius and length compensation, no cycle, absolute, feed a minute."""
 
+TILTING: Tilting | None = None
 RESET: Sequence[str] = (MODES, "G61", "G92.1")
 UNWIND: Sequence[str] = ()
 WAIT = "M66 E0 L0"

@@ -8,7 +8,7 @@ resolution the control takes, so that what is planned, printed and read back is 
 from collections.abc import Mapping, Sequence
 
 from probe_paths.language.dialect import TOOL_LENGTH, Dialect
-from probe_paths.language.language import Datum, Says, Touch
+from probe_paths.language.language import Datum, Says, Tilting, Touch
 from probe_paths.language.masks import LogForm, MaskLine
 from probe_paths.language.text import axis_words, checked_line, checked_name, parameter, signed
 from twin.errors import DesignError
@@ -67,6 +67,20 @@ def turn(position: Mapping[str, float]) -> str:
 def retract(z: float) -> str:
     """Z to a reading of the machine, where rotary axes may turn."""
     return line({"Z": z}, words="M91")
+
+
+def plane(angles: Sequence[float], master: float) -> str:
+    """PLANE SPATIAL: coordinates of a plane square to the tool; nothing moves.
+
+    Args:
+        angles: Spatial angles, degrees.
+        master: Reading of the rotary axis nearest the foundation; its sign tells the two solutions
+            apart. At zero there is one, and the table, not the coordinates, is what has turned.
+    """
+    words = " ".join(f"SP{a}{signed(v)}" for a, v in zip("ABC", angles, strict=True))
+    is_free = signed(master) == signed(0.0)
+    which = "TABLE ROT" if is_free else "SEQ+" if master > 0.0 else "SEQ-"
+    return f"PLANE SPATIAL {words} STAY {which}"
 
 
 def retract_max(z: float) -> str:
@@ -187,6 +201,7 @@ PROGRAM_STOP = "M30"
 
 
 RESET: Sequence[str] = (SPINDLE_OFF, TCPM_OFF, PLANE_OFF, *datum_shift_off())
+TILTING: Tilting | None = Tilting(plane, PLANE_OFF)
 UNWIND: Sequence[str] = (SHORTER_WAY_OFF,)
 
 _CLOCK = ("T%3d:%3d:%3d", ("HOUR", "MIN", "SEC"))

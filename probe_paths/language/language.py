@@ -5,7 +5,7 @@ A language is a module with these names. Its reader makes the same `Block`s of i
 language it is, so that interpreter, collision check and twin know one list and no control.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple, Protocol
@@ -55,6 +55,19 @@ class Touch(NamedTuple):
     distance: float
     feed: float
     back: float
+
+
+class Tilting(NamedTuple):
+    """Planes square to the tool.
+
+    Attributes:
+        on: Block that begins one, of its spatial angles (degrees) and the reading of the rotary
+            axis nearest the foundation.
+        off: Block that ends it.
+    """
+
+    on: Callable[[Sequence[float], float], str]
+    off: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,6 +120,7 @@ class Language(Protocol):
     SYSTEM: Mapping[Datum, str]
     RESET: Sequence[str]
     UNWIND: Sequence[str]
+    TILTING: Tilting | None
     WAIT: str
     LABEL_END: str
     OPERATOR_STOP: str

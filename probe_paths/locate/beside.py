@@ -52,6 +52,7 @@ def companions(
     feeds: Feeds,
     raised: float = RAISED,
     spread: Spread | None = None,
+    is_further: bool = False,
 ) -> Companions:
     """Dry run, search, ball and commissioning program of a plan.
 
@@ -62,6 +63,7 @@ def companions(
         raised: By how much the dry run is raised, mm.
         spread: Within which the search finds the standard; None for the widest of `SPREADS` for
             which there is a search.
+        is_further: Of a probe after which the first one has searched and tried the control.
     """
     made = Companions(
         dry_run=make_dry_run(plan, raised, dialect, feeds), raised=raised, spread=SPREADS[-1]
@@ -69,10 +71,12 @@ def companions(
     try:
         ball = plan_ball(plan)
         made = replace(made, ball=make_ball(ball, dialect, feeds))
-        if dialect.language == "klartext":
+        if dialect.language == "klartext" and not is_further:
             made = replace(made, first=make_first(ball, dialect, feeds))
     except NotReachable as error:
         made = replace(made, no_ball=str(error))
+    if is_further:
+        return replace(made, no_search="the first probe of this set-up has found it")
     for chosen in SPREADS if spread is None else (spread,):
         try:
             search = plan_search(

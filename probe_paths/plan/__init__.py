@@ -26,7 +26,7 @@ from probe_paths.plan.order import (
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.strokes import Stage, stroke_gaps
-from probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
+from probe_paths.plan.touch_plan import PlanOptions, Refusal, TouchPlan, requests_at
 
 __all__ = [
     "LINEAR",
@@ -35,6 +35,7 @@ __all__ = [
     "PlanOptions",
     "Probe",
     "ProgramFrame",
+    "Refusal",
     "Stage",
     "ToolClearance",
     "TouchPlan",

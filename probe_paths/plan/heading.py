@@ -27,7 +27,8 @@ _NUMBER = r"([+-]\d+\.\d+)"
 _ORIGIN = re.compile(rf"ORIGIN X{_NUMBER} Y{_NUMBER} Z{_NUMBER}")
 _TURNED = re.compile(rf"TURNED A{_NUMBER} B{_NUMBER} C{_NUMBER}")
 _PROBE = re.compile(rf"PROBE RADIUS {_NUMBER} LENGTH TO BALL CENTRE {_NUMBER}")
-_STATED = re.compile(r"(SERIAL|CALIBRATION|WORKSHOP) ([A-Za-z0-9_.+-]{1,24})")
+_STATED = re.compile(r"(SERIAL|CALIBRATION|WORKSHOP|FRAME) ([A-Za-z0-9_.+-]{1,24})")
+_TILTED = "SPATIAL"
 _STACK = re.compile(rf"STACK TO{_NUMBER} R{_NUMBER}")
 _NOSE = re.compile(rf"NOSE R{_NUMBER}")
 _SOLID = re.compile(rf"BODY (\S+) (BOX|DISC) A{_NUMBER} B{_NUMBER} Z{_NUMBER} TO{_NUMBER}")
@@ -49,6 +50,7 @@ class Heading:
         calibration: Hash of the faces and places of the standard; empty in logs of earlier
             programs.
         stated: Hash of probe and workshop; likewise.
+        is_tilted: Coordinates are those of planes that are tilted with the table.
     """
 
     standard: str
@@ -58,6 +60,7 @@ class Heading:
     serial: str = ""
     calibration: str = ""
     stated: str = ""
+    is_tilted: bool = False
 
     @property
     def log_lines(self) -> list[str]:
@@ -74,6 +77,7 @@ class Heading:
             "SERIAL": self.serial,
             "CALIBRATION": self.calibration,
             "WORKSHOP": self.workshop_hash,
+            "FRAME": _TILTED if self.is_tilted else "",
         }
         return [
             f"STANDARD {self.standard} SETUP {self.setup.name}",
@@ -189,6 +193,8 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
     for _, text in lines[4:]:
         if match := _STATED.fullmatch(text.strip()):
             stated[match[1]] = match[2]
+            if match[1] == "FRAME" and match[2] != _TILTED:
+                raise BadFile(path, f"line {lines[count][0]}", repr(text), f"FRAME {_TILTED}")
         elif not _EARLIER.fullmatch(text.strip()):
             break
         count += 1
@@ -199,6 +205,7 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
         serial=stated.get("SERIAL", ""),
         calibration=stated.get("CALIBRATION", ""),
         stated=stated.get("WORKSHOP", ""),
+        is_tilted="FRAME" in stated,
     )
     if len(lines) == count or not lines[count][1].startswith("STACK "):
         return head, count

@@ -14,6 +14,7 @@ from diagnosis.task import TaskUncertainty, Visits
 from probe_paths.campaign import Campaign
 from probe_paths.emit import ProgramSet
 from probe_paths.plan import TouchPlan
+from probe_paths.stations import Station, all_programs
 from sensitivity.study import Study
 from twin.frames import Array
 from twin.model import Effect
@@ -51,8 +52,7 @@ class Design:
         placement: Standard and touches.
         conformity: CAD files, measured after they were written.
         making: Reach of cutters, first mode, sag.
-        plan: Touches in their order.
-        programs: Text that makes them.
+        stations: Touches in their order and the programs that make them, by clamping and probe.
         machines: Random machines, probed and identified.
         known: What the touches can and cannot tell apart.
         effective: Number of parameters that the first machine's data decide rather than the prior.
@@ -66,10 +66,19 @@ class Design:
     placement: Placement
     conformity: Conformity
     making: Making
-    plan: TouchPlan
-    programs: ProgramSet
+    stations: tuple[Station, ...]
     machines: tuple[Proven, ...]
     known: IdentifiabilityReport
     effective: float
     budgets: Mapping[str, TaskUncertainty]
     visits: Visits
+
+    @property
+    def plan(self) -> TouchPlan:
+        """Touches of the probe and the clamping that the standard is designed for."""
+        return self.stations[0].plan
+
+    @property
+    def programs(self) -> ProgramSet:
+        """All programs."""
+        return all_programs(self.stations)

@@ -1,12 +1,13 @@
 """The set-up sheet: what an operator needs beside the programs, on two pages of paper."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from probe_paths.campaign import setup_tolerance
-from probe_paths.emit import ProgramSet
-from probe_paths.language import LANGUAGES, Dialect, Label, Q, interlocks
+from probe_paths.language import LANGUAGES, Label, Q, interlocks
 from probe_paths.locate import Companions
-from probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, TouchPlan, calibration_hash
+from probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, calibration_hash
+from probe_paths.stations import Station
 from report.pages.page import write_page
 from report.plots import write_setup_picture
 from report.scenes import PLAYBACK, write_playback
@@ -31,23 +32,24 @@ _REMEDY = {
 
 def write_setup_page(
     folder: Path,
-    plan: TouchPlan,
-    programs: ProgramSet,
+    stations: Sequence[Station],
+    number: int,
     others: Companions,
-    dialect: Dialect,
 ) -> Path:
-    """Write the sheet with its drawing and the playback of the programs; the path of the page.
+    """Write the sheet of a station with its drawing and playback; the path of the page.
 
     Args:
         folder: To be made.
-        plan: Of the programs.
-        programs: As written.
-        others: That are run before them.
-        dialect: Of the control.
+        stations: Of the campaign, in their order.
+        number: Of the station, from 0.
+        others: Programs that are run before its own.
     """
+    station = stations[number]
+    plan, programs, dialect = station.plan, station.programs, station.dialect
+    page, picture, playback = (_named(name, station, number) for name in (PAGE, PICTURE, PLAYBACK))
     folder.mkdir(parents=True, exist_ok=True)
-    write_setup_picture(folder / PICTURE, plan)
-    write_playback(folder, plan, programs, dialect)
+    write_setup_picture(folder / picture, plan)
+    write_playback(folder / playback, plan, programs, dialect)
     T = plan.setup.T_table_artefact
     tests = interlocks(LANGUAGES[dialect.language], ProgramFrame(plan.chain, plan.probe))
     heading = Heading(
@@ -58,9 +60,9 @@ def write_setup_page(
     )
     tolerance = setup_tolerance(plan)
     write_page(
-        folder / PAGE,
+        folder / page,
         "setup.html",
-        picture_file=folder / PICTURE,
+        picture_file=folder / picture,
         standard=plan.standard,
         chain=plan.chain,
         probe=plan.probe,
@@ -76,11 +78,20 @@ def write_setup_page(
         refused=[str(refusal) for refusal in plan.refused],
         alarms=[(int(t.label), t.what, f"{t.limit:g}", _REMEDY[t.label]) for t in tests],
         others=others,
-        playback=PLAYBACK,
+        playback=playback,
+        stations=stations,
+        here=station,
+        sheets=[_named(PAGE, one, i) for i, one in enumerate(stations)],
         within_deg=round(others.spread.angle / DEG, 3),
         start=int(Q.START),
         missed=int(Label.NO_CONTACT),
         tolerance=tolerance,
         clearance=SMALLEST_GAP,
     )
-    return folder / PAGE
+    return folder / page
+
+
+def _named(file: str, station: Station, number: int) -> str:
+    """Name of a file of a station; those after the first are told by set-up and tool."""
+    stem, _, ending = file.rpartition(".")
+    return file if number == 0 else f"{stem}_{station.setup}_T{station.dialect.tool}.{ending}"

@@ -33,11 +33,11 @@ _GRAIN = 0.05
 """Of the corners of bodies, mm."""
 
 
-def write_playback(folder: Path, plan: TouchPlan, programs: ProgramSet, dialect: Dialect) -> Path:
-    """Write the page; its path.
+def write_playback(page: Path, plan: TouchPlan, programs: ProgramSet, dialect: Dialect) -> None:
+    """Write the page.
 
     Args:
-        folder: It goes into.
+        page: To be written.
         plan: What is set up, and with which probe.
         programs: As written; their text is read again, and nothing else is played.
         dialect: Of the control.
@@ -74,8 +74,7 @@ def write_playback(folder: Path, plan: TouchPlan, programs: ProgramSet, dialect:
         loader=PackageLoader("report.scenes"), autoescape=True, undefined=StrictUndefined
     )
     template = environment.get_template(PLAYBACK)
-    write_whole(folder / PLAYBACK, template.render(scene=scene, standard=plan.standard.name))
-    return folder / PLAYBACK
+    write_whole(page, template.render(scene=scene, standard=plan.standard.name))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,5 +1,7 @@
 """Sentences about a design: what its touches were chosen for, how it compares."""
 
+import numpy as np
+
 from artefact.brief import StandardTable
 from artefact.compare import ERROR, RISK, WANTED
 from artefact.place import Placement
@@ -13,6 +15,8 @@ _CRITERIA = {
     "A": "mean variance of the parameters, in units of what is expected",
     "E": "variance of the least well determined error pattern, as the tool point feels it",
 }
+
+_NAMED = 4  # effects that are not found surely, by name
 
 
 def criterion_words(wanted: StandardTable) -> str:
@@ -62,6 +66,32 @@ def proof_sentence(placement: Placement) -> str:
         f"({anywhere.found} of {len(anywhere.effects)}). As many further touches on the balls "
         f"would find the latter for {balls.found}, but they share the calibration that went into "
         f"the model, and no ball is like the surface of a workpiece."
+    )
+
+
+def blind_spots(placement: Placement) -> str:
+    """What the proof does not find surely, and whether calibration is to blame; empty if nothing.
+
+    Where a face is touched at one table pose, or few, a smooth error moves the whole of it, as a
+    face does that stands aside by what its calibration leaves open.
+    """
+    faces, exact = placement.power, placement.power_exact
+    weak = np.flatnonzero(faces.power < WANTED)
+    if not len(weak):
+        return ""
+    order = weak[np.argsort(faces.power[weak])]
+    named = [f"{faces.effects[i]} ({percent(float(faces.power[i]))})" for i in order[:_NAMED]]
+    more = f" and {len(weak) - _NAMED} more" if len(weak) > _NAMED else ""
+    if exact.found - faces.found > 0.5 * len(weak):
+        blame = "a better calibration of the faces is what helps"
+    elif exact.found > faces.found:
+        blame = "their calibration is one cause, their slopes and places are another"
+    else:
+        blame = "the touches hardly feel these effects, whatever the calibration"
+    return (
+        f"Found less surely than {percent(WANTED)}: {', '.join(named)}{more}. Were the places of "
+        f"the faces known exactly, {exact.found} of {len(exact.effects)} effects would be found "
+        f"with {percent(WANTED)} or more, {percent(float(exact.power.mean()))} on average: {blame}."
     )
 
 

@@ -13,7 +13,7 @@ from artefact.place import Placement
 from diagnosis.answer import Proof
 from diagnosis.fit import Fit
 from report.numbers import digits
-from report.words.artefact_words import identification_sentence, proof_sentence
+from report.words.artefact_words import blind_spots, identification_sentence, proof_sentence
 from twin.units import DEG, UM
 from twin.words import listed
 
@@ -104,7 +104,7 @@ def design_lines(placement: Placement, workspace: Mapping[str, tuple[float, floa
     if others:
         rival = min(others, key=lambda r: r.rms)
         line += f", the best other artefact there, {rival.name}, {_um(rival.rms)}"
-    told = [identification_sentence(placement), proof_sentence(placement)]
+    told = [f(placement) for f in (identification_sentence, proof_sentence, blind_spots)]
     return [verdict_of_design(placement, workspace), line, *filter(None, told)]
 
 

@@ -53,6 +53,14 @@ def _field_shares(r: noticed.FieldShares) -> str:
     )
 
 
+def _joints_stood(r: noticed.JointsStood) -> str:
+    them, what = ("it", "it does") if len(r.names) == 1 else ("them", "they do")
+    return (
+        f"{listed([*r.names])} stood still in all poses: nothing is known of {them}, and what "
+        f"{what} wrong is part of where the reflector sits"
+    )
+
+
 def _few_poses(r: noticed.FewPoses) -> str:
     several = r.poses > 1
     if not r.has_rotary:
@@ -68,6 +76,19 @@ def _noise_misstated(r: noticed.NoiseMisstated) -> str:
     return (
         f"touches scatter by {r.found / UM:.2f} µm about the model; {r.stated / UM:.2f} µm is "
         "stated"
+    )
+
+
+def _many_stood_out(r: noticed.ManyStoodOut) -> str:
+    share = f"{r.touches} of {r.of} touches stand out ({100.0 * r.touches / r.of:.0f} %)"
+    why = (
+        "scattered, of all sizes and far from the rest, as accidents are"
+        if r.left_out
+        else "alike, together or too many for accidents"
+    )
+    return (
+        f"{share}, {why}: held-out error {r.without / UM:.2f} µm without them, "
+        f"{r.whole / UM:.2f} µm with all touches"
     )
 
 
@@ -157,12 +178,14 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.HeldOutInDoubt: "the error of held-out touches is {r.ratio:.1f} times the stated "
     "noise, with too few touches to say whether anything is missing: probe more",
     noticed.FewPoses: _few_poses,
+    noticed.JointsStood: _joints_stood,
     noticed.WorseThanReplicates: "residuals are {r.ratio:.2f} times as large as the scatter of "
     "{r.dof} replicates: the model lacks something",
     noticed.NoiseMisstated: _noise_misstated,
     noticed.OutliersKept: "more touches stand out than accidents can explain: all were kept, and "
     "the residual is treated as structure",
     noticed.OutliersLeftOut: _outliers_left_out,
+    noticed.ManyStoodOut: _many_stood_out,
     noticed.PriorWidened: "the machine's errors are about {r.factor:.1f} times their stated "
     "distributions; the prior was widened by that",
     noticed.ShortBeam: "{r.effect} is {r.slenderness:.1f} times as long as deep at most: the "

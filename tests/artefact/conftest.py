@@ -14,7 +14,7 @@ from twin.record.touches import Setup
 from twin.units import DEG, UM
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def criterion():
     mill = make_chain(
         "mill",

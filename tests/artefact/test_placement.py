@@ -77,8 +77,10 @@ def test_touches_are_spread_over_poses_and_features(placement):
     count = np.bincount(requests.pose)
     assert len(count) == 12
     assert count.max() <= np.ceil(1.6 * 160 / 12)
-    on_face = np.unique(placement.proof.feature, return_counts=True)[1]
-    assert on_face.max() <= 1.5 * 60 / 5
+    on_face = dict(zip(*np.unique(placement.proof.feature, return_counts=True), strict=True))
+    area = {p.name: np.prod(p.half_size) for p in placement.standard.patches}
+    for name, count in on_face.items():  # a place on a face that no pose reaches takes its share
+        assert 0.6 < count / (60.0 * area[name] / sum(area.values())) < 1.5
     keys = np.column_stack([requests.point, requests.rotary])
     assert len(np.unique(np.round(keys, 6), axis=0)) == 160  # no touch twice
 
@@ -122,7 +124,7 @@ def test_prediction_is_far_beyond_tenfold_and_better_than_chance(placement):
         assert 0 < rival.visible <= rival.could_be_visible
     assert own.visible > by_name["one freeform face"].visible
     spheres = [by_name[f"{n} spheres"].rms_user for n in (4, 5, 7, 13)]
-    assert own.rms_user < 1.05 * min(spheres)  # the benchmark has the mean over seeds
+    assert own.rms_user < 1.02 * min(spheres)
 
 
 @pytest.mark.parametrize("of_task", [False, True])

@@ -139,6 +139,22 @@ def test_bodies_that_fit_leave_a_cutter_between_them(faces):
             assert room >= one.foot_radius + other.foot_radius + 12.0
 
 
+def test_faces_drawn_beside_bodies_leave_them_room():
+    """Against the outlines point by point."""
+    blank = Blank()
+    balls = balls_on_posts(blank, 60, np.random.default_rng(1))[::8]
+    holes = holes_on(blank, balls)
+    found = freeform_faces(blank, 6, 12, np.random.default_rng(2), balls, holes)
+    assert len(found) == 12
+    for outline in map(walls, found):
+        for ball in balls:
+            room = np.linalg.norm(outline - ball.centre[:2], axis=1).min()
+            assert room >= max(ball.radius, ball.foot_radius) + 12.0 - 0.05
+        for hole in holes:
+            room = np.linalg.norm(outline - [hole.x, hole.y], axis=1).min()
+            assert room >= hole.bore_radius + 6.0 - 0.05
+
+
 @pytest.mark.parametrize("pitch", [0.0, 63.0, 100.0])
 def test_screws_stand_on_slots_within_table_and_base(pitch):
     blank = Blank(limits=Limits(table_radius=160.0, slot_pitch=pitch))

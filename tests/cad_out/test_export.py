@@ -8,6 +8,7 @@ from importlib.metadata import version
 
 import numpy as np
 import pytest
+import volume_by_hand
 
 import cad_out
 from artefact.body.datum import DatumSphere
@@ -42,7 +43,9 @@ def test_ten_patches_conform_and_stay_below_their_limits(standard, tmp_path):
     assert conformity.worst_face[1] < 1e-3 * FACE_LIMIT  # 14 digits of text leave 1e-8 um
     assert conformity.worst_chord[1] <= 0.02
     assert set(conformity.names) == set(face_names(standard, details_of(standard)))
-    assert conformity.volume == pytest.approx(standard.volume(2.0), rel=0.01)  # no recesses
+    details = details_of(standard)
+    less = volume_by_hand.recesses(standard, details) + volume_by_hand.seats(standard, details)
+    assert conformity.volume == pytest.approx(standard.volume(2.0) - less, rel=1e-3)
     assert conformity.stl_bytes == (tmp_path / "standard.stl").stat().st_size < 6_000_000
 
 
@@ -57,6 +60,12 @@ def test_step_text_carries_units_schema_names_and_a_fixed_time(upright, built):
     assert upright.material.name in text
     assert conformity.is_millimetre
     assert conformity.faults() == []
+
+
+def test_volume_is_that_of_textbook_formulas(upright, built):
+    """Pillars by quadrature, posts, seats, blends, relief, bores, lettering: no kernel, no grid."""
+    by_hand = volume_by_hand.of_upright(upright, details_of(upright))
+    assert built[1].volume == pytest.approx(by_hand, rel=2e-5)
 
 
 def test_poles_and_knots_in_the_file_are_those_of_the_design(upright, built):
@@ -274,4 +283,6 @@ def test_random_standards_build_valid_solids(random_standard, tmp_path, seed):
     standard = random_standard(seed)
     conformity = cad_out.verify.export_standard(standard, tmp_path, chord=0.02)
     assert conformity.faults() == []
-    assert conformity.volume == pytest.approx(standard.volume(2.0), rel=2e-3)
+    details = details_of(standard)
+    less = volume_by_hand.recesses(standard, details) + volume_by_hand.seats(standard, details)
+    assert conformity.volume == pytest.approx(standard.volume(2.0) - less, rel=2e-3)

@@ -1,9 +1,11 @@
 """The standard goes on in build123d: same solid, named faces, and it can be cut."""
 
 import pytest
+import volume_by_hand
 
 from artefact.body.standard import Standard
 from cad_out.build.part import as_part
+from cad_out.details.detail_list import details_of
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::SyntaxWarning")
@@ -14,11 +16,9 @@ def test_a_user_goes_on_with_the_part(upright: Standard) -> None:
     assert solid.is_valid
     assert solid.label == upright.name
     assert {p.name for p in upright.patches} <= set(faces)
-    # independent of the kernel: a voxel count of the signed distance, good to some per cent,
-    # without the bought balls and with a millimetre taken off the underside
     balls = sum(4.0 / 3.0 * 3.141592653589793 * s.radius**3 for s in upright.spheres)
-    a, b = upright.base.half_size
-    assert solid.volume == pytest.approx(upright.volume(2.0) - balls - 4.0 * a * b, rel=0.02)
+    by_hand = volume_by_hand.of_upright(upright, details_of(upright))
+    assert solid.volume == pytest.approx(by_hand - balls, rel=2e-5)
     height = upright.base.thickness
     x, y = upright.base.half_size[0] - 15.0, 0.0
     drilled = solid - Pos(x, y, 0.5 * height) * Cylinder(3.0, 2.0 * height)

@@ -8,8 +8,11 @@ from made_up import arm_poses
 
 from diagnosis.fit.identification import fit_run
 from diagnosis.regression.gross import find_gross, shots
+from diagnosis.remarks.run_remarks import ManyStoodOut, remarks
 from diagnosis.residual.crowds import crowds
+from report.words.remark_words import remark_sentence
 from twin.library.ordinary import ordinary_model
+from twin.record.run import Run
 from twin.units import UM
 
 
@@ -103,3 +106,54 @@ def test_coordinates_of_two_shots_are_no_crowd() -> None:
     assert crowds(seen, every, bad) == {}
     alone = replace(seen, radius=np.ones(len(seen)))  # touches are shots of their own
     assert min(crowds(alone, every, bad).values()) < 1e-3
+
+
+def _marred(n: int, bad: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Columns, deviations and shots of n reflectors, some seen wrongly in all coordinates."""
+    rng = np.random.default_rng(9)
+    X, shot = rng.standard_normal((3 * n, 12)) * 10.0, np.repeat(np.arange(n), 3)
+    y = rng.standard_normal(3 * n)
+    for k, s in zip(bad, size, strict=True):
+        y[3 * k : 3 * k + 3] += s * rng.standard_normal(3)
+    return X, y, shot
+
+
+@pytest.mark.parametrize("count", [3, 5, 9, 14])
+def test_up_to_a_fifth_scattered_and_uneven_are_accidents(count) -> None:
+    """3 to 18 % of 80 shots: the parameters stay within their uncertainty, all that is far goes."""
+    rng = np.random.default_rng(count)
+    bad = rng.choice(80, count, replace=False)
+    X, y, shot = _marred(80, bad, rng.uniform(15.0, 60.0, count))
+    fit, gross = find_gross(X, y, np.ones(240, dtype=bool), shot)
+    assert not gross.too_many
+    assert gross.are_many == (count > 4)
+    assert set(shot[gross.rows]) == set(bad)
+    assert np.abs(fit.phi * 10.0 * np.sqrt(240.0)).max() < 5.0
+
+
+def test_a_third_of_the_touches_is_no_accident() -> None:
+    rng = np.random.default_rng(1)
+    bad = rng.choice(80, 27, replace=False)
+    X, y, shot = _marred(80, bad, rng.uniform(15.0, 60.0, 27))
+    assert find_gross(X, y, np.ones(240, dtype=bool), shot)[1].too_many
+
+
+def test_many_that_lie_together_are_structure() -> None:
+    """Always two one after the other: far, of all sizes, but not by chance."""
+    bad = np.array([10, 11, 22, 23, 29, 30, 48, 49, 65, 66])
+    X, y, shot = _marred(80, bad, np.linspace(15.0, 60.0, 10))
+    assert find_gross(X, y, np.ones(240, dtype=bool), shot)[1].too_many
+
+
+def test_the_error_is_told_both_ways_where_many_stand_out() -> None:
+    seen = arm_poses(60)
+    seen = replace(seen, time=10.0 * seen.pose)
+    rng = np.random.default_rng(8)
+    bad = np.isin(seen.pose, rng.choice(60, 6, replace=False))
+    off = rng.normal(0.0, 0.02, len(seen)) + bad * rng.normal(0.0, 1.0, len(seen))
+    fit = fit_run(Run(seen, off, np.full(len(seen), 0.02)), ordinary_model(seen.chain))
+    (told,) = [r for r in remarks(fit) if isinstance(r, ManyStoodOut)]
+    assert told.left_out
+    assert told.touches == bad.sum() == fit.gross.rows.sum()
+    assert 5.0 * told.without < told.whole
+    assert "18 of 180 touches stand out (10 %), scattered" in remark_sentence(told)

@@ -10,6 +10,7 @@ from diagnosis.fit.prior import Prior
 from diagnosis.geometry.functionals import Quantity
 from diagnosis.geometry.learnt import Rung, geometry_rows, learnt_geometry
 from report.geometry.geometry_words import correction_line, noted_lines
+from twin.errors import BadValue
 from twin.frames import apply, inverse
 from twin.library.ordinary import ordinary_model
 from twin.machine.chain import Axis, make_chain
@@ -146,12 +147,14 @@ def test_the_ladder_begins_with_the_setup_alone(learnt) -> None:
     assert steps[1].test_rms == fit.test_rms
 
 
-def test_the_scale_of_five_targets_is_the_line_through_them() -> None:
-    """Deviations without a trend, which a curve through five targets makes one of in between."""
-    targets = np.array([-15.0, -10.0, -5.0, 0.0, 5.0])
-    shown = np.array([1.3, 13.9, -20.0, -1.7, 8.3]) * UM
-    chain = make_chain("column", "[w f Z t]", {"Z": Axis((-15.0, 5.0))})
-    z = np.tile(targets, 10)
+TARGETS = np.array([-15.0, -10.0, -5.0, 0.0, 5.0])
+
+
+def column_run(shown, expected=None) -> Run:
+    """Ten times up a short column, with deviations at five targets, mm."""
+    axis = Axis((-15.0, 5.0), expected=expected)
+    chain = make_chain("column", "[w f Z t]", {"Z": axis})
+    z = np.tile(TARGETS, 10)
     n = len(z)
     touches = Touches(
         chain=chain,
@@ -167,8 +170,31 @@ def test_the_scale_of_five_targets_is_the_line_through_them() -> None:
         pose=np.repeat(np.arange(10), 5),
         instrument=Instrument.LASER,
     )
-    run = Run(touches, -np.tile(shown, 10), np.full(n, 1.0 * UM))
-    rows = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(chain)))}
-    slope = np.polyfit(targets, shown, 1)[0]
+    return Run(touches, -np.tile(shown, 10), np.full(n, 1.0 * UM))
+
+
+def test_the_scale_of_five_targets_is_the_line_through_them() -> None:
+    """Deviations without a trend, which a curve through five targets makes one of in between."""
+    shown = np.array([1.3, 13.9, -20.0, -1.7, 8.3]) * UM
+    run = column_run(shown)
+    rows = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(run.touches.chain)))}
+    slope = np.polyfit(TARGETS, shown, 1)[0]
     assert rows["EZZ"].estimate.value == pytest.approx(slope, abs=3.0 * rows["EZZ"].estimate.u)
     assert rows["EZZ"].estimate.u < 50e-6
+
+
+@pytest.mark.parametrize("axis_expects", [None, 1.3 * UM])
+def test_what_is_unusual_is_said_by_what_the_axis_expects_and_moves_no_fit(axis_expects) -> None:
+    """1000 ppm over 20 mm: nothing beside the 77 µm of the class, much beside 1.3 µm."""
+    run = column_run(1e-3 * (TARGETS + 5.0), axis_expects)
+    rows = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(run.touches.chain)))}
+    assert rows["EZZ"].estimate.value == pytest.approx(1e-3, abs=3.0 * rows["EZZ"].estimate.u)
+    assert rows["EZZ"].is_determined
+    assert rows["EZZ"].is_beyond_expected == (axis_expects is not None)
+
+
+def test_only_a_linear_axis_expects_a_length() -> None:
+    with pytest.raises(BadValue, match="only a linear axis"):
+        make_chain("table", "[w C' f t]", {"C": Axis((-1.0, 1.0), expected=0.01)})
+    with pytest.raises(BadValue, match="more than nothing"):
+        make_chain("column", "[w f Z t]", {"Z": Axis((-1.0, 1.0), expected=0.0)})

@@ -70,7 +70,7 @@ def test_a_design_for_every_kind_of_machine(
     check(placement.standard, blank(project).limits)
     assert len(placement.requests) == TOUCHES
     assert (probe_reach(project).reasons(placement.standard, placement.requests) == "").all()
-    plan = design._plan(project, placement)
+    ((_, plan),) = design._plans(project, placement)
     found = orders(plan, placement.criterion.model, project.noise)
     assert all(len(order.reversal) == len(project.chain.rotary_axes) for order in found)
     assert all(np.isfinite([o.drift, *o.reversal]).all() and o.duration > 0.0 for o in found)

@@ -62,6 +62,7 @@ def test_every_block_of_the_vocabulary_is_one_that_the_parser_knows():
     text = k.listed([
         k.begin("ALL"), k.comment("TEXT"), k.structure("HEAD"), *k.stock([0, 0, 0], [1, 2, 3]),
         k.TCPM_OFF, k.PLANE_OFF, *k.datum_shift_off(), k.tool_call(7), k.preset(3), k.WAIT,
+        k.plane([0.0, -30.0, 5.0], -30.0),
         k.line({"Z": -1.0}, words="M91"), k.line({"B": -30.0, "C": 5.0}, 1000, k.SHORTER_WAY),
         k.SHORTER_WAY, k.SHORTER_WAY_OFF, k.assign(1601, 2), k.assign(1601, -2.5),
         k.read(1601, Datum.OFFSET_X), k.read(1601, Datum.RADIUS), k.call(90),

@@ -188,7 +188,7 @@ def test_touches_that_cannot_be_evaluated_are_named(parts, small, golden, chain)
     with pytest.raises(DesignError, match=r"touch 1 with .* between ball"):
         evaluate([replace(parts[0], feature=swapped)], small, chain, U)
     other_probe = replace(parts[1], radius=2.0)
-    with pytest.raises(BadFile, match="one run file a probe"):
+    with pytest.raises(BadFile, match="one calibration a probe"):
         evaluate([parts[0], other_probe], small, chain, U)
     elsewhere = replace(
         parts[1], heading=replace(parts[1].heading, setup=replace(

@@ -32,6 +32,7 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
         power=power,
         power_in_volume=power,
         power_of_balls=power,
+        power_exact=power,
         standard=body,
     )
 
@@ -61,7 +62,7 @@ def test_scatter_that_nobody_can_build_is_no_rival() -> None:
 
 
 def test_the_probed_volume_comes_second_and_by_name() -> None:
-    first, second, _, proof = design_lines(placement(1.0, 2.0), {})
+    first, second, _, proof, _ = design_lines(placement(1.0, 2.0), {})
     assert "160 touches on the 2 freeform faces" in proof
     assert "power of 95 % on average" in proof
     assert "for 1 of 2 effects" in proof
@@ -75,6 +76,31 @@ def test_faces_are_weighed_against_spheres_by_what_they_cost_or_gain() -> None:
     assert "the freeform faces gain 50 % over the user's workspace" in gain
     assert "the freeform faces cost 32 % over the user's workspace" in cost
     assert "leaves 1.32 µm rms, four spheres placed by the same optimiser 1.00 µm" in cost
+
+
+@pytest.mark.parametrize(
+    ("exact", "blame"),
+    [
+        ([0.99, 0.97, 0.96, 0.9, 1.0], "a better calibration of the faces is what helps"),
+        ([0.99, 0.9, 0.9, 0.9, 1.0], "their slopes and places are another"),
+        ([0.6, 0.7, 0.5, 0.9, 1.0], "the touches hardly feel these effects"),
+    ],
+)
+def test_what_the_proof_does_not_find_is_named_with_the_cause(exact, blame) -> None:
+    made, names = placement(1.0, 2.0), ("a", "b", "c", "d", "e")
+    made.power = SimpleNamespace(
+        touches=160, power=np.array([0.5, 0.6, 0.4, 0.9, 1.0]), found=1, effects=names
+    )
+    found = int(np.sum(np.array(exact) >= 0.95))
+    made.power_exact = SimpleNamespace(
+        touches=160, power=np.array(exact), found=found, effects=names
+    )
+    last = design_lines(made, {})[-1]
+    assert last.startswith("Found less surely than 95 %: c (40 %), a (50 %), b (60 %), d (90 %).")
+    assert f"{found} of 5 effects would be found" in last
+    assert blame in last
+    made.power = SimpleNamespace(touches=160, power=np.full(5, 0.96), found=5, effects=names)
+    assert design_lines(made, {})[-1].startswith("Proof: ")
 
 
 def test_a_workspace_beyond_the_touches_is_told_by_axis(chain: Chain) -> None:

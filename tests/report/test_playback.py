@@ -48,7 +48,8 @@ def read(golden, plan):
 
 @pytest.fixture(scope="module")
 def page(golden, plan, tmp_path_factory):
-    path = write_playback(tmp_path_factory.mktemp("play"), plan, golden.programs(), Dialect())
+    path = tmp_path_factory.mktemp("play") / PLAYBACK
+    write_playback(path, plan, golden.programs(), Dialect())
     assert path.name == PLAYBACK
     return path.read_text(encoding="utf-8")
 

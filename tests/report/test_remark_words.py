@@ -7,6 +7,7 @@ import pytest
 from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake
 from diagnosis.remarks.run_remarks import (
     FewPoses,
+    JointsStood,
     NoiseMisstated,
     OutliersLeftOut,
     Remark,
@@ -47,5 +48,6 @@ def test_one_pose_and_two() -> None:
     assert remark_sentence(FewPoses(1)).startswith("1 table pose only: errors of the rotary axes c")
     assert "cannot be seen" in remark_sentence(FewPoses(1))
     assert "2 table poses only" in remark_sentence(FewPoses(2))
+    assert "A and C1 stood still in all poses" in remark_sentence(JointsStood(("A", "C1")))
     assert remark_sentence(FewPoses(1, False)) == "1 pose only: rows are held out in blocks instead"
     assert "1500 sets" in remark_sentence(SearchEnded(1500.0))

@@ -13,6 +13,7 @@ from probe_paths.emit.writer import Feeds
 from probe_paths.language.dialect import Dialect
 from probe_paths.locate.beside import companions
 from probe_paths.locate.spread import Spread
+from probe_paths.stations.programmed import Station
 from report.pages.setup_page import PAGE, PICTURE, write_setup_page
 from report.pages.tables import page_tables
 from twin.frames import apply, inverse, pose, turn
@@ -37,7 +38,7 @@ def sheet(golden, tmp_path_factory):
     plan = golden.plan()
     others = companions(plan, Dialect(), Feeds(), 80.0, Spread(6.0, 1.5 * DEG))
     others.write(folder)
-    page = write_setup_page(folder, plan, programs, others, Dialect())
+    page = write_setup_page(folder, [Station(plan, Dialect(), programs)], 0, others)
     assert page == folder / PAGE
     assert (folder / PICTURE).stat().st_size > 10_000
     assert "RAISED BY +80.0 MM" in (folder / "MS_A_DRY.H").read_text(encoding="ascii")

@@ -244,6 +244,8 @@ def test_import_writes_a_run_and_a_machine_that_read_back(tmp_path, capsys):
     assert len(run) == 30
     assert set(run.touches.last_move("X")) == {-1.0, 1.0}
     assert run.u == pytest.approx(0.3 * UM)
+    travel = float(np.ptp(run.touches.reading("X")))
+    assert run.touches.chain.link("X").expected == pytest.approx(UM + 15e-6 * travel, rel=0.05)
     assert main(words) == BAD, "an existing file stays"
     assert main([*words[:4], "-o", str(tmp_path / "b.csv")]) == BAD, "an uncertainty is asked for"
     assert not (tmp_path / "b.csv").exists()

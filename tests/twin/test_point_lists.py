@@ -107,3 +107,38 @@ def test_a_table_without_a_header_is_told_its_columns(tmp_path):
     assert sheet.numbers(1).tolist() == [10.001, 20.003]
     with pytest.raises(BadFile, match="found 3 columns, expected 2"):
         read_sheet(tmp_path / "log.txt", None, ("target [mm]", "actual [mm]"))
+
+
+COORDINATES_APART = """axis,device,pin,value,nominal,upper,deviation
+X,7,1,10.002,10.0,999,0.002
+X,7,2,14.001,14.0,999,0.001
+X,9,1,80.003,80.0,999,0.003
+X,9,2,84.004,84.0,999,0.004
+Y,7,1,5.001,5.0,999,0.001
+Y,7,2,6.002,6.0,999,0.002
+Y,9,1,5.003,5.0,999,0.003
+Y,9,2,6.004,6.0,999,0.004
+"""
+
+
+def test_a_point_may_be_named_by_two_columns(tmp_path):
+    (tmp_path / "pins.csv").write_text(COORDINATES_APART)
+    points = read_points(read_sheet(tmp_path / "pins.csv"))
+    assert points.feature.tolist() == ["7-1", "7-2", "9-1", "9-2"]
+    wanted = [[10.0, 5.0], [14.0, 6.0], [80.0, 5.0], [84.0, 6.0]]
+    np.testing.assert_allclose(points.nominal[:, :2], wanted)
+    off = [[2.0, 1.0], [1.0, 2.0], [3.0, 3.0], [4.0, 4.0]]
+    np.testing.assert_allclose(points.deviation[:, :2] / UM, off, atol=1e-6)
+
+
+def test_points_whose_names_are_mixed_up_are_told(imported, capsys):
+    rows = ["name,x nom,y nom,x meas,y meas"]
+    place = {"A": (0, 0), "B": (30, 0), "C": (0, 40), "D": (3, 42), "E": (90, 10)}
+    found = {**place, "C": place["D"], "D": place["C"]}
+    rows += [f"{n},{x},{y},{found[n][0] + 1.01},{found[n][1]}" for n, (x, y) in place.items()]
+    _, said = imported({"list.csv": "\n".join(rows)}, capsys)
+    assert "2 of 5 points were found nearer to the nominal place of another" in said
+    assert "'C' at 'D', 'D' at 'C'" in said
+    right = [rows[0], *(f"{n},{x},{y},{x + 1.01},{y}" for n, (x, y) in place.items())]
+    _, said = imported({"list.csv": "\n".join(right)}, capsys, "--force")
+    assert "nearer" not in said

@@ -16,7 +16,7 @@ from twin.effects.periodic import (
 )
 from twin.effects.position_table import PositionTable
 from twin.effects.probe import ProbeRadius, normal_in_tool
-from twin.effects.setup_error import SHIFT_SD, TURN_SD, SetupError, setup_errors
+from twin.effects.setup_error import SHIFT_SD, TURN_SD, Free, setup_errors
 
 __all__ = [
     "MARK",
@@ -26,6 +26,7 @@ __all__ = [
     "Again",
     "Change",
     "ComponentError",
+    "Free",
     "Harmonic",
     "HigherOrder",
     "LocationError",
@@ -33,7 +34,6 @@ __all__ = [
     "Periodic",
     "PositionTable",
     "ProbeRadius",
-    "SetupError",
     "again",
     "component",
     "normal_in_tool",

@@ -1,9 +1,10 @@
-"""Where the standard really stands on the table: six free numbers for every set-up."""
+"""Free with every run: where the standard stands in every set-up, and every further stylus."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.model import Parameter, Term, Where
 from twin.record import Touches
@@ -13,6 +14,12 @@ SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3
 """Expected standard deviations of a set-up, mm and rad: wide, since nobody clamps to a micrometre
 and the calibration of a machine must not depend on it."""
+
+STYLUS_SD = 100.0 * UM
+"""Of the calibrated place and radius of a further stylus against the first, mm: wide likewise."""
+
+_MOST = 10
+"""Further styli; a length that changes more often is that of a target which is moved."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +53,14 @@ class SetupError:
         shifts = [Parameter(f"d{c}", "mm", SHIFT_SD) for c in "xyz" if not self.turns_only]
         return (*shifts, *(Parameter(f"r{c}", "rad", TURN_SD) for c in "xyz"))
 
+    def here(self, touches: Touches) -> NDArray[np.bool_]:
+        """Touches of this set-up, (N,)."""
+        names = [s.name for s in touches.setups]
+        return touches.setup == (names.index(self.setup) if self.setup in names else -1)
+
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Shifts of the standard, at the touches of this set-up."""
-        names = [s.name for s in touches.setups]
-        index = names.index(self.setup) if self.setup in names else -1
-        here = (touches.setup == index).astype(float)
+        here = self.here(touches).astype(float)
         if self.turns_only:
             felt = np.cross(
                 touches.point_table - touches.T_table_artefact[:, :3, 3], touches.normal_table
@@ -65,13 +75,68 @@ class SetupError:
         return terms
 
 
-def setup_errors(touches: Touches) -> tuple[SetupError, ...]:
-    """One for every set-up that was touched."""
-    out = []
+@dataclass(frozen=True)
+class StylusError:
+    """How far a further stylus is beside its calibration, against that of the first.
+
+    The ball stands e beside its calibrated place in the tool frame, and its effective radius is r
+    larger: ``dev = -n . (R e) + r``. Four parameters, mm; what is wrong with all styli alike is an
+    error of the tool or of the probe.
+
+    Attributes:
+        length: Of the stylus as calibrated, gauge point to ball centre, mm.
+        radius: Of its ball as calibrated, mm.
+    """
+
+    length: float
+    radius: float
+
+    kind = "stylus"
+
+    @property
+    def name(self) -> str:
+        """`stylus(210.004,2.5)`."""
+        return f"stylus({self.length:.9g},{self.radius:.9g})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Place in the tool frame and radius."""
+        return tuple(Parameter(name, "mm", STYLUS_SD) for name in ("dx", "dy", "dz", "radius"))
+
+    def here(self, touches: Touches) -> NDArray[np.bool_]:
+        """Touches of this stylus, (N,)."""
+        is_it: NDArray[np.bool_] = (touches.length == self.length) & (touches.radius == self.radius)
+        return is_it
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Displacements of the tool and a bias along the normal, at the touches of this stylus."""
+        here, tool = self.here(touches).astype(float), touches.chain.link_index("t")
+        moves = [Term(i, Where("place", tool, i), here) for i in range(3)]
+        return [*moves, Term(3, Where("bias"), here)]
+
+
+Free = SetupError | StylusError
+"""What is estimated beside the model of the machine."""
+
+
+def setup_errors(touches: Touches) -> tuple[Free, ...]:
+    """One for every set-up that was touched, and for every stylus but the first."""
+    out: list[Free] = []
     for index, setup in enumerate(touches.setups):
         rows = touches.setup == index
         if rows.any():
             x, y, z = touches.point_table[rows].mean(axis=0)
             turns_only = touches.instrument.reads_angle
             out.append(SetupError(setup.name, (float(x), float(y), float(z)), turns_only))
-    return tuple(out)
+    return (*out, *_styli(touches))
+
+
+def _styli(touches: Touches) -> tuple[StylusError, ...]:
+    """Every stylus but the first that touched; of a ball on the tool axis alone."""
+    if not touches.instrument.is_ball_on_standard or np.any(touches.offset):
+        return ()
+    pairs = zip(touches.length.tolist(), touches.radius.tolist(), strict=True)
+    _, *others = dict.fromkeys(pairs)
+    if len(others) > _MOST or not np.all(touches.radius > 0.0):
+        return ()
+    return tuple(StylusError(length, radius) for length, radius in others)

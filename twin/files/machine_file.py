@@ -20,19 +20,26 @@ Range = Annotated[tuple[Coordinate, Coordinate], Strict(False)]
 
 
 class AxisTable(Table):
-    """`[axis.X]`: range in mm or degrees, point in mm, direction, pitch in mm."""
+    """`[axis.X]`: range in mm or degrees, point, pitch and expected errors in mm, direction."""
 
     range: Range | None = None
     point: Vector | None = None
     direction: Vector | None = None
     pitch: float | None = None
+    expected: float | None = None
 
     def axis(self, name: str) -> Axis:
         """What the table says of the axis of that name, base units."""
         factor = DEG if name[:1] in "ABC" else 1.0
         low, high = self.range or (0.0, 0.0)
         travel = None if self.range is None else (low * factor, high * factor)
-        return Axis(travel, self.point, self.direction, self.pitch)
+        return Axis(
+            range=travel,
+            point=self.point,
+            direction=self.direction,
+            pitch=self.pitch,
+            expected=self.expected,
+        )
 
 
 class WorkpieceTable(Table):

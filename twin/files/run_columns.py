@@ -23,6 +23,7 @@ OWN = re.compile(r"V_(\w+_\w+)\Z")
 POINT = ("px_mm", "py_mm", "pz_mm")
 NORMAL = ("nx", "ny", "nz")
 TARGET = ("tx_mm", "ty_mm", "tz_mm")
+RADIUS = "radius_mm"
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
 
 COLDEST, HOTTEST = -60.0, 200.0
@@ -72,6 +73,17 @@ def targets(table: CsvTable, common: Sequence[float]) -> Array:
         for c, v in zip(TARGET, common, strict=True)
     ]
     return np.stack(cells, axis=-1) + 0.0  # no negative zeros
+
+
+def radii(table: CsvTable, common: float) -> Array:
+    """Radius of the ball of every row, (N,), mm: its own, for several styli, or the head's."""
+    if RADIUS not in table:
+        return np.full(len(table), common)
+    found = table.numbers(RADIUS, empty=common, largest=FARTHEST)
+    below = np.flatnonzero(found < 0.0)
+    if len(below):
+        raise table.bad(int(below[0]), RADIUS, f"{found[below[0]]:g}", "a radius, or 0 for no ball")
+    return found
 
 
 def normals(table: CsvTable, remarks: list[str]) -> Array:

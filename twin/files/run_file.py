@@ -38,6 +38,7 @@ _OPTIONAL = (
     "split",
     "dev_um",
     *columns.TARGET,
+    columns.RADIUS,
 )
 
 
@@ -169,7 +170,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         q=q,
         length=-target[:, 2],
         offset=target[:, :2],
-        radius=np.full(n, head.probe.radius_mm),
+        radius=columns.radii(table, head.probe.radius_mm),
         instrument=head.instrument,
         point=columns.points(table),
         normal=columns.normals(table, remarks),

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.files.pose_file import reading_columns
-from twin.files.run_columns import FORCE, NORMAL, POINT, TARGET
+from twin.files.run_columns import FORCE, NORMAL, POINT, RADIUS, TARGET
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
 from twin.record import Instrument, Run, implied_approach
@@ -19,7 +19,7 @@ def write_run(path: str | Path, run: Run, machine: str) -> None:
     """Write a run file, whole or not at all; `read_run` gives the same measurements back.
 
     Args:
-        run: Measurements with one probe and one stated uncertainty or one a row.
+        run: Measurements with one stated uncertainty or one a row.
         machine: Path of the machine file as it shall stand in the head (relative to `path`).
     """
     write_whole(path, run_text(run, machine))
@@ -108,6 +108,8 @@ def _optional_columns(run: Run, common_u: bool) -> dict[str, list[str]]:
     columns: dict[str, list[str]] = {}
     if _has_targets(run):
         columns |= {name: _cells(t.target[:, i], 6) for i, name in enumerate(TARGET)}
+    if np.any(t.radius != t.radius[0]):
+        columns[RADIUS] = _cells(t.radius, 6)
     if t.spindle_rpm is not None:
         columns["spindle_rpm"] = [f"{v:g}" for v in t.spindle_rpm]
     if t.force is not None:

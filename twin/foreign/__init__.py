@@ -10,7 +10,13 @@ from twin.foreign.acceptance import positioning_figures
 from twin.foreign.circle import circle_machine, circle_run, read_circle
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
-from twin.foreign.points import joined_points, linear_machine, points_run, read_points
+from twin.foreign.points import (
+    joined_points,
+    linear_machine,
+    misplaced,
+    points_run,
+    read_points,
+)
 from twin.foreign.positioning import (
     PositioningTest,
     one_axis_machine,
@@ -33,6 +39,7 @@ __all__ = [
     "linear_machine",
     "machine_text",
     "mapped_run",
+    "misplaced",
     "one_axis_machine",
     "points_run",
     "positioning_figures",

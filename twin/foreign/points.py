@@ -12,12 +12,12 @@ Both compare where a point is with where it should be, and mean opposite things:
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
 from twin.errors import BadFile
+from twin.foreign.coordinate_rows import letters_of_rows, nominal_and_measured, points_of_rows
 from twin.foreign.directions import signs
 from twin.foreign.sheet import MM, Sheet, bare, unit_of_column
 from twin.frames import Array
@@ -38,6 +38,12 @@ _NAME = re.compile(
 )
 _APPROACH = re.compile(r"dir|richtung|approach|anfahr|revers|umkehr", re.IGNORECASE)
 _SETUP = re.compile(r"set-?up|part|session|date|day|aufspannung|werkst", re.IGNORECASE)
+
+NEARER = 2.0
+"""So many times nearer to the place of another than to its own a point is called misplaced."""
+
+FEWEST = 4
+"""Points from which a list has a common displacement."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +82,7 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     Raises:
         BadFile: No nominal or no measured coordinate; a deviation without a unit.
     """
-    letters = _letters(sheet)
+    letters = letters_of_rows(sheet)
     if letters is not None:
         return _by_coordinate(sheet, letters, unit)
     nominal = np.zeros((len(sheet), 3))
@@ -111,34 +117,15 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     )
 
 
-def _letters(sheet: Sheet) -> list[str] | None:
-    """Letter of the coordinate that every row holds, "" of other rows; None where rows hold points.
-
-    Most rows have one; of a report with diameters at least a third.
-    """
-    for i in range(len(sheet.columns)):
-        named = [c.upper() if c.upper() in ("X", "Y", "Z") else "" for c in sheet.looked_at(i)]
-        if 3 * sum(map(bool, named)) > len(named):
-            sheet.used.add(i)
-            return named
-    return None
-
-
 def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointList:
-    """Points of a table with a row a coordinate; a point ends where its name changes or a letter
-    comes again.
-    """  # noqa: D205
+    """Points of a table with a row a coordinate."""
     names = [bare(c) for c in sheet.columns]
-    columns = [
-        next((i for i, n in enumerate(names) if p.search(n)), None) for p in (_NOMINAL, _MEASURED)
-    ]
-    if columns[0] is None or columns[1] is None:
-        found = f"columns {', '.join(map(repr, sheet.columns))}"
-        raise BadFile(sheet.path, "header", found, "columns such as 'nominal' and 'measured'")
-    nominal, measured = (_coordinate(sheet, c, unit or "mm") for c in columns if c is not None)
-    label, setup = _texts(sheet, names, _NAME, ""), _texts(sheet, names, _SETUP, "a")
-    label = [_without_letter(n, c) for n, c in zip(label, letters, strict=True)]
-    points = _gathered([k for k, letter in enumerate(letters) if letter], label, setup, letters)
+    nominal, measured = (
+        _coordinate(sheet, c, unit or "mm")
+        for c in nominal_and_measured(sheet, _NOMINAL, _MEASURED)
+    )
+    setup = _texts(sheet, names, _SETUP, "a")
+    label, points = points_of_rows(sheet, letters, _texts(sheet, names, _NAME, ""), setup)
     at, off = np.zeros((len(points), 3)), np.full((len(points), 3), np.nan)
     for p, point in enumerate(points):
         for letter, k in point.items():
@@ -155,34 +142,34 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
     )
 
 
-def _without_letter(name: str, letter: str) -> str:
-    """Name of a point from that of one of its coordinates: `X-Wert_Bohrung_01` is `Bohrung_01`."""
-    if not letter:
-        return name
-    own = rf"(?<![a-z]){letter}(?:[-_ ]?(?:wert|value|val|coord\w*|koord\w*))?(?![a-z0-9])"
-    return re.sub(own, "", name, flags=re.IGNORECASE).strip(" _.:-") or name
+def misplaced(points: PointList) -> list[tuple[str, str]]:
+    """Points that were found nearer to where another one belongs: (its name, the other's).
 
-
-def _gathered(
-    rows: Sequence[int], label: Sequence[str], setup: Sequence[str], letters: Sequence[str]
-) -> list[dict[str, int]]:
-    """Row of every coordinate of each point.
-
-    Points of a name of their own are found wherever their rows stand; without, a point ends where
-    its name changes or a letter comes again.
+    What all coordinates have in common is taken off first, for lists in another frame. Names mixed
+    up, or a list in another order, look so.
     """
-    keys = [(setup[k], label[k], letters[k]) for k in rows]
-    points: dict[object, dict[str, int]] = {}
-    if all(label[k] for k in rows) and len(set(keys)) == len(keys):
-        for k in rows:
-            points.setdefault((setup[k], label[k]), {})[letters[k]] = k
-        return list(points.values())
-    last: dict[str, int] = {}
-    for before, k in pairwise([-1, *rows]):
-        if before < 0 or label[k] != label[before] or letters[k] in last:
-            last = points.setdefault(k, {})
-        last[letters[k]] = k
-    return list(points.values())
+    out = []
+    for one in np.unique(points.setup):
+        of = points.setup == one
+        nominal, seen = points.nominal[of], np.isfinite(points.deviation[of])
+        if len(nominal) < FEWEST or not seen.any():
+            continue
+        off = points.deviation[of]
+        common = [np.median(v[s]) if s.any() else 0.0 for v, s in zip(off.T, seen.T, strict=True)]
+        off = np.nan_to_num(off - common)
+        place, name = nominal + off, points.feature[of]
+        order = np.argsort(nominal[:, 0])
+        along = nominal[order, 0]
+        reach = np.linalg.norm(off, axis=1) / NEARER
+        first = np.searchsorted(along, place[:, 0] - reach)
+        last = np.searchsorted(along, place[:, 0] + reach)
+        for k in range(len(nominal)):
+            near = order[first[k] : last[k]]
+            near = near[near != k]
+            distance = np.linalg.norm(nominal[near] - place[k], axis=1)
+            if len(near) and distance.min() < reach[k]:
+                out.append((str(name[k]), str(name[near[np.argmin(distance)]])))
+    return out
 
 
 def joined_points(lists: Sequence[PointList], names: Sequence[str] = ()) -> PointList:

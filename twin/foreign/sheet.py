@@ -17,6 +17,7 @@ import numpy as np
 from twin.errors import BadFile
 from twin.files import read_any_text
 from twin.foreign.blanks import by_blanks
+from twin.foreign.channel_log import by_channels
 from twin.frames import Array
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
@@ -219,7 +220,9 @@ def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
     text = read_any_text(path)
     counts = {s: _typical(text, s) for s in _SEPARATORS}
     separator = next((s for s in _SEPARATORS if counts[s] >= 1), "")
-    rows = by_blanks(text) if separator in ("", ",") else []
+    rows = by_channels(text)
+    if not rows and separator in ("", ","):
+        rows = by_blanks(text)
     if not rows:
         reader = csv.reader(io.StringIO(text), delimiter=separator or ",")
         rows = [(reader.line_num, [c.strip() for c in row]) for row in reader]

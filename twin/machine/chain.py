@@ -49,6 +49,8 @@ class Link:
         programmed: False in brackets: a spindle that is not programmed, a quill that stays in.
         pitch: Of the screw or scale of a linear axis, mm, as its owner states it; None where nobody
             said. Knowledge of the machine, no part of its kinematics.
+        expected: Size of each translational error of a linear axis, mm, beyond which it is unusual
+            for such an axis; None for that of its class. Likewise no kinematics.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Link:
     range: tuple[float, float]
     programmed: bool = True
     pitch: float | None = None
+    expected: float | None = None
 
     @property
     def own(self) -> int:
@@ -89,6 +92,7 @@ class Axis:
     point: tuple[float, float, float] | None = None
     direction: tuple[float, float, float] | None = None
     pitch: float | None = None
+    expected: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,7 +218,7 @@ class Chain:
             BadValue: The axis is not linear, or the pitch is no length.
         """
         at = self.link_index(name)
-        checked_pitch(self.links[at].kind, name, pitch)
+        checked_length(self.links[at].kind, name, "pitch", pitch)
         links = list(self.links)
         links[at] = replace(links[at], pitch=pitch)
         return replace(self, links=tuple(links))
@@ -330,14 +334,14 @@ def _check_directions(linear: list[Link]) -> None:
         raise BadValue("axis", f"directions of {names} that lie {where}", "directions that span")
 
 
-def checked_pitch(kind: Kind, name: str, pitch: float | None) -> None:
-    """Refuse a pitch that is no length, or of an axis that turns; raises BadValue."""
-    if pitch is None:
+def checked_length(kind: Kind, name: str, key: str, value: float | None) -> None:
+    """Refuse what is no length, or of an axis that turns; raises BadValue."""
+    if value is None:
         return
     if kind != "linear":
-        raise BadValue(f"axis.{name}.pitch", pitch, "none: only a linear axis has a pitch in mm")
-    if not 0.0 < pitch < np.inf:
-        raise BadValue(f"axis.{name}.pitch", pitch, "a length in mm, more than nothing")
+        raise BadValue(f"axis.{name}.{key}", value, f"none: only a linear axis has a {key} in mm")
+    if not 0.0 < value < np.inf:
+        raise BadValue(f"axis.{name}.{key}", value, "a length in mm, more than nothing")
 
 
 def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
@@ -356,7 +360,8 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
     if not length > SHORTEST:
         raise BadValue(f"axis.{name}.direction", f"a vector of length {length:g}", "a unit vector")
     point = np.array(axis.point or (0.0, 0.0, 0.0), dtype=float)
-    checked_pitch(kind, name, axis.pitch)
+    checked_length(kind, name, "pitch", axis.pitch)
+    checked_length(kind, name, "expected", axis.expected)
     return Link(
         name=name,
         kind=kind,
@@ -366,4 +371,5 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
         range=reach,
         programmed=programmed,
         pitch=axis.pitch,
+        expected=axis.expected,
     )

@@ -9,15 +9,17 @@ import numpy as np
 
 from compensation.field import Datum, MachineErrors, State, datum_of, workspace
 from compensation.tables import Header, hashed, header_of
+from diagnosis.drift import DriftLaw
 from diagnosis.files import read_model
 from diagnosis.remarks import ShortBeam
 from matstd.console import say_each
+from matstd.options import load_effects
 from report.words import remark_sentence
 from twin.elastic import short_beams
 from twin.errors import DesignError, UnknownEffect
 from twin.files import parse_toml, read_errors, read_machine, read_text
 from twin.frames import Array
-from twin.library import load_installed_effects, load_user_effects, parse_sized_effect
+from twin.library import parse_effect, parse_sized_effect
 from twin.machine import Chain
 from twin.units import DEG, MINUTE
 
@@ -49,9 +51,7 @@ def read_job(args: argparse.Namespace) -> Job:
     Raises:
         DesignError: A file or an option that cannot be read, or an active table.
     """
-    load_installed_effects()
-    for path in args.effects:
-        load_user_effects(Path(path))
+    load_effects(args.effects)
     state = State(
         time=args.after * MINUTE,
         temperature=dict(_numbers("--temperature", args.temperature)),
@@ -61,8 +61,8 @@ def read_job(args: argparse.Namespace) -> Job:
     )
     try:
         errors = _errors(args, state)
-        added = [parse_sized_effect(text, errors.chain) for text in args.add]
-        errors = errors.with_known([(a.effect, a.theta) for a in added])
+        for text in args.add:
+            errors = _with_added(errors, text)
     except UnknownEffect as error:
         expected = "expected --temperature, --rpm or --value for all that the model follows"
         raise DesignError(f"{args.model}: {error}; {expected}") from error
@@ -73,6 +73,7 @@ def read_job(args: argparse.Namespace) -> Job:
     doubtful = short_beams(chain, errors.effects)
     say_each(remark_sentence(ShortBeam(*found)) for found in doubtful)
     files = [args.model] if args.errors is None else [args.model, args.errors]
+    files += [effect.path for effect in errors.effects if isinstance(effect, DriftLaw)]
     job = Job(
         errors=errors,
         datum=datum_of(chain, _readings(chain, "--datum", args.datum), args.tool_length),
@@ -82,6 +83,17 @@ def read_job(args: argparse.Namespace) -> Job:
     for path in args.active:
         Header.of(read_text(path), path).refuse_active(job.header(1), path)
     return job
+
+
+def _with_added(errors: MachineErrors, text: str) -> MachineErrors:
+    """With an effect that is added: of the size that is stated, or a saved law as it was saved."""
+    if "=" not in text:
+        effect = parse_effect(text, errors.chain)
+        if isinstance(effect, DriftLaw):
+            effect.replay(errors.touches(np.zeros((1, len(errors.chain.axes))), 0.0))
+            return errors.with_known([(effect, effect.known[0])], effect.known[1])
+    added = parse_sized_effect(text, errors.chain)
+    return errors.with_known([(added.effect, added.theta)])
 
 
 def tool_lengths(words: Sequence[str]) -> dict[int, float]:

@@ -334,12 +334,20 @@ def _arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
 
 def _points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple[Run, Chain]:
     """A list of points as a run."""
+    from matstd.console import say
     from twin.files import read_machine
-    from twin.foreign import joined_points, linear_machine, points_run, read_points
+    from twin.foreign import joined_points, linear_machine, misplaced, points_run, read_points
     from twin.units import UM
 
     lists = [read_points(sheet, args.unit) for sheet in sheets]
     points = joined_points(lists, [sheet.path.stem for sheet in sheets])
+    wrong = misplaced(points)
+    if wrong:
+        some = ", ".join(f"{own!r} at {other!r}" for own, other in wrong[:3])
+        say(
+            f"- {len(wrong)} of {len(points.line)} points were found nearer to the nominal place "
+            f"of another point than to their own ({some}): names or their order are mixed up?"
+        )
     chain = read_machine(args.machine) if args.machine else linear_machine(points)
     u = _uncertainty(args, "u_um", UM)
     return points_run(points, "part" if meaning == "part" else "standard", chain, u), chain

@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     dialect = read_dialect("linuxcnc")
     machine = virtual_machine(args, design / "machine.toml", for_errors, dialect)
-    files, out = programs_of(design), _output_folder(args)
+    files, out = _of_first_probe(programs_of(design)), _output_folder(args)
 
     def told(made: ProgramSet) -> None:
         touches = sum(program.touches for program in made.programs)
@@ -70,6 +70,12 @@ def run(args: argparse.Namespace) -> int:
     say_each(f"planted: {text}" for text in args.add)
     say_each(made.run.remarks)
     return 0
+
+
+def _of_first_probe(files: list[Path]) -> list[Path]:
+    """Programs of the first probe in the first set-up; the others have other first letters."""
+    first = files[0].stem.rpartition("_")[0]
+    return [file for file in files if file.stem.rpartition("_")[0] == first]
 
 
 def _output_folder(args: argparse.Namespace) -> Path:

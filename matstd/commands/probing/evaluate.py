@@ -8,7 +8,10 @@ from matstd.options import add_output, seen_from
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "logs", metavar="LOG.TXT", nargs="+", help="of our programs, of one probe; in any order"
+        "logs",
+        metavar="LOG.TXT",
+        nargs="+",
+        help="of our programs, of all probes and set-ups; in any order",
     )
     parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="as calibrated")
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")

@@ -14,7 +14,6 @@ from matstd.options import (
     add_output,
     add_pdf,
     asked_printer,
-    print_report,
 )
 
 if TYPE_CHECKING:
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from probe_paths.emit import Feeds
     from probe_paths.language import Dialect
     from probe_paths.locate import Spread
+    from probe_paths.stations import Station
     from twin.machine import Chain
     from twin.record import Setup
 
@@ -61,12 +61,12 @@ def run(args: argparse.Namespace) -> int:
     import shutil
 
     from artefact.body import read_standard
-    from matstd.console import say
+    from matstd.console import say, say_each
     from matstd.folder import results_folder
+    from matstd.stages.sheets import write_sheets
     from probe_paths.control import read_log, read_program
-    from probe_paths.emit import make_programs
-    from probe_paths.locate import Spread, companions, planned_again
-    from report.pages import write_setup_page
+    from probe_paths.locate import Spread
+    from probe_paths.stations import all_programs
     from twin.files import read_machine
     from twin.units import DEG
 
@@ -79,27 +79,72 @@ def run(args: argparse.Namespace) -> int:
     chain = read_machine(design / "machine.toml")
     standard = read_standard(design / "standard.toml")
     files = programs_of(design)
-    dialect = _dialect(args.control, files[0])
-    programs = [read_program(file, chain, dialect=dialect) for file in files]
+    words = _dialect(args.control, files[0])
+    programs = [read_program(file, chain, dialect=words) for file in files]
     parts = [part for log in args.logs for part in read_log(log, chain.rotary_axes)]
-    setup = _place(parts, standard, chain, dialect, spread)
-    plan = planned_again(programs, standard, chain, setup)
+    here, others = _of_one_setup(programs, parts)
+    setup = _place(parts, standard, chain, words, spread)
+    stations = _stations(here, standard, chain, setup, args.control)
     ours = [*REPORT_FILES, *SHEET_FILES, "programs/*"]
     with results_folder(args.output, args.force, ours) as folder:
         for name in ("machine.toml", "standard.toml"):
             shutil.copyfile(design / name, folder / name)
-        feeds = feeds_of(programs, chain)
-        made = make_programs(plan, dialect, feeds)
+        made = all_programs(stations)
         made.write(folder / "programs")
-        others = companions(plan, dialect, feeds)
-        others.write(folder / SHEET)
-        sheet = write_setup_page(folder / SHEET, plan, made, others, dialect)
-        print_report(sheet.parent, printed_by, sheet.stem)
+        write_sheets(folder / SHEET, stations, feeds_of(programs, chain), printed_by)
     touches = sum(program.touches for program in made.programs)
     say(f"{args.output}: {touches} touches in {len(made.programs)} programs; {SHEET}/setup.html")
-    for refusal in plan.refused:
-        say(f"- touch dropped: {refusal}")
+    say_each(f"touch dropped: {refusal}" for one in stations for refusal in one.plan.refused)
+    say_each(f"programs of set-up {name} were left alone" for name in others)
     return 0
+
+
+def _of_one_setup(
+    programs: list[ReadProgram], parts: list[LogPart]
+) -> tuple[list[ReadProgram], list[str]]:
+    """Programs of the set-up that logs are of, and the names of the other set-ups.
+
+    Raises:
+        DesignError: Logs of several set-ups, or of one that no program has.
+    """
+    from twin.errors import DesignError
+
+    logged = list(dict.fromkeys(part.heading.setup.name for part in parts))
+    names = list(dict.fromkeys(program.heading.setup.name for program in programs))
+    if len(logged) != 1 or logged[0] not in names:
+        raise DesignError(
+            f"{parts[0].path}: logs of set-up {', '.join(logged)}, expected those of one of the "
+            f"set-ups that the programs are for: {', '.join(names)}"
+        )
+    here = [program for program in programs if program.heading.setup.name == logged[0]]
+    return here, [name for name in names if name != logged[0]]
+
+
+def _stations(
+    programs: list[ReadProgram],
+    standard: Standard,
+    chain: Chain,
+    setup: Setup,
+    control: str | None,
+) -> list[Station]:
+    """The programs of every probe, planned again for where the standard stands."""
+    from probe_paths.emit import make_programs
+    from probe_paths.locate import planned_again
+    from probe_paths.stations import Station
+
+    out = []
+    for words, mine in _by_probe(programs, control).items():
+        plan = planned_again(mine, standard, chain, setup)
+        out.append(Station(plan, words, make_programs(plan, words, feeds_of(mine, chain))))
+    return out
+
+
+def _by_probe(programs: list[ReadProgram], control: str | None) -> dict[Dialect, list[ReadProgram]]:
+    """Programs by the words, with tool and first letters, that they were written with."""
+    found: dict[Dialect, list[ReadProgram]] = {}
+    for program in programs:
+        found.setdefault(_dialect(control, program.path), []).append(program)
+    return found
 
 
 def programs_of(design: Path) -> list[Path]:
@@ -169,6 +214,9 @@ def _dialect(control: str | None, program: Path) -> Dialect:
     dialect, text = read_dialect(name), program.read_text(encoding="ascii", errors="replace")
     if tool := re.search(r";TOOL (\d+) IS THE PROBE", text):
         dialect = replace(dialect, tool=int(tool[1]))
+    if prefix := re.match(r"(.+?)_[A-Z0-9_]+_\d+\Z", program.stem.upper()):
+        dialect = replace(dialect, prefix=prefix[1])
+    dialect = replace(dialect, is_tilted=";FRAME SPATIAL" in text and dialect.has_planes)
     if preset := re.search(r";PRESET (\d+):", text):
         dialect = replace(dialect, preset=int(preset[1]))
     if folder := re.search(r"F-PRINT (\S+)\\[A-Z0-9_]+\.A ", text):

@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     from artefact.reach import standing_remarks
     from matstd.console import say, say_assumed, say_each
     from matstd.folder import results_folder
-    from matstd.stages.from_project import dialect, feeds
+    from matstd.stages.from_project import dialects, feeds
     from matstd.workers import connected
     from report.task import task_lines
     from report.words import design_lines, proof_line
@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
     if args.control:  # a file is seen from where the user stands, not from the project
         own = str(Path(args.control).resolve())
         project = replace(project, control=own if own.endswith(".toml") else args.control)
-    dialect(project)  # a control that nobody knows is refused before any work
+    dialects(project)  # a control that nobody knows is refused before any work
     say_assumed(project.chain)
     say_each(project.remarks)
     say_each(standing_remarks(project.chain, project.setup.T_table_artefact))
@@ -82,25 +82,29 @@ def run(args: argparse.Namespace) -> int:
     ):
         from matstd.progress import stages
         from matstd.stages.design import design
-        from probe_paths.locate import companions
-        from report.pages import write_design_page, write_setup_page
+        from matstd.stages.sheets import write_sheets
+        from report.pages import write_design_page
 
         with stages() as progress, connected(args.scheduler) as workers:
             made = design(project, folder, progress, workers)
             progress("report", 0, 1)
             remarks = write_design_page(made, folder)
             print_report(folder, printed_by)
-            words, raised = dialect(project), project.workshop.dry_run_mm
-            first = companions(made.plan, words, feeds(project), raised)
-            first.write(folder / SHEET)
-            sheet = write_setup_page(folder / SHEET, made.plan, made.programs, first, words)
-            print_report(sheet.parent, printed_by, sheet.stem)
+            raised = project.workshop.dry_run_mm
+            write_sheets(folder / SHEET, made.stations, feeds(project), printed_by, raised)
     say_each(remarks)
     verdict, *others = design_lines(made.placement, project.workspace)
     say(verdict, style="bold")
     say_each(others)
-    dropped = dict.fromkeys(map(str, made.plan.refused))  # a pose is visited twice
+    # a pose is visited twice
+    dropped = dict.fromkeys(str(r) for one in made.stations for r in one.plan.refused)
     say_each(f"touch dropped: {refusal}" for refusal in dropped)
+    tools = {one.dialect.tool for one in made.stations}
+    say_each(
+        f"tool {probe.tool} has no program: those before it make every touch that it could"
+        for probe in project.further_probes
+        if probe.tool not in tools
+    )
     say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
     say_each(task_lines(made.budgets, project.task.tolerance, made.visits))
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")

@@ -1,0 +1,27 @@
+"""What is usual of a quantity of the geometry, before a run: of its axis, else of its class."""
+
+import numpy as np
+
+from diagnosis.fit import Fit
+from diagnosis.geometry.quantities import geometric_effects
+from twin.effects import ComponentError
+from twin.frames import Array
+
+
+def expected_size(fit: Fit, weights: Array) -> float:
+    """Standard deviation before the run, as the axis or the class of the machine has it."""
+    part = slice(len(weights))
+    sd = (weights / fit.prior.factor[part] / fit.widened) @ fit.prior.root[part, part]
+    return float(np.linalg.norm(sd * _stated(fit)))
+
+
+def _stated(fit: Fit) -> Array:
+    """What the machine file expects of every parameter over what its class has, (P,)."""
+    out = np.ones(len(fit.model.parameters))
+    for start, effect in geometric_effects(fit):
+        if isinstance(effect, ComponentError) and not effect.symbol.is_angular:
+            expected = fit.model.chain.link(effect.symbol.link).expected
+            if expected is not None:
+                sizes = [p.sd for p in effect.parameters]
+                out[start : start + len(sizes)] = expected / np.array(sizes)
+    return out

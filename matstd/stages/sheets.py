@@ -1,0 +1,37 @@
+"""Sheets of a campaign, and the programs that are run beside those that measure."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from matstd.options import print_report
+from probe_paths.emit import Feeds
+from probe_paths.locate import RAISED, companions
+from probe_paths.stations import Station
+from report.pages import Printer, write_setup_page
+
+
+def write_sheets(
+    folder: Path,
+    stations: Sequence[Station],
+    feeds: Feeds,
+    printed_by: Printer | None,
+    raised: float = RAISED,
+) -> None:
+    """Write a sheet for every station, and the programs that go with it.
+
+    Args:
+        folder: To be made.
+        stations: In their order.
+        feeds: Of the programs.
+        printed_by: Prints a sheet as PDF; None where nobody asked.
+        raised: By how much dry runs are raised, mm.
+    """
+    setups: set[str] = set()
+    for number, station in enumerate(stations):
+        is_further = station.setup in setups
+        setups.add(station.setup)
+        plan, words = station.plan, station.dialect
+        others = companions(plan, words, feeds, raised, is_further=is_further)
+        others.write(folder)
+        sheet = write_setup_page(folder, stations, number, others)
+        print_report(folder, printed_by, sheet.stem)

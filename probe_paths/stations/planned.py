@@ -1,0 +1,172 @@
+"""Several probes and several clampings of one standard: who makes which touch.
+
+Everything is wanted of the first probe in the first clamping, for which the standard was designed.
+What a probe cannot touch is left to the next one, which repeats some touches on balls, as nobody
+knows to a micrometre how its ball stands against that of the first. A further clamping is given the
+same places on the standard, at table poses of the first at which they can be touched there.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from artefact.body import Standard
+from artefact.reach import ProbeReach, Requests, Workshop
+from probe_paths.plan import PlanOptions, Probe, Refusal, TouchPlan, plan_touches
+from twin.errors import NotReachable
+from twin.machine import Chain
+from twin.record import IntArray, Setup
+
+_POSES_TRIED = 6
+"""Table poses at which a place of a further clamping is looked for, the best inclined first."""
+
+
+_LINKS = 8
+"""Touches on balls that a further probe repeats, at every pose that it visits or else at others:
+twice the four numbers of a stylus."""
+
+
+@dataclass(frozen=True, eq=False)
+class Clamping:
+    """A place of the standard, with what stands beside it there."""
+
+    setup: Setup
+    workshop: Workshop
+
+
+def plan_campaign(
+    standard: Standard,
+    chain: Chain,
+    probes: Sequence[Probe],
+    clampings: Sequence[Clamping],
+    requests: Requests,
+    options: PlanOptions,
+) -> list[tuple[int, TouchPlan]]:
+    """Plans of all probes in all clampings, in the order in which they are run.
+
+    Refusals stand with the first probe of a clamping, where no probe makes the touch; places that a
+    further clamping does not reach are not counted as refused.
+
+    Args:
+        probes: The one that the standard was designed for, then those that make what is left.
+        clampings: The one that it was designed for, then others.
+        requests: Wanted touches, at table poses of the first clamping.
+        options: How carefully; its workshop is that of each clamping.
+
+    Returns:
+        Of every plan the number of its probe, from 0, and the plan.
+
+    Raises:
+        NotReachable: More requests of the first clamping refused by all probes than tolerated; a
+            further clamping in which nothing can be touched.
+    """
+    out: list[tuple[int, TouchPlan]] = []
+    for number, clamping in enumerate(clampings):
+        here = replace(options, workshop=clamping.workshop)
+        wanted = requests if number == 0 else _reposed(standard, chain, probes, clamping, requests)
+        tolerated = options.tolerated if number == 0 else len(wanted)
+        out += _plans(standard, chain, probes, clamping.setup, wanted, here, tolerated)
+    return out
+
+
+def _plans(
+    standard: Standard,
+    chain: Chain,
+    probes: Sequence[Probe],
+    setup: Setup,
+    wanted: Requests,
+    options: PlanOptions,
+    tolerated: int,
+) -> list[tuple[int, TouchPlan]]:
+    """Plans in one clamping, each with the number of its probe."""
+    left, out = np.arange(len(wanted)), list[tuple[int, TouchPlan]]()
+    most = tolerated if len(probes) == 1 else len(wanted)
+    against: dict[int, Refusal] = {}
+    for number, probe in enumerate(probes):
+        if not len(left):
+            break
+        here = replace(options, tolerated=most)
+        rows = np.concatenate([left, _links(standard, wanted, left)]) if number else left
+        try:
+            plan = plan_touches(standard, chain, probe, setup, wanted[rows], here)
+        except NotReachable:
+            if not out:  # the first is the one that everything was designed for
+                raise
+            continue  # what is against the touches is what was against the first
+        refused = [r for r in plan.refused if 0 <= r.request < len(left)]
+        anchors = tuple(r for r in plan.refused if r.request < 0)
+        plan = replace(plan, request=_numbered(plan.request, rows), refused=anchors)
+        left = left[[r.request for r in refused]] if refused else left[:0]
+        for row, refusal in zip(left.tolist(), refused, strict=True):
+            against.setdefault(row, replace(refusal, request=row))
+        out.append((number, plan))
+    lost = tuple(against[row] for row in left.tolist())
+    if len(lost) > tolerated:
+        raise NotReachable(
+            f"{len(lost)} of {len(wanted)} touches cannot be made by any of {len(probes)} probes, "
+            f"{tolerated} tolerated; the first, by the first probe: {lost[0]}",
+            refused=list(lost),
+        )
+    number, first = out[0]
+    return [(number, replace(first, refused=(*lost, *first.refused))), *out[1:]]
+
+
+def _links(standard: Standard, wanted: Requests, left: IntArray) -> IntArray:
+    """Touches on balls that others make: at the poses of those that are left, or elsewhere."""
+    is_ball = np.isin(wanted.feature, [sphere.name for sphere in standard.spheres])
+    is_ball[left] = False
+    pose = wanted.pose
+    lots = [np.flatnonzero(is_ball & (pose == one))[:_LINKS] for one in np.unique(pose[left])]
+    here = np.concatenate(lots)
+    elsewhere = np.setdiff1d(np.flatnonzero(is_ball), here)
+    return np.concatenate([here, elsewhere[: max(_LINKS - len(here), 0)]])
+
+
+def _numbered(request: IntArray, rows: IntArray) -> IntArray:
+    """Rows of all requests for rows of those that were left; -1 stays."""
+    return np.where(request >= 0, rows[np.maximum(request, 0)], request)
+
+
+def _reposed(
+    standard: Standard,
+    chain: Chain,
+    probes: Sequence[Probe],
+    clamping: Clamping,
+    requests: Requests,
+) -> Requests:
+    """The same places in another clamping, each at a table pose at which it can be touched there.
+
+    That is its own pose, or else of all poses that occur the one at which the probe is inclined
+    least to the surface. Places that no probe touches at any of them are left out.
+
+    Raises:
+        NotReachable: Nothing is left.
+    """
+    poses = np.unique(requests.rotary, axis=0)
+    rotary, found = requests.rotary.copy(), np.zeros(len(requests), dtype=bool)
+    for probe in probes:
+        reach = ProbeReach(
+            chain, clamping.setup, probe.shape, probe.length, workshop=clamping.workshop
+        )
+        lean, best = _by_lean(reach, requests, poses)
+        for attempt in range(-1, min(_POSES_TRIED, len(poses))):
+            rows = np.flatnonzero(~found)
+            if attempt >= 0:
+                rows = rows[lean[rows, best[rows, attempt]] < reach.steepest]
+                rotary[rows] = poses[best[rows, attempt]]
+            tried = replace(requests[rows], rotary=rotary[rows])
+            rows = rows[reach.is_reachable(tried)]
+            tried = replace(requests[rows], rotary=rotary[rows])
+            found[rows[reach.is_clear(standard, tried)]] = True
+    if not found.any():
+        raise NotReachable(
+            f"set-up {clamping.setup.name}: none of {len(requests)} touches can be made there"
+        )
+    return replace(requests, rotary=rotary)[found]
+
+
+def _by_lean(reach: ProbeReach, requests: Requests, poses: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Angle between normal and tool at every pose (N, K), and the poses from least to most."""
+    _, lean = reach.everywhere(requests.point, requests.normal, poses)
+    return lean, np.argsort(lean, axis=1, kind="stable")

@@ -1,0 +1,180 @@
+"""Coordinates of tilted planes: other numbers, the same positions, the same measurements."""
+
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from artefact.brief.project_file import read_project
+from matstd.stages.from_project import dialect as words_of
+from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.evaluation import evaluate
+from probe_paths.campaign.virtual_run import run_programs
+from probe_paths.control.interpreter import interpret
+from probe_paths.control.log import read_log
+from probe_paths.control.steps import Move, ProbeStep
+from probe_paths.emit.program import make_dry_run, make_programs
+from probe_paths.language.dialect import Dialect
+from probe_paths.language.dialect_file import read_dialect
+from probe_paths.plan.frame import ProgramFrame
+from probe_paths.plan.probe import Probe
+from twin.effects.geometric import component
+from twin.errors import BadFile, DesignError
+from twin.files.machine_file import read_machine
+from twin.machine.kinematics import table_to_tool
+from twin.model import contribution
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "golden"))
+import make_programs as golden  # noqa: E402
+
+TILTED = replace(Dialect(), is_tilted=True)
+PIVOT, ORIGIN = np.array([0.0, 0.0, -420.0]), np.array([0.0, 0.0, -500.0])
+
+
+@pytest.fixture(scope="module")
+def plan():
+    return golden.plan()
+
+
+@pytest.fixture(scope="module")
+def made(plan):
+    return make_programs(plan, TILTED)
+
+
+def read(made, plan, text=None):
+    (program,) = made.programs
+    data = (text or program.text).encode("ascii")
+    return interpret(data, Path(program.file), made.masks.get, plan.chain)
+
+
+@pytest.fixture(scope="module")
+def both(made, plan):
+    flat = make_programs(plan, Dialect())
+    return read(made, plan), read(flat, plan)
+
+
+def test_axes_end_where_programs_without_planes_end(both):
+    tilted, flat = both
+    assert tilted.heading.is_tilted
+    assert not flat.heading.is_tilted
+    assert [type(step) for step in tilted.steps] == [type(step) for step in flat.steps]
+    for one, other in zip(tilted.steps, flat.steps, strict=True):
+        if isinstance(one, (Move, ProbeStep)):
+            assert np.allclose(one.q, other.q, rtol=0.0, atol=1.01e-4, equal_nan=True)
+        if isinstance(one, ProbeStep):
+            assert np.allclose(one.direction, other.direction, atol=1e-4)
+
+
+def test_words_are_the_pole_of_the_ball_in_the_plane_by_a_rotation_of_our_own(made, both, plan):
+    """The text alone: spatial angles about fixed X, Y, Z; kinematics of this machine by hand."""
+    _, flat = both
+    (program,) = made.programs
+    pole = plan.probe.length + plan.probe.radius
+    poles, turn, xyz, starts = [], None, {}, []
+    for line in program.text.splitlines():
+        block = line.partition(" ")[2]
+        if match := re.match(r"PLANE SPATIAL SPA(\S+) SPB(\S+) SPC(\S+) STAY", block):
+            turn = Rotation.from_euler("xyz", [float(v) for v in match.groups()], degrees=True)
+        elif block.startswith("L ") and "M91" not in block and turn is not None:
+            xyz |= {a: float(v) for a, v in re.findall(r" ([XYZ])([+-][\d.]+)", block)}
+        elif block.startswith("TCH PROBE 4.0"):
+            starts.append(turn.apply([xyz[a] for a in "XYZ"]))
+    for touch in flat.touches:
+        c, b = touch.q[:2]
+        gauge = touch.q[2:5] - [0.0, 0.0, pole]
+        on_table = Rotation.from_euler("z", c).apply(
+            Rotation.from_euler("y", b).apply(gauge - PIVOT) + PIVOT
+        )
+        poles.append(on_table - ORIGIN)
+    assert len(starts) == len(poles) > 40
+    assert np.abs(np.array(starts) - np.array(poles)).max() < 2.0e-4
+
+
+def test_logs_of_both_strategies_are_the_same_measurements(both, plan):
+    errors = [(component(plan.chain, "EXX", "linear"), np.array([0.02]))]
+    machine = VirtualMachine(plan.chain, lambda t: contribution(errors, t))
+    runs = []
+    for program in both:
+        (run,) = run_programs([program], plan.standard, machine, np.random.default_rng(1))
+        ((name, log),) = run.log.items()
+        parts = read_log(name, plan.chain.rotary_axes, log)
+        assert parts[0].heading.is_tilted is program.heading.is_tilted
+        runs.append(evaluate(parts, plan.standard, plan.chain, 1e-3))
+    tilted, flat = runs
+    assert np.abs(tilted.touches.q - flat.touches.q).max() < 2e-4
+    assert np.abs(tilted.deviation - flat.deviation).max() < 2e-6
+    assert np.abs(flat.deviation).max() > 1e-3
+
+
+def test_a_dry_run_has_planes_too(plan):
+    made = make_dry_run(plan, 80.0, TILTED)
+    assert "PLANE SPATIAL" in made.programs[0].text
+    moves = [step for step in read(made, plan).steps if isinstance(step, Move)]
+    assert len(moves) > 100
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        (r"SPB-30\.0000", "SPB+30.0000", "SPB-30.0000 SPC.*square to the tool as it stands"),
+        (r"SPC\+120\.0000", "SPC+120.0010", "square to the tool"),
+        (r"SEQ-", "SEQ+", "the solution that the axes stand at"),
+        (r"\d+ PLANE SPATIAL [^\r]*\r\n", "", "PLANE SPATIAL before it, as the head says"),
+        (r"(?s)(PLANE SPATIAL.*?)\d+ PLANE RESET STAY\r\n", r"\1", "PLANE RESET STAY before it"),
+        (r"FRAME SPATIAL", "FRAME AXIAL", "FRAME AXIAL.*expected FRAME SPATIAL"),
+        (r"\d+ ;FRAME SPATIAL\r\n", "", "lines for the log that begin with"),
+        (r" STAY SEQ", " TURN SEQ", "PLANE RESET STAY, or PLANE SPATIAL SPA<signed>"),
+    ],
+)
+def test_a_plane_that_is_not_the_table_s_is_refused(old, new, reason, made, plan):
+    (program,) = made.programs
+    lines = re.sub(old, new, program.text, count=1).split("\r\n")
+    assert lines != program.text.split("\r\n")
+    bare = [re.sub(r"^\d+ ", "", line) for line in lines if line]
+    with pytest.raises(BadFile, match=reason):
+        read(made, plan, "\r\n".join(bare) + "\r\n")
+
+
+@pytest.mark.parametrize("name", ["four-axis", "horizontal", "trunnion"])
+def test_spatial_angles_mean_the_table_of_any_machine(name):
+    chain = read_machine(ROOT / "examples" / "machines" / f"{name}-machine.toml")
+    frame, rng = ProgramFrame(chain, Probe()), np.random.default_rng(3)
+    for rotary in [*rng.uniform(-2.5, 2.5, (20, len(chain.rotary_axes))),
+                   np.full(len(chain.rotary_axes), np.pi / 2)]:  # fmt: skip
+        angles = frame.plane(rotary)
+        q = np.zeros((1, len(chain.axes)))
+        q[0, frame.rotary] = rotary
+        found = Rotation.from_euler("xyz", angles, degrees=True).as_matrix()
+        assert np.allclose(found, table_to_tool(chain, q)[0, :3, :3], atol=1e-9)
+        assert frame.is_plane(np.round(angles, 4), rotary)
+        assert not frame.is_plane(angles + 0.01, rotary)
+
+
+def test_a_machine_that_turns_its_tool_has_no_such_planes():
+    chain = read_machine(ROOT / "examples" / "machines" / "head-table-machine.toml")
+    with pytest.raises(DesignError, match="turns its tool"):
+        ProgramFrame(chain, Probe()).tilted(np.full(len(chain.rotary_axes), 0.3))
+
+
+def test_a_control_without_planes_is_refused(plan, tmp_path):
+    linuxcnc = replace(read_dialect("linuxcnc"), is_tilted=True)
+    with pytest.raises(DesignError, match="has no PLANE SPATIAL"):
+        make_programs(plan, linuxcnc)
+    for machine, control, reason in (
+        ("hsm600u-machine.toml", "linuxcnc", "has_planes"),
+        ("machines/head-table-machine.toml", "tnc640", "whose tool . turns"),
+    ):
+        path = tmp_path / "project.toml"
+        path.write_text(
+            f'format = "project/1"\nmachine = "{ROOT / "examples" / machine}"\nseed = 1\n'
+            f'control = "{control}"\n[probe]\nradius_mm = 3.0\nlength_mm = 160.0\n'
+            '[workshop]\nstrategy = "plane-spatial"\n',
+            encoding="utf-8",
+        )
+        with pytest.raises(BadFile, match=f"workshop.strategy.*{reason}"):
+            words_of(read_project(path))
