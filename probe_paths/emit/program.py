@@ -223,7 +223,7 @@ class _Maker:
         self.plan, self.dialect, self.clock = plan, dialect, clock
         self.language = LANGUAGES[dialect.language]
         form, rotary = self.language.LOG, plan.chain.rotary_axes
-        self.shared = shared_masks(form, dialect.log_decimals, rotary)
+        self.shared = shared_masks(form, dialect.log_decimals, rotary, dialect.sensors)
         self.masks = dict(self.shared)
         self.is_first = special is not None and special.is_first
         written_by = FirstWriter if self.is_first else Writer
