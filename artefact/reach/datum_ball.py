@@ -52,7 +52,14 @@ class DatumBall:
             raise DesignError("a datum ball beside a standard that is tilted: expected it upright")
         places = np.array([[self.x, self.y, self.z], [self.x, self.y, self.low]])
         centre, foot = apply(T_artefact_face, places)
-        return DatumSphere(DATUM, centre, self.radius, self.stem, self.stem, float(foot[2]))
+        return DatumSphere(
+            name=DATUM,
+            centre=centre,
+            radius=self.radius,
+            stem_radius=self.stem,
+            foot_radius=self.stem,
+            foot=float(foot[2]),
+        )
 
     def beside(self, standard: Standard, T_table_artefact: Array) -> Standard:
         """A standard that stands somewhere, with the ball as its last sphere."""

@@ -8,7 +8,6 @@ never learns what the virtual machine knew. `visits` runs them again and again. 
 
 from probe_paths.campaign.ball_change import (
     BallChange,
-    EffectiveRadius,
     ball_changes,
     check_changes,
     effective_radii,
@@ -31,7 +30,6 @@ __all__ = [
     "BallChange",
     "Campaign",
     "ContactSolver",
-    "EffectiveRadius",
     "Order",
     "Ordering",
     "VirtualMachine",

@@ -1,10 +1,11 @@
 """Words of where a standard stands, and of what a ball tells of the probe."""
 
 from collections.abc import Mapping, Sequence
+from datetime import datetime
 
 import numpy as np
 
-from probe_paths.campaign import BallChange, EffectiveRadius
+from probe_paths.campaign import BallChange
 from probe_paths.locate import Found
 from twin.frames import fixed_xyz_angles, inverse
 from twin.record import Setup
@@ -15,7 +16,7 @@ def ball_lines(
     changes: Sequence[BallChange],
     limit: float | None = None,
     heights: Sequence[Mapping[str, float]] = (),
-    radii: Sequence[EffectiveRadius] = (),
+    radii: Sequence[tuple[datetime, float, float]] = (),
 ) -> list[str]:
     """What the same ball tells of the time between two looks at it, in words.
 
@@ -23,7 +24,8 @@ def ball_lines(
         changes: In the order of time.
         limit: Beyond which measurements are refused, mm; None where they are not.
         heights: What touches of commissioning programs tell of Z, by its meanings, mm.
-        radii: What the calibrated ball of the workshop tells.
+        radii: What the calibrated ball of the workshop tells: when, of the effective radius of the
+            probe what it is beyond its calibration, and the uncertainty of that, mm.
     """
     lines = []
     for beside in heights:
@@ -34,9 +36,9 @@ def ball_lines(
             f"{abs(beside[best]):.3f} mm beside its place, {others}"
         )
     lines += [
-        f"datum ball at {one.begin:%H:%M}: effective radius of the probe "
-        f"{one.excess / UM:+.1f} ± {one.u / UM:.1f} µm beyond its calibration"
-        for one in radii
+        f"datum ball at {begin:%H:%M}: effective radius of the probe {excess / UM:+.1f} ± "
+        f"{u / UM:.1f} µm beyond its calibration"
+        for begin, excess, u in radii
     ]
     within = "" if limit is None else f" (limit {limit / UM:g} µm)"
     for change in changes:

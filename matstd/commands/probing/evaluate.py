@@ -59,14 +59,10 @@ def run(args: argparse.Namespace) -> int:
     from probe_paths.control import read_log
     from probe_paths.language import Dialect
     from report.words import ball_lines
-    from twin.errors import DesignError
     from twin.files import read_machine, read_sensors, refuse_to_overwrite, write_run
     from twin.units import UM
 
-    if not 1e-3 <= args.u_um <= 1000.0:
-        raise DesignError(f"--u-um {args.u_um:g}: expected an uncertainty from 0.001 to 1000 µm")
-    if not 0.0 < args.probe_limit_um < np.inf:
-        raise DesignError(f"--probe-limit-um {args.probe_limit_um:g}: expected more than 0 µm")
+    _check_numbers(args)
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.machine)
     standard = read_standard(args.standard)
@@ -105,3 +101,13 @@ def run(args: argparse.Namespace) -> int:
         if not part.is_complete
     )
     return 0
+
+
+def _check_numbers(args: argparse.Namespace) -> None:
+    """Refuse an uncertainty or a limit that means nothing; raises DesignError."""
+    from twin.errors import DesignError
+
+    if not 1e-3 <= args.u_um <= 1000.0:
+        raise DesignError(f"--u-um {args.u_um:g}: expected an uncertainty from 0.001 to 1000 µm")
+    if not 0.0 < args.probe_limit_um < float("inf"):
+        raise DesignError(f"--probe-limit-um {args.probe_limit_um:g}: expected more than 0 µm")
