@@ -107,7 +107,8 @@ def run_programs(
         DesignError: A program made for another standard.
     """
     solvers = [_solver(program, standard, machine, rng) for program in programs]
-    planned = _planned_touches(solvers)
+    # what a disturbance has to know of the other programs; who has none asks nothing
+    planned = [] if machine.disturbance is None else _planned_touches(solvers)
     runs: list[VirtualRun] = []
     begin = 0.0
     for i, solver in enumerate(solvers):
@@ -195,7 +196,7 @@ def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
 
 
 def _check_standard(program: ReadProgram, standard: Standard) -> None:
-    names = list(standard.features)
+    names = list(program.heading.touched(standard).features)
     for number, name in program.features.items():
         if not 0 < number <= len(names) or names[number - 1] != name:
             raise DesignError(
