@@ -4,8 +4,9 @@ Whatever the plan needs to know of the room and nothing that it could find out b
 that contradicts itself, or a probe that cannot be, is refused before any work is done.
 """
 
+import re
 import tomllib
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -72,6 +73,14 @@ class BodyTable(Table):
     setup: str = ""
 
 
+class TemperatureTable(Table):
+    """`[workshop.temperatures]`: a sensor whose reading the control's PLC hands to programs."""
+
+    parameter: int = Field(ge=100, le=107)
+    factor: float = 1.0
+    offset: float = 0.0
+
+
 AnyProbe = TypeVar("AnyProbe", bound=ProbeTable)
 
 
@@ -99,6 +108,7 @@ class WorkshopTable(Table):
     minutes_per_file: float | None = Field(default=None, ge=1.0)
     dry_run_mm: float = Field(default=100.0, ge=10.0)
     height_read: Literal["gauge", "tip"] = "gauge"
+    temperatures: dict[str, TemperatureTable] = Field(default_factory=dict)
     strategy: Literal["axes", "plane-spatial"] = "axes"
 
 
@@ -195,6 +205,7 @@ def check_workshop(workshop: WorkshopTable, setups: Collection[str], path: Path)
     table = workshop.table
     if table is not None and (table.diameter_mm is None) == (table.sides_mm is None):
         raise BadFile(path, "workshop.table", "not one outline", "diameter_mm or sides_mm")
+    _check_temperatures(workshop.temperatures, path)
     names = [body.name for body in workshop.bodies]
     for i, body in enumerate(workshop.bodies):
         where = f"workshop.bodies.{i}"
@@ -211,6 +222,20 @@ def check_workshop(workshop: WorkshopTable, setups: Collection[str], path: Path)
         if body.setup and body.setup not in setups:
             expected = f"a set-up of the project: {', '.join(setups)}"
             raise BadFile(path, f"{where}.setup", repr(body.setup), expected)
+
+
+def _check_temperatures(sensors: Mapping[str, TemperatureTable], path: Path) -> None:
+    """Names that a column can have, a parameter for each."""
+    for name, sensor in sensors.items():
+        key = f"workshop.temperatures.{name}"
+        if not re.fullmatch(r"[A-Za-z0-9_]{1,16}", name):
+            raise BadFile(path, key, repr(name), "1 to 16 letters, digits or _")
+        if not 1e-6 <= abs(sensor.factor) <= 1e3:
+            raise BadFile(path, f"{key}.factor", f"{sensor.factor:g}", "0.000001 to 1000")
+        others = [n for n, s in sensors.items() if s.parameter == sensor.parameter]
+        if len(others) > 1:
+            expected = f"a parameter for each of {', '.join(others)}"
+            raise BadFile(path, f"{key}.parameter", sensor.parameter, expected)
 
 
 def table_radius(workshop: WorkshopTable) -> float | None:

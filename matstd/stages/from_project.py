@@ -12,7 +12,7 @@ from artefact.reach import ProbeReach, Solid, Workshop, covering_solids, round_t
 from artefact.worth import Calibration, CriterionOptions, TouchOptions
 from probe_paths.emit import SEARCH, Feeds
 from probe_paths.language import Dialect, checked_name, read_dialect
-from probe_paths.plan import PlanOptions, Probe
+from probe_paths.plan import PlanOptions, Probe, Sensor
 from probe_paths.stations import Clamping, with_tool
 from twin.errors import BadFile
 from twin.frames import pose, rotation
@@ -125,7 +125,15 @@ def dialect(project: Project) -> Dialect:
         raise BadFile(project.path, "workshop.folder", stated.folder, "nothing for this control")
     keys = {"folder": "folder", "tool": "tool", "preset": "preset", "height_read": "result_height"}
     given = {keys[k]: getattr(stated, k) for k in keys if k in stated.model_fields_set}
-    return replace(words, is_tilted=_is_tilted(project, words), **given)
+    sensors = tuple(
+        Sensor(name, table.parameter, table.factor, table.offset)
+        for name, table in stated.temperatures.items()
+    )
+    if sensors and words.language != "klartext":
+        found = f"{len(sensors)} sensors for {project.control}"
+        expected = "a control that hands them over as Q100 to Q107; else evaluate --sensors"
+        raise BadFile(project.path, "workshop.temperatures", found, expected)
+    return replace(words, is_tilted=_is_tilted(project, words), sensors=sensors, **given)
 
 
 def _is_tilted(project: Project, words: Dialect) -> bool:

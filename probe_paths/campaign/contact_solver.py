@@ -1,5 +1,6 @@
 """Where true balls meet true surfaces: all touches of a program at once, by Newton's method."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime
 
@@ -39,6 +40,8 @@ class VirtualMachine:
         noise: Standard deviation of the trigger along the normal, mm.
         begin: What its clock says when the campaign begins.
         clock: Speeds.
+        dialect: Of its control.
+        temperature: Of a sensor by name at a time since the campaign began (s), degC.
     """
 
     chain: Chain
@@ -50,6 +53,7 @@ class VirtualMachine:
     begin: datetime = FIRST_MORNING
     clock: Clock = field(default_factory=Clock)
     dialect: Dialect = field(default_factory=Dialect)
+    temperature: Callable[[str, float], float] = lambda name, now: 20.0
 
 
 class ContactSolver:

@@ -7,7 +7,7 @@ import numpy as np
 
 from artefact.body import Standard
 from probe_paths.campaign.contact_points import at_true_contacts, foot_points
-from probe_paths.campaign.log_parts import checked_parts, distinct_parts, without_rows
+from probe_paths.campaign.log_parts import checked_parts, distinct_parts, sensed, without_rows
 from probe_paths.control import LogPart
 from probe_paths.language import Dialect
 from probe_paths.plan import LINEAR, Probe, ProgramFrame
@@ -74,6 +74,7 @@ def evaluate(
         if not far:
             break
     u_touch = _uncertainty(standard, touches.feature, u)
+    remarks += sensed(parts)[1]
     run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
@@ -269,6 +270,7 @@ def _touches(
         setup=setup,
         time=np.concatenate([p.time + (p.begin - start).total_seconds() for p in parts]),
         approach=approach,
+        temperature=sensed(parts)[0],
         feature=feature,
         pose=pose_label.reshape(-1).astype(np.int64),
     )

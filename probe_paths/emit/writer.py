@@ -100,7 +100,8 @@ class Writer:
         self.special = special
         self.raised = special.raised if special else None
         self.language = LANGUAGES[dialect.language]
-        tilted = dialect.is_tilted and not (special is not None and special.is_first)
+        is_first = special is not None and special.is_first
+        tilted = dialect.is_tilted and not is_first
         self.tilting = self.language.TILTING if tilted and dialect.has_planes else None
         if tilted and self.tilting is None:
             raise DesignError("coordinates of tilted planes: the control has no PLANE SPATIAL")
@@ -116,6 +117,7 @@ class Writer:
             serial=stated_serial(plan.standard.serial),
             calibration=calibration_hash(plan.standard),
             is_tilted=self.tilting is not None,
+            sensors=() if is_first else dialect.sensors,
         )
         top = plan.chain.link("Z").range[1]
         self.top = top - plan.options.retract

@@ -75,8 +75,11 @@ def run(args: argparse.Namespace) -> int:
         return 0
     check_changes(changes, limit)
     measured = evaluate(parts, standard, chain, u, dialect)
+    twice: list[str] = []
     if args.sensors:
-        measured = read_sensors(args.sensors).joined(measured, min(part.begin for part in parts))
+        record = read_sensors(args.sensors)
+        twice = [name for name in measured.touches.temperature if name in record.temperature]
+        measured = record.joined(measured, min(part.begin for part in parts))
     write_run(args.output, measured, seen_from(Path(args.output).parent, args.machine))
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
     say(
@@ -88,6 +91,7 @@ def run(args: argparse.Namespace) -> int:
     if not changes and any(part.is_ball for part in parts):
         say_each(["the ball was measured once: whether the probe has changed is not known"])
     say_each(measured.remarks)
+    say_each(f"T_{name}_degC: that of {args.sensors} counts, not the log's" for name in twice)
     say_each(
         f"{part.path}: {part.program} stopped after {len(part.number)} touches"
         for part in parts

@@ -141,9 +141,15 @@ def _stations(
 
 def _by_probe(programs: list[ReadProgram], control: str | None) -> dict[Dialect, list[ReadProgram]]:
     """Programs by the words, with tool and first letters, that they were written with."""
+    from dataclasses import replace
+
     found: dict[Dialect, list[ReadProgram]] = {}
     for program in programs:
-        found.setdefault(_dialect(control, program.path), []).append(program)
+        words, head = _dialect(control, program.path), program.heading
+        if words.language == "klartext":
+            tilted = head.is_tilted and words.has_planes
+            words = replace(words, is_tilted=tilted, sensors=head.sensors)
+        found.setdefault(words, []).append(program)
     return found
 
 
@@ -216,7 +222,6 @@ def _dialect(control: str | None, program: Path) -> Dialect:
         dialect = replace(dialect, tool=int(tool[1]))
     if prefix := re.match(r"(.+?)_[A-Z0-9_]+_\d+\Z", program.stem.upper()):
         dialect = replace(dialect, prefix=prefix[1])
-    dialect = replace(dialect, is_tilted=";FRAME SPATIAL" in text and dialect.has_planes)
     if preset := re.search(r";PRESET (\d+):", text):
         dialect = replace(dialect, preset=int(preset[1]))
     if folder := re.search(r"F-PRINT (\S+)\\[A-Z0-9_]+\.A ", text):

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from matstd.options import add_effects, add_output, load_effects, seen_from
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
 
     from artefact.body import Standard
@@ -215,4 +217,15 @@ def virtual_machine(
         noise=args.noise_um * UM,
         begin=FIRST_MORNING if record is None else record.begin,
         dialect=dialect,
+        temperature=_thermometers(record),
     )
+
+
+def _thermometers(record: SensorRecord | None) -> Callable[[str, float], float]:
+    """What the control reads of a sensor: the record, or 20 degC of one that is not in it."""
+    import numpy as np
+
+    if record is None:
+        return lambda name, now: 20.0
+    since, known = record.since(record.begin), record.temperature
+    return lambda name, now: float(np.interp(now, since, known[name])) if name in known else 20.0
