@@ -8,7 +8,15 @@ from artefact.body import Base, Limits, Material
 from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, BodyTable, ProbeTable, Project
 from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
-from artefact.reach import ProbeReach, Solid, Workshop, covering_solids, round_table, still_frames
+from artefact.reach import (
+    DatumBall,
+    ProbeReach,
+    Solid,
+    Workshop,
+    covering_solids,
+    round_table,
+    still_frames,
+)
 from artefact.worth import Calibration, CriterionOptions, TouchOptions
 from probe_paths.emit import SEARCH, Feeds
 from probe_paths.language import Dialect, checked_name, read_dialect
@@ -84,9 +92,17 @@ def workshop(project: Project, setup: str = "") -> Workshop:
     here = ("", setup or project.setup.name)
     stated_here = [body for body in project.workshop.bodies if body.setup in here]
     bodies = [solid for body in stated_here for solid in _solids(project, body)]
-    made = Workshop(table, tuple(bodies))
+    made = Workshop(table, tuple(bodies), _ball(project, table))
     still_frames(made.on, project.chain, np.zeros((1, len(project.chain.axes))))
     return made
+
+
+def _ball(project: Project, table: Solid) -> DatumBall | None:
+    stated = project.workshop.ball
+    if stated is None:
+        return None
+    size = (0.5 * stated.diameter_mm, 0.5 * stated.stem_diameter_mm)
+    return DatumBall(*stated.at_mm, *size, table.high, 0.5 * stated.u_um * UM)
 
 
 def _solids(project: Project, body: BodyTable) -> list[Solid]:

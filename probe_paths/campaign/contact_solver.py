@@ -63,7 +63,7 @@ class ContactSolver:
         self, program: ReadProgram, standard: Standard, machine: VirtualMachine, noise: Array
     ) -> None:
         touches = program.touches
-        self.program, self.standard, self.machine, self.noise = program, standard, machine, noise
+        self.program, self.machine, self.noise = program, machine, noise
         probe = program.heading.probe
         self.radius, self.length = probe.radius, probe.length
         self.start = np.array([t.q for t in touches]).reshape(-1, len(machine.chain.axes))
@@ -71,6 +71,8 @@ class ContactSolver:
         self.distance = np.array([t.distance for t in touches])
         believed = program.heading.setup.T_table_artefact
         self.T_artefact_table = inverse(believed @ machine.setup_error)
+        # a ball on the table stands where it does, wherever the standard does
+        self.standard = program.heading.touched(standard, believed @ machine.setup_error)
         self.disturbance = machine.disturbance
         self._nominal_contact()
 

@@ -196,7 +196,7 @@ def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
 
 
 def _check_standard(program: ReadProgram, standard: Standard) -> None:
-    names = list(standard.features)
+    names = list(program.heading.touched(standard).features)
     for number, name in program.features.items():
         if not 0 < number <= len(names) or names[number - 1] != name:
             raise DesignError(

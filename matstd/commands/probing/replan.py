@@ -18,6 +18,7 @@ from matstd.options import (
 
 if TYPE_CHECKING:
     from artefact.body import Standard
+    from artefact.reach import DatumBall
     from probe_paths.control import LogPart, ReadProgram
     from probe_paths.emit import Feeds
     from probe_paths.language import Dialect
@@ -134,9 +135,17 @@ def _stations(
 
     out = []
     for words, mine in _by_probe(programs, control).items():
-        plan = planned_again(mine, standard, chain, setup)
+        plan = planned_again(mine, standard, chain, setup, _ball_of(mine[0], words, chain))
         out.append(Station(plan, words, make_programs(plan, words, feeds_of(mine, chain))))
     return out
+
+
+def _ball_of(program: ReadProgram, words: Dialect, chain: Chain) -> DatumBall | None:
+    """The ball on the table, as the program that touches it states it."""
+    from probe_paths.control import BALL, read_program
+
+    file = program.path.parent.parent / SHEET / f"{program.name.rpartition('_')[0]}_{BALL}.H"
+    return read_program(file, chain, dialect=words).heading.ball if file.exists() else None
 
 
 def _by_probe(programs: list[ReadProgram], control: str | None) -> dict[Dialect, list[ReadProgram]]:

@@ -59,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     from artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
-    from probe_paths.campaign import SMALLEST_U, ball_changes, simulate
+    from probe_paths.campaign import SMALLEST_U, ball_changes, effective_radii, simulate
     from probe_paths.control import read_program, stated_probe
     from probe_paths.language import read_dialect
     from report.words import ball_lines
@@ -94,7 +94,8 @@ def run(args: argparse.Namespace) -> int:
     say_assumed(run.touches.chain)
     u = max(machine.noise, SMALLEST_U)
     changes = ball_changes(campaign.parts, standard, machine.chain, u, dialect)
-    say_each(ball_lines(changes))
+    radii = effective_radii(campaign.parts, machine.chain, u, dialect)
+    say_each(ball_lines(changes, radii=radii))
     say_each(run.remarks)
     return 0
 
