@@ -12,7 +12,8 @@ from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.evidence.effect_signatures import ScaledEffect
 from diagnosis.fit.prior import Prior
 from diagnosis.search.task import DiagnosisTask
-from twin.foreign.positioning import PositioningTest, one_axis_machine, positioning_run
+from twin.foreign.axis_run import one_axis_machine, positioning_run
+from twin.foreign.positioning import PositioningTest
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.record.run import Run
