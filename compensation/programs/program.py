@@ -1,5 +1,6 @@
 """A part program as a file: its language by its ending, its blocks and motions."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -19,6 +20,9 @@ from twin.units import DEG
 _ENDINGS = {".h": klartext, ".ngc": gcode, ".nc": gcode, ".tap": gcode}
 MARK = "matstd model:"
 """Stands in the head of every compensated program."""
+
+
+_ABSURD = re.compile(r"\d{31,}")  # beyond any machine, and beyond what arithmetic can hold
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +74,9 @@ def read_part_program(
     if MARK in text:
         line = text[: text.index(MARK)].count("\n") + 1
         raise BadFile(path, f"line {line}", MARK, "a program that was not compensated before")
+    if absurd := _ABSURD.search(text):
+        line = text[: absurd.start()].count("\n") + 1
+        raise BadFile(path, f"line {line}", f"a number of {len(absurd[0])} digits", "30 at most")
     frame.linear  # noqa: B018  (a machine without them is refused before anything is read)
     reading = Reading(path, frame, lengths or {}, radii or {})
     language.read(text, reading)
