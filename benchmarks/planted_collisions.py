@@ -196,13 +196,18 @@ def pushed(points: Array, ways: list[Way], axis: Array, push: Array, wanted: flo
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The golden standard on its table between two clamps."""
+    """The golden standard on its table between two clamps.
+
+    `bodies` are points of what stands above the table's face, `hull` corners of all that turns:
+    beyond 90 degrees the lower side of the table is above its face.
+    """
 
     golden: ModuleType
     programs: tuple[ReadProgram, ...]
     standard: Standard
     bodies: dict[str, Array]
     workshop: Workshop
+    hull: Array
 
     @property
     def everything(self) -> Array:
@@ -231,8 +236,9 @@ def scene() -> Scene:
     )
     bodies = standard_points(standard, read[0].heading.setup.T_table_artefact)
     bodies |= {solid.name: solid_points(solid) for solid in workshop.solids}
+    hull = trimesh.convex.convex_hull(np.concatenate(list(bodies.values()))).vertices
     bodies = {name: p[p[:, 2] > -0.5] for name, p in bodies.items()}  # nothing comes from below
-    return Scene(golden, read, standard, bodies, workshop)
+    return Scene(golden, read, standard, bodies, workshop, hull)
 
 
 def is_refused(scene: Scene, steps: list[Move | ProbeStep], workshop: Workshop) -> bool:
@@ -329,7 +335,7 @@ def a_turn(scene: Scene, kind: str, wanted: float, rng: np.random.Generator):
     start = rng.uniform(low, high)
     end = start + rng.choice([-1.0, 1.0], 2) * np.radians(rng.uniform(2.0, [80.0, 60.0]))
     end = np.clip(end, low, high)
-    hull = trimesh.convex.convex_hull(scene.everything).vertices + ORIGIN
+    hull = scene.hull + ORIGIN
     top = -np.inf
     for c in np.linspace(start[0], end[0], 41):
         turned = Rotation.from_rotvec([0.0, 0.0, c]).inv().apply(hull)

@@ -11,7 +11,8 @@ tables of controls (`write_tables`) and compensated programs (`compensated`), wi
 
 Every compensation ends in one thing, readings that are added (`Corrects`), and is judged in one
 way: played on the exact twin (`played`). `field` has the errors and their inverse, `tables` what
-controls hold, `programs` part programs, `service` corrects while the machine moves.
+controls hold, `programs` part programs, `service` corrects while the machine moves, `linuxcnc`
+gives that to a control.
 """
 
 from compensation.field import (
@@ -27,7 +28,7 @@ from compensation.field import (
 from compensation.programs import Compensated, Frame, compensated, read_part_program
 from compensation.tables import FORMATS, Played, play_tables, write_tables
 
-PARTS = ("field", "tables", "programs", "service")
+PARTS = ("field", "tables", "programs", "service", "linuxcnc")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

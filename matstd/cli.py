@@ -28,7 +28,7 @@ FOLDERS = {
     },
     "compensation": {
         "compensate": "the identified model goes back to the control: tables, or a part program",
-        "serve": "corrections while the machine moves, as an OPC UA server",
+        "serve": "corrections while the machine moves, over OPC UA or on LinuxCNC",
         "contributions": "what every error adds along a program or at poses",
     },
     "machine": {

@@ -1,6 +1,7 @@
 """One thread a worker: several workers, each with as many BLAS threads as cores, only wait."""
 
 import os
+import sys
 from base64 import b64decode
 from pathlib import Path
 
@@ -8,6 +9,10 @@ import pytest
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+
+# a process that a test starts shall not compile every module anew
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 pytest_plugins = ["bench", "machines", "standards", "runs"]
 """Fixtures that the tests of several rooms share, in `tests/fixtures`."""

@@ -2,17 +2,19 @@
 
 import gzip
 import importlib.util
+import io
 import json
-import os
 import re
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from diagnosis.answer.run_diagnosis import diagnose
+from matstd.cli import main
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
 from twin.units import NM, UM
@@ -39,18 +41,13 @@ def module(path: Path):
 
 
 def matstd(*arguments: object) -> str:
-    """Run the command as a user does; its words."""
-    done = subprocess.run(
-        [sys.executable, "-m", "matstd", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        check=False,
-        cwd=HIDDEN,
-        env={**os.environ, "COLUMNS": "96", "PYTHONIOENCODING": "utf-8"},
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    """Run the command in the folder of the example; its words."""
+    words, errors = io.StringIO(), io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(words), redirect_stderr(errors):
+        patch.chdir(HIDDEN)
+        patch.setenv("COLUMNS", "96")
+        assert main([str(one) for one in arguments]) == 0, errors.getvalue()
+    return words.getvalue()
 
 
 def result(folder: Path) -> dict:

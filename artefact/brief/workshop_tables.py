@@ -4,8 +4,9 @@ Whatever the plan needs to know of the room and nothing that it could find out b
 that contradicts itself, or a probe that cannot be, is refused before any work is done.
 """
 
+import re
 import tomllib
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -72,6 +73,23 @@ class BodyTable(Table):
     setup: str = ""
 
 
+class BallTable(Table):
+    """`[workshop.ball]`: a calibrated ball on the table, by which the probe is watched."""
+
+    at_mm: Vector
+    diameter_mm: float = Field(gt=0.0, le=100.0)
+    stem_diameter_mm: float = Field(gt=0.0)
+    u_um: float = Field(default=0.5, ge=0.0, le=100.0)
+
+
+class TemperatureTable(Table):
+    """`[workshop.temperatures]`: a sensor whose reading the control's PLC hands to programs."""
+
+    parameter: int = Field(ge=100, le=107)
+    factor: float = 1.0
+    offset: float = 0.0
+
+
 AnyProbe = TypeVar("AnyProbe", bound=ProbeTable)
 
 
@@ -99,6 +117,8 @@ class WorkshopTable(Table):
     minutes_per_file: float | None = Field(default=None, ge=1.0)
     dry_run_mm: float = Field(default=100.0, ge=10.0)
     height_read: Literal["gauge", "tip"] = "gauge"
+    ball: BallTable | None = None
+    temperatures: dict[str, TemperatureTable] = Field(default_factory=dict)
     strategy: Literal["axes", "plane-spatial"] = "axes"
 
 
@@ -195,6 +215,8 @@ def check_workshop(workshop: WorkshopTable, setups: Collection[str], path: Path)
     table = workshop.table
     if table is not None and (table.diameter_mm is None) == (table.sides_mm is None):
         raise BadFile(path, "workshop.table", "not one outline", "diameter_mm or sides_mm")
+    _check_temperatures(workshop.temperatures, path)
+    _check_ball(workshop, path)
     names = [body.name for body in workshop.bodies]
     for i, body in enumerate(workshop.bodies):
         where = f"workshop.bodies.{i}"
@@ -206,11 +228,40 @@ def check_workshop(workshop: WorkshopTable, setups: Collection[str], path: Path)
             raise BadFile(path, f"{where}.height_mm", repr(body.height_mm), expected)
         if body.sides_mm is not None and min(body.sides_mm) <= 0.0:
             raise BadFile(path, f"{where}.sides_mm", list(body.sides_mm), "positive sides")
-        if body.name in names[:i] or body.name == "TABLE":
+        if body.name in names[:i] or body.name in ("TABLE", "DATUM", "DATUM.STEM"):
             raise BadFile(path, f"{where}.name", repr(body.name), "a name of its own")
         if body.setup and body.setup not in setups:
             expected = f"a set-up of the project: {', '.join(setups)}"
             raise BadFile(path, f"{where}.setup", repr(body.setup), expected)
+
+
+def _check_ball(workshop: WorkshopTable, path: Path) -> None:
+    """A ball on a thinner stem, above the table."""
+    ball, table = workshop.ball, workshop.table
+    if ball is None:
+        return
+    if ball.stem_diameter_mm >= ball.diameter_mm:
+        expected = f"less than the ball, {ball.diameter_mm:g}"
+        found = f"{ball.stem_diameter_mm:g}"
+        raise BadFile(path, "workshop.ball.stem_diameter_mm", found, expected)
+    lowest = (0.0 if table is None else table.height_mm) + 0.5 * ball.diameter_mm
+    if not ball.at_mm[2] > lowest:
+        expected = f"more than {lowest:g} in z"
+        raise BadFile(path, "workshop.ball.at_mm", list(ball.at_mm), expected)
+
+
+def _check_temperatures(sensors: Mapping[str, TemperatureTable], path: Path) -> None:
+    """Names that a column can have, a parameter for each."""
+    for name, sensor in sensors.items():
+        key = f"workshop.temperatures.{name}"
+        if not re.fullmatch(r"[A-Za-z0-9_]{1,16}", name):
+            raise BadFile(path, key, repr(name), "1 to 16 letters, digits or _")
+        if not 1e-6 <= abs(sensor.factor) <= 1e3:
+            raise BadFile(path, f"{key}.factor", f"{sensor.factor:g}", "0.000001 to 1000")
+        others = [n for n, s in sensors.items() if s.parameter == sensor.parameter]
+        if len(others) > 1:
+            expected = f"a parameter for each of {', '.join(others)}"
+            raise BadFile(path, f"{key}.parameter", sensor.parameter, expected)
 
 
 def table_radius(workshop: WorkshopTable) -> float | None:

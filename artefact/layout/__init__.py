@@ -7,7 +7,7 @@ more entry in `rivals`.
 
 from artefact.layout.post import post_stiffness
 from artefact.layout.rival_artefacts import rivals, with_spheres
-from artefact.layout.side_by_side import most_side_by_side
+from artefact.layout.side_by_side import beside_balls, most_side_by_side
 from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
 from artefact.layout.upright import (
     balls_fit,
@@ -25,6 +25,7 @@ __all__ = [
     "Site",
     "balls_fit",
     "balls_on_posts",
+    "beside_balls",
     "faces_beside",
     "faces_fit",
     "freeform_faces",

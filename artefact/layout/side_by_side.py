@@ -1,10 +1,23 @@
 """How many of some bodies stand beside each other at most."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
+from artefact.body import DatumSphere, FreeformPatch
+from artefact.layout.sites import Blank
+from artefact.layout.upright import balls_fit, faces_beside, faces_fit, holes_on
 
-def most_side_by_side(fits: NDArray[np.bool_], wanted: int, starts: int | None = None) -> list[int]:
+Pairs = NDArray[np.bool_]
+
+
+def most_side_by_side(
+    fits: Pairs,
+    *wanted: int,
+    kind: NDArray[np.int64] | None = None,
+    starts: int | None = None,
+) -> list[int]:
     """Sites all of which can stand beside each other: as many as wanted, else the most found.
 
     From sociable sites in turn, the next is always the one that leaves most others free: a lower
@@ -12,20 +25,49 @@ def most_side_by_side(fits: NDArray[np.bool_], wanted: int, starts: int | None =
 
     Args:
         fits: Which sites can stand beside each other, (S, S).
-        wanted: With so many the search ends.
+        wanted: How many of each kind; with so many the search ends.
+        kind: Of every site, (S,), those of the first kind are placed first; None for one kind.
         starts: Most sociable sites from which it begins, None for all: 80 of 400 find as many in
             ten of twelve blanks, and one less in the others.
     """
+    kinds = np.zeros(len(fits), dtype=np.int64) if kind is None else kind
     most: list[int] = []
-    for first in np.argsort(-fits.sum(axis=1), kind="stable")[:starts]:
+    sociable = np.argsort(-fits.sum(axis=1), kind="stable")
+    for first in sociable[kinds[sociable] == 0][:starts]:
         chosen, free = [int(first)], fits[first].copy()
-        while free.any() and len(chosen) < wanted:
-            open_sites = np.flatnonzero(free)
-            left = fits[np.ix_(open_sites, open_sites)].sum(axis=1)
-            chosen.append(int(open_sites[np.argmax(left)]))
-            free &= fits[chosen[-1]]
+        for one, count in enumerate(wanted):
+            while np.sum(kinds[chosen] == one) < count and (free & (kinds == one)).any():
+                open_sites = np.flatnonzero(free & (kinds == one))
+                left = fits[open_sites][:, free].sum(axis=1)
+                chosen.append(int(open_sites[np.argmax(left)]))
+                free &= fits[chosen[-1]]
         if len(chosen) > len(most):
             most = chosen
-        if len(most) >= wanted:
+        if len(most) >= sum(wanted):
             break
     return most
+
+
+def beside_balls(
+    faces: Sequence[FreeformPatch],
+    balls: Sequence[DatumSphere],
+    wanted: tuple[int, int],
+    blank: Blank,
+) -> tuple[list[int], list[int]]:
+    """Faces and balls that stand on a blank together: as many as wanted, else the most found.
+
+    Args:
+        faces: Where they may stand.
+        balls: Where they may stand.
+        wanted: Number of faces and of balls.
+        blank: With its limits; the screws stand where they are farthest apart without balls.
+    """
+    kind = np.repeat([0, 1], [len(faces), len(balls)])
+    fits = np.zeros((len(kind), len(kind)), dtype=bool)
+    n = len(faces)
+    fits[:n, :n] = faces_fit(faces, holes_on(blank), blank.limits)
+    fits[n:, n:] = balls_fit(balls, blank)
+    fits[:n, n:] = np.array([faces_beside(faces, [ball], blank) for ball in balls]).reshape(-1, n).T
+    fits[n:, :n] = fits[:n, n:].T
+    found = most_side_by_side(fits, *wanted, kind=kind)
+    return [i for i in found if i < n], [i - n for i in found if i >= n]

@@ -5,6 +5,6 @@ every limit, its touches, the criterion they were chosen by, its rivals, and a c
 """
 
 from artefact.place.placement import Placement, PlacementOptions, design_standard
-from artefact.place.room import Room, room_for
+from artefact.place.room import Room, check_room, room_for
 
-__all__ = ["Placement", "PlacementOptions", "Room", "design_standard", "room_for"]
+__all__ = ["Placement", "PlacementOptions", "Room", "check_room", "design_standard", "room_for"]

@@ -22,6 +22,7 @@ from artefact.layout import (
     most_side_by_side,
     with_spheres,
 )
+from artefact.place.room import FEWEST_BALLS, Room, check_room, room_among
 from artefact.reach import Requests, joined, spread_poses
 from artefact.worth import BallPlaces, Criterion, each_at, face_grid
 from information.selection import best_groups
@@ -49,9 +50,6 @@ class _Beside:
     poses: Array
 
 
-FEWEST_BALLS = 3
-"""A set-up has six unknowns, and a ball alone hides every turn about it."""
-
 _REBUILDS = 8  # choices of faces tried before giving up
 _STARTS = 80  # of the search for faces side by side
 
@@ -69,12 +67,14 @@ class BodyChoice:
         blank: On which they stand.
         tried: Number of random faces beside each choice of balls.
         rng: Draws them.
+        room: Some faces and balls that stand side by side.
     """
 
     criterion: Criterion
     blank: Blank
     tried: int
     rng: np.random.Generator
+    room: Room
 
     def standard(
         self,
@@ -100,8 +100,25 @@ class BodyChoice:
         Raises:
             NotBuildable: No such body; what binds.
         """
-        limits, take = self.blank.limits, max(4, proving // count)
-        standing, holes = self._screwed(list(balls))
+        wanted = name, serial, touches, count, max(4, proving // count)
+        try:
+            return self._built(list(balls), *wanted)
+        except NotBuildable:
+            # where the balls that tell most leave no room, those of which it is known that they do
+            return self._built(list(self.room.balls), *wanted)
+
+    def _built(
+        self,
+        balls: list[DatumSphere],
+        name: str,
+        serial: str,
+        touches: Requests,
+        count: int,
+        take: int,
+    ) -> Standard:
+        """A body of some balls with faces between them, chosen again until no limit is broken."""
+        limits = self.blank.limits
+        standing, holes = self._screwed(balls)
         there, standing = self._beside(standing, holes, touches, count)
         refused, binding = "", list[str]()
         for _ in range(_REBUILDS):
@@ -161,10 +178,18 @@ class BodyChoice:
         while True:
             faces = freeform_faces(self.blank, count, self.tried, self.rng, balls, holes)
             fits = faces_fit(faces, holes, self.blank.limits)
+<<<<<<< HEAD
             if len(balls) <= FEWEST_BALLS or len(most_side_by_side(fits, count, _STARTS)) == count:
                 hides = self._in_the_way(faces, touches).mean(axis=1)
                 poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
                 return _Beside(faces, fits, hides, poses), balls
+=======
+            if (
+                len(balls) <= FEWEST_BALLS
+                or len(most_side_by_side(fits, count, starts=_STARTS)) == count
+            ):
+                return _Beside(faces, fits, self._in_the_way(faces, touches).mean(axis=1)), balls
+>>>>>>> main
             balls = balls[:-1]  # the last one chosen tells least
 
     def _chosen(self, there: "_Beside", count: int, take: int) -> list[int]:
@@ -173,7 +198,7 @@ class BodyChoice:
         for most in _HIDDEN:
             free = np.flatnonzero(there.hides <= most)
             fits = there.fits[np.ix_(free, free)]
-            found = most_side_by_side(fits, count, _STARTS)
+            found = most_side_by_side(fits, count, starts=_STARTS)
             if len(found) == count:
                 some = [there.faces[k] for k in free]
                 found = self._worth_most(some, fits, there.poses, count, take)
@@ -269,52 +294,41 @@ class BodyChoice:
 
 
 def body_choice(
-    criterion: Criterion,
-    blank: Blank,
-    poses: Array,
-    faces: int,
-    tried: int,
-    rng: np.random.Generator,
+    places: BallPlaces, poses: Array, faces: int, tried: int, rng: np.random.Generator
 ) -> BodyChoice:
     """Candidates all over a blank.
 
     Args:
-        criterion: What faces are chosen for, without potential terms.
-        blank: On which all stand.
+        places: That balls may have, on the same blank and for the same criterion.
         poses: Table poses to choose from, (K, R), rad.
         faces: How many will be chosen: the more, the smaller they are.
         tried: Number of random faces.
         rng: Draws them.
 
     Raises:
-        NotBuildable: No room for so many faces, even without a ball (fact `fitting`).
+        NotBuildable: No room for so many faces beside the fewest balls (fact `fitting`).
         NotReachable: No face can be touched.
     """
+    criterion, blank = places.criterion, places.blank
     all_faces = freeform_faces(blank, faces, tried, rng)
-    _check_room(all_faces, blank, faces)
+    room = room_among(all_faces, places.balls, faces, blank)
+    check_room(room)
     few = spread_poses(poses, _POSES)
     if not criterion.reach.is_reachable(_touches_on(all_faces, few)).any():
         raise NotReachable(
             f"no face at any of {len(all_faces)} places can be touched at a table pose with every "
             "axis within its travel"
         )
+<<<<<<< HEAD
     return BodyChoice(criterion=criterion, blank=blank, tried=tried, rng=rng)
+=======
+    return BodyChoice(criterion=criterion, blank=blank, poses=few, tried=tried, rng=rng, room=room)
+>>>>>>> main
 
 
 def _touches_on(faces: list[FreeformPatch], poses: Array) -> Requests:
     """A few touches on every face."""
     return joined([each_at(p, face_grid(p.half_size, 3)[::2], poses) for p in faces])
-
-
-def _check_room(faces: Sequence[FreeformPatch], blank: Blank, count: int) -> None:
-    """Refuse more faces than stand side by side before anything is chosen."""
-    found = most_side_by_side(faces_fit(faces, holes_on(blank), blank.limits), count)
-    if len(found) < count:
-        raise NotBuildable(
-            f"only {len(found)} of {count} patches fit on the blank side by side; between two of "
-            f"them cutter and probe need {least_gap(blank.limits):g} mm",
-            fitting=len(found),
-        )
 
 
 def _azimuth_of_face(face: FreeformPatch) -> float:

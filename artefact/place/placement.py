@@ -181,7 +181,7 @@ def design_standard(
     progress("placement", 1, 6)
     all_poses = table_poses(criterion, choice.poses) if poses_to_try is None else poses_to_try
     places = ball_places(criterion.plain, blank, all_poses, rng)
-    bodies = body_choice(criterion.plain, blank, all_poses, options.patches, options.sites, rng)
+    bodies = body_choice(places, all_poses, options.patches, options.sites, rng)
     progress("placement", 2, 6)
     library = _effects(criterion, max(choice.touches, _FREE), rng)
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)

@@ -6,6 +6,7 @@ twin's effects understand them. A new hindrance is one more look in `ProbeReach`
 standard is a `Solid` of the `Workshop`.
 """
 
+from artefact.reach.datum_ball import DatumBall
 from artefact.reach.face_of_table import hangs, seat_height, standing_remarks, table_face
 from artefact.reach.mesh_cover import covering_solids
 from artefact.reach.probe_clearance import ProbeShape, clearance
@@ -31,6 +32,7 @@ from artefact.reach.workshop import (
 __all__ = [
     "ANGLE",
     "TABLE",
+    "DatumBall",
     "Limit",
     "Mask",
     "PlacesInReach",

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from artefact.body import Plate, Standard
+from artefact.reach.datum_ball import DATUM, DatumBall
 from artefact.reach.face_of_table import table_face
 from artefact.reach.probe_clearance import Clearance, ProbeShape, clearance
 from twin.errors import DesignError
@@ -91,6 +92,12 @@ def round_table(radius: float = TABLE_RADIUS, height: float = 0.0) -> Solid:
     return Solid(TABLE, (radius, radius), True, height - TABLE_THICKNESS, height)
 
 
+def _ball_solids(ball: DatumBall) -> tuple[Solid, Solid]:
+    around, x, y = (ball.radius, ball.radius), ball.x, ball.y
+    stem = Solid(f"{DATUM}.STEM", (ball.stem, ball.stem), True, ball.low, ball.z, x, y)
+    return Solid(DATUM, around, True, ball.z - ball.radius, ball.z + ball.radius, x, y), stem
+
+
 @dataclass(frozen=True)
 class Workshop:
     """Everything solid that is not the standard.
@@ -98,10 +105,12 @@ class Workshop:
     Attributes:
         table: Its face carries the standard.
         bodies: Clamps, fixtures, covers.
+        ball: By which the probe is watched; None where there is none.
     """
 
     table: Solid = field(default_factory=round_table)
     bodies: tuple[Solid, ...] = ()
+    ball: DatumBall | None = None
 
     @property
     def on(self) -> tuple[str, ...]:
@@ -110,8 +119,8 @@ class Workshop:
 
     @property
     def solids(self) -> tuple[Solid, ...]:
-        """The table, then the others."""
-        return (self.table, *self.bodies)
+        """The table, then the others; the ball and its stem as upright cylinders."""
+        return (self.table, *self.bodies, *(_ball_solids(self.ball) if self.ball else ()))
 
     @property
     def table_radius(self) -> float:

@@ -9,11 +9,12 @@ from compensation.service.history import History
 from compensation.service.opcua_server import NAMESPACE, serve
 from compensation.service.output import Output, OutputLimits, Quality, Sent
 from compensation.service.point_correction import PointCorrection
-from compensation.service.service import Answer, Service
+from compensation.service.service import DRIVEN_EVERY, Answer, Service
 from compensation.service.tabulated import CLOSE, ErrorTable, error_tables
 
 __all__ = [
     "CLOSE",
+    "DRIVEN_EVERY",
     "NAMESPACE",
     "Answer",
     "ErrorTable",

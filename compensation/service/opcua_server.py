@@ -10,7 +10,7 @@ from socket import create_server
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from compensation.service.service import Answer, Service
+from compensation.service.service import DRIVEN_EVERY, Answer, Service
 from twin.errors import BadValue, DesignError, MissingLibrary, OutsideTravel
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ PERIOD = 0.005
 these."""
 
 _KNOWN_EVERY = 1.0  # s, uncertainty: it changes slowly and takes longer than a correction
-_DRIVEN_EVERY = 2.0  # s, temperatures: bodies are slower, and tables are made again
 
 
 async def serve(
@@ -96,7 +95,7 @@ async def _follow(service: Service, nodes: _Nodes, until: asyncio.Event) -> None
     while not until.is_set():
         await asyncio.sleep(0.2)
         now = time.monotonic()
-        if now - driven >= _DRIVEN_EVERY:
+        if now - driven >= DRIVEN_EVERY:
             driven = now
             await nodes.drive(service, service.errors.state.time + now - begun)
             await nodes.tell_drift(service)

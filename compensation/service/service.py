@@ -16,6 +16,9 @@ from compensation.service.point_correction import Point, PointCorrection
 from twin.errors import DesignError, OutsideTravel
 from twin.units import DEG
 
+DRIVEN_EVERY = 2.0
+"""Between two looks at temperatures, s: bodies are slower, and tables are made again."""
+
 _BESIDE = 1.0  # mm on either side, between which a slope is taken
 
 

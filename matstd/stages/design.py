@@ -33,7 +33,7 @@ from matstd.stages.from_project import (
     probe_reach,
     probes,
 )
-from matstd.stages.reach import check_reach, check_room
+from matstd.stages.reach import check_reach, check_space
 from matstd.stages.streams import streams
 from matstd.stages.study_run import study_and_maps
 from probe_paths.campaign import Campaign, VirtualMachine, simulate
@@ -70,7 +70,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     rng = streams(project.seed)
     progress("reach", 0, 1)
     poses = check_reach(project, folder)
-    check_room(project, folder, poses)
+    check_space(project, folder, poses)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
     placement = _placement(project, workspace, rng.placement, progress, poses)

@@ -8,11 +8,19 @@ from artefact.body import Base, Limits, Material
 from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, BodyTable, ProbeTable, Project
 from artefact.layout import Blank, Fittings
 from artefact.place import PlacementOptions
-from artefact.reach import ProbeReach, Solid, Workshop, covering_solids, round_table, still_frames
+from artefact.reach import (
+    DatumBall,
+    ProbeReach,
+    Solid,
+    Workshop,
+    covering_solids,
+    round_table,
+    still_frames,
+)
 from artefact.worth import Calibration, CriterionOptions, TouchOptions
 from probe_paths.emit import SEARCH, Feeds
 from probe_paths.language import Dialect, checked_name, read_dialect
-from probe_paths.plan import PlanOptions, Probe
+from probe_paths.plan import PlanOptions, Probe, Sensor
 from probe_paths.stations import Clamping, with_tool
 from twin.errors import BadFile
 from twin.frames import pose, rotation
@@ -84,9 +92,17 @@ def workshop(project: Project, setup: str = "") -> Workshop:
     here = ("", setup or project.setup.name)
     stated_here = [body for body in project.workshop.bodies if body.setup in here]
     bodies = [solid for body in stated_here for solid in _solids(project, body)]
-    made = Workshop(table, tuple(bodies))
+    made = Workshop(table, tuple(bodies), _ball(project, table))
     still_frames(made.on, project.chain, np.zeros((1, len(project.chain.axes))))
     return made
+
+
+def _ball(project: Project, table: Solid) -> DatumBall | None:
+    stated = project.workshop.ball
+    if stated is None:
+        return None
+    size = (0.5 * stated.diameter_mm, 0.5 * stated.stem_diameter_mm)
+    return DatumBall(*stated.at_mm, *size, table.high, 0.5 * stated.u_um * UM)
 
 
 def _solids(project: Project, body: BodyTable) -> list[Solid]:
@@ -125,7 +141,15 @@ def dialect(project: Project) -> Dialect:
         raise BadFile(project.path, "workshop.folder", stated.folder, "nothing for this control")
     keys = {"folder": "folder", "tool": "tool", "preset": "preset", "height_read": "result_height"}
     given = {keys[k]: getattr(stated, k) for k in keys if k in stated.model_fields_set}
-    return replace(words, is_tilted=_is_tilted(project, words), **given)
+    sensors = tuple(
+        Sensor(name, table.parameter, table.factor, table.offset)
+        for name, table in stated.temperatures.items()
+    )
+    if sensors and words.language != "klartext":
+        found = f"{len(sensors)} sensors for {project.control}"
+        expected = "a control that hands them over as Q100 to Q107; else evaluate --sensors"
+        raise BadFile(project.path, "workshop.temperatures", found, expected)
+    return replace(words, is_tilted=_is_tilted(project, words), sensors=sensors, **given)
 
 
 def _is_tilted(project: Project, words: Dialect) -> bool:

@@ -11,8 +11,7 @@ import numpy as np
 
 from artefact.body import DatumSphere, Standard
 from artefact.brief import Project
-from artefact.layout import least_gap
-from artefact.place import room_for
+from artefact.place import check_room, room_for
 from artefact.reach import (
     ANGLE,
     Limit,
@@ -44,7 +43,7 @@ from probe_paths.plan import (
 )
 from report.plots import draw_reach, draw_room
 from report.style import save
-from twin.errors import BadFile, NotBuildable, NotReachable
+from twin.errors import BadFile, NotReachable
 from twin.frames import Array, fixed_xyz_angles
 from twin.machine import linear_directions
 from twin.record import Setup
@@ -158,7 +157,7 @@ def _check_standing(project: Project, setup: Setup) -> None:
         )
 
 
-def check_room(project: Project, folder: Path, poses: Array) -> None:
+def check_space(project: Project, folder: Path, poses: Array) -> None:
     """Refuse more patches than stand side by side, with a picture of those that do.
 
     Args:
@@ -170,17 +169,10 @@ def check_room(project: Project, folder: Path, poses: Array) -> None:
         NotBuildable: How many fit (fact `fitting`).
     """
     made, options = blank(project), placement_options(project)
-    patches = options.patches
-    room = room_for(patches, probe_reach(project), made, poses, options.sites, project.seed)
-    if len(room.faces) >= patches:
-        return
-    save(draw_room(room.faces, patches, made), folder / ROOM_PICTURE)
-    raise NotBuildable(
-        f"only {len(room.faces)} of {patches} patches fit on the blank side by side, of "
-        f"{room.tried} places tried; between two of them cutter and probe need "
-        f"{least_gap(made.limits):g} mm",
-        fitting=len(room.faces),
-    )
+    room = room_for(options.patches, probe_reach(project), made, poses, options.sites, project.seed)
+    if not room.is_enough:
+        save(draw_room(room), folder / ROOM_PICTURE)
+    check_room(room)
 
 
 def _enough(project: Project) -> int:

@@ -6,7 +6,13 @@ never learns what the virtual machine knew. `visits` runs them again and again. 
 `probing_time` say what a plan costs.
 """
 
-from probe_paths.campaign.ball_change import BallChange, ball_changes, check_changes, read_heights
+from probe_paths.campaign.ball_change import (
+    BallChange,
+    ball_changes,
+    check_changes,
+    effective_radii,
+    read_heights,
+)
 from probe_paths.campaign.collisions import check_moves
 from probe_paths.campaign.contact_points import foot_points
 from probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
@@ -32,6 +38,7 @@ __all__ = [
     "check_changes",
     "check_moves",
     "checked_parts",
+    "effective_radii",
     "effects_over_record",
     "evaluate",
     "foot_points",

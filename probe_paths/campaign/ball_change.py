@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import pairwise
-from typing import get_args, get_type_hints
+from typing import NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
@@ -112,6 +112,7 @@ def _change(
 ) -> BallChange:
     _, rows, again = np.intersect1d(one.number, other.number, return_indices=True)
     found = set(one.feature[rows].tolist()) | set(other.feature[again].tolist())
+    standard = one.heading.touched(standard)
     names = list(standard.features)
     balls = {sphere.name: sphere for sphere in standard.spheres}
     name = names[min(found) - 1] if len(found) == 1 and 0 < min(found) <= len(names) else ""
@@ -124,7 +125,7 @@ def _change(
         )
     before, after = ball_centres(one, chain, dialect)[rows], ball_centres(other, chain, dialect)
     around = one.heading.setup.T_table_artefact
-    middle = _middle(before, apply(around, balls[name].centre[None])[0])
+    middle, _ = _sphere(before, apply(around, balls[name].centre[None])[0])
     way = before - middle
     normal = way / np.linalg.norm(way, axis=1, keepdims=True)
     grown = np.linalg.norm(after[again] - middle, axis=1) - np.linalg.norm(way, axis=1)
@@ -177,8 +178,8 @@ def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, f
     return beside
 
 
-def _middle(balls: Array, middle: Array) -> Array:
-    """Centre of the sphere on which ball centres lie, (3,), from one that is near."""
+def _sphere(balls: Array, middle: Array) -> tuple[Array, float]:
+    """Centre (3,) and radius of the sphere that ball centres lie on, from a centre that is near."""
     radius = 0.0
     for _ in range(5):
         way = balls - middle
@@ -186,7 +187,52 @@ def _middle(balls: Array, middle: Array) -> Array:
         A = np.column_stack([way / far[:, None], np.ones(len(balls))])
         step = np.linalg.lstsq(A, far - radius, rcond=1e-3)[0]
         middle, radius = middle + step[:3], radius + float(step[3])
-    return middle
+    return middle, radius
+
+
+class EffectiveRadius(NamedTuple):
+    """What a calibrated ball tells of the probe's effective radius.
+
+    Attributes:
+        begin: When it was measured.
+        excess: Beyond the radius that the control has calibrated, mm.
+        u: Its standard uncertainty, with that of the ball, mm.
+    """
+
+    begin: datetime
+    excess: float
+    u: float
+
+
+def effective_radii(
+    parts: Sequence[LogPart], chain: Chain, u: float, dialect: Dialect | None = None
+) -> list[EffectiveRadius]:
+    """Effective radii of the probe by the ball of the workshop, in the order of time.
+
+    A sphere is fitted to the ball centres of each log: its radius is that of the ball and the
+    effective one of the probe. What the machine does wrong over the ball stays in it.
+
+    Args:
+        parts: Of all logs; those of other programs are left alone.
+        chain: The machine.
+        u: Standard uncertainty of one touch, mm.
+        dialect: Of the control.
+    """
+    out = []
+    for part in sorted(parts, key=lambda part: part.begin):
+        ball = part.heading.ball
+        if ball is None or len(part.number) < _UNKNOWNS + 1:
+            continue
+        centres = ball_centres(part, chain, dialect)
+        around = part.heading.setup.T_table_artefact
+        believed = apply(around, ball.sphere(around).centre[None])[0]
+        middle, radius = _sphere(centres, believed)
+        way = centres - middle
+        A = np.column_stack([way / np.linalg.norm(way, axis=1, keepdims=True), np.ones(len(way))])
+        spread = float(np.sqrt(np.linalg.inv(A.T @ A)[3, 3]))
+        excess = radius - ball.radius - part.radius
+        out.append(EffectiveRadius(part.begin, excess, float(np.hypot(spread * u, ball.u))))
+    return out
 
 
 def check_changes(changes: Sequence[BallChange], limit: float) -> None:

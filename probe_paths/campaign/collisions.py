@@ -38,6 +38,7 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     probe, setup = program.heading.probe, program.heading.setup
     workshop = program.heading.workshop
     assert workshop is not None, "no program is read without it"
+    standard = program.heading.touched(standard)
     clearance = ToolClearance(
         chain=chain, standard=standard, setup=setup, probe=probe, workshop=workshop
     )

@@ -1,5 +1,6 @@
 """Where true balls meet true surfaces: all touches of a program at once, by Newton's method."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import datetime
 
@@ -39,6 +40,8 @@ class VirtualMachine:
         noise: Standard deviation of the trigger along the normal, mm.
         begin: What its clock says when the campaign begins.
         clock: Speeds.
+        dialect: Of its control.
+        temperature: Of a sensor by name at a time since the campaign began (s), degC.
     """
 
     chain: Chain
@@ -50,6 +53,7 @@ class VirtualMachine:
     begin: datetime = FIRST_MORNING
     clock: Clock = field(default_factory=Clock)
     dialect: Dialect = field(default_factory=Dialect)
+    temperature: Callable[[str, float], float] = lambda name, now: 20.0
 
 
 class ContactSolver:
@@ -59,15 +63,21 @@ class ContactSolver:
         self, program: ReadProgram, standard: Standard, machine: VirtualMachine, noise: Array
     ) -> None:
         touches = program.touches
-        self.program, self.standard, self.machine, self.noise = program, standard, machine, noise
+        self.program, self.machine, self.noise = program, machine, noise
         probe = program.heading.probe
         self.radius, self.length = probe.radius, probe.length
         self.start = np.array([t.q for t in touches]).reshape(-1, len(machine.chain.axes))
         self.direction = np.array([t.direction for t in touches]).reshape(self.start.shape)
         self.distance = np.array([t.distance for t in touches])
         believed = program.heading.setup.T_table_artefact
+<<<<<<< HEAD
         stands = believed @ machine.setup_error
         self.T_artefact_table = inverse(stands)
+=======
+        self.T_artefact_table = inverse(believed @ machine.setup_error)
+        # a ball on the table stands where it does, wherever the standard does
+        self.standard = program.heading.touched(standard, believed @ machine.setup_error)
+>>>>>>> main
         self.disturbance = machine.disturbance
         self._nominal_contact()
         self.moved = standard.moved(machine.chain, self.start, stands, self.feature)

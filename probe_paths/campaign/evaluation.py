@@ -7,7 +7,7 @@ import numpy as np
 
 from artefact.body import Standard
 from probe_paths.campaign.contact_points import at_true_contacts, foot_points
-from probe_paths.campaign.log_parts import checked_parts, distinct_parts, without_rows
+from probe_paths.campaign.log_parts import checked_parts, distinct_parts, sensed, without_rows
 from probe_paths.control import LogPart
 from probe_paths.language import Dialect
 from probe_paths.plan import LINEAR, Probe, ProgramFrame
@@ -73,10 +73,15 @@ def evaluate(
         good, far = _near(parts, gap, ABSURD)
         if not far:
             break
+<<<<<<< HEAD
     u_touch = _uncertainty(standard, touches, u)
     if standard.sag is not None:
         down, source = standard.sag.down, standard.sag.source
         remarks.append(f"sag of the standard taken off: {source}, weight along {down}")
+=======
+    u_touch = _uncertainty(standard, touches.feature, u)
+    remarks += sensed(parts)[1]
+>>>>>>> main
     run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
@@ -285,6 +290,7 @@ def _touches(
         setup=setup,
         time=np.concatenate([p.time + (p.begin - start).total_seconds() for p in parts]),
         approach=approach,
+        temperature=sensed(parts)[0],
         feature=feature,
         pose=pose_label.reshape(-1).astype(np.int64),
     )

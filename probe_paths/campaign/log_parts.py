@@ -11,6 +11,7 @@ from artefact.body import Standard
 from probe_paths.control import UNDATED, LogPart
 from probe_paths.plan import stated_serial
 from twin.errors import BadFile
+from twin.frames import Array
 from twin.record import IntArray
 from twin.units import NM
 
@@ -74,6 +75,7 @@ def _rows(part: LogPart, rows: IntArray) -> LogPart:
         part,
         rotary={a: v[rows] for a, v in part.rotary.items()},
         side={a: v[rows] for a, v in part.side.items()},
+        temperature={a: v[rows] for a, v in part.temperature.items()},
         **{name: getattr(part, name)[rows] for name in _PER_TOUCH},
     )
 
@@ -148,3 +150,22 @@ def without_rows(parts: Sequence[LogPart], good: np.ndarray) -> list[LogPart]:
         _rows(part, np.flatnonzero(good[end - len(part.number) : end]))
         for part, end in zip(parts, ends, strict=True)
     ]
+
+
+def sensed(parts: Sequence[LogPart]) -> tuple[dict[str, Array], list[str]]:
+    """Temperatures that the control logged, each (N,) degC, and remarks on those left out.
+
+    A reading that is missing lies between its neighbours; what is no temperature of a machine is
+    for the reader of runs to judge.
+    """
+    out: dict[str, Array] = {}
+    remarks = []
+    for name in dict.fromkeys(name for part in parts for name in part.temperature):
+        lots = [part.temperature.get(name, np.full(len(part.number), np.nan)) for part in parts]
+        values, at = np.concatenate(lots), np.arange(sum(map(len, lots)))
+        good = np.isfinite(values)
+        if not good.all():
+            remarks.append(f"T_{name}_degC: the control logged {int(good.sum())} of {len(good)}")
+        if good.any():
+            out[name] = np.interp(at, at[good], values[good])
+    return out, remarks

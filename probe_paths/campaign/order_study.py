@@ -8,11 +8,10 @@ machine, and their standard deviations tell how well the order separates them fr
 
 from dataclasses import dataclass, replace
 from enum import Enum
-from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control import Clock, ProbeStep, interpret, step_times
+from probe_paths.control import Clock, ProbeStep, step_times
 from probe_paths.emit import Feeds, make_programs
 from probe_paths.plan import (
     LINEAR,
@@ -106,9 +105,7 @@ def _timed(plan: TouchPlan) -> tuple[Touches, float]:
     """Touches with times and sides of approach as the programs' text has them; duration, s."""
     # all in one program: an order shall not be judged by where its files begin
     programs = make_programs(plan, feeds=Feeds(touches_per_file=len(plan)))
-    (program,) = programs.programs
-    text, path = program.text.encode("ascii"), Path(f"{program.name}.H")
-    read = interpret(text, path, programs.masks.get, plan.chain, plan.probe)
+    read = programs.programs[0].read
     travel = np.full(len(read.touches), plan.options.standoff)
     clock = step_times(plan.chain, read.steps, Clock(), travel)
     time = clock[[isinstance(step, ProbeStep) for step in read.steps]]

@@ -26,7 +26,7 @@ from probe_paths.control import (
     Value,
     step_times,
 )
-from probe_paths.plan import LINEAR, ProgramFrame, stated_serial
+from probe_paths.plan import LINEAR, ProgramFrame, Sensor, stated_serial
 from twin.errors import DesignError, NotReachable
 from twin.frames import Array
 from twin.record import Labels, Touches
@@ -107,7 +107,8 @@ def run_programs(
         DesignError: A program made for another standard.
     """
     solvers = [_solver(program, standard, machine, rng) for program in programs]
-    planned = _planned_touches(solvers)
+    # what a disturbance has to know of the other programs; who has none asks nothing
+    planned = [] if machine.disturbance is None else _planned_touches(solvers)
     runs: list[VirtualRun] = []
     begin = 0.0
     for i, solver in enumerate(solvers):
@@ -195,7 +196,7 @@ def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
 
 
 def _check_standard(program: ReadProgram, standard: Standard) -> None:
-    names = list(standard.features)
+    names = list(program.heading.touched(standard).features)
     for number, name in program.features.items():
         if not 0 < number <= len(names) or names[number - 1] != name:
             raise DesignError(
@@ -224,6 +225,7 @@ class _Control:
         self.program, self.contacts = program, contacts
         self.frame = ProgramFrame(machine.chain, program.heading.probe)
         self.dialect, self.begin = machine.dialect, machine.begin
+        self.temperature = machine.temperature
         self.lines: dict[str, list[str]] = {}
         self.results = self._results()
 
@@ -269,10 +271,12 @@ class _Control:
         return Outcome.DONE, tried, now
 
     def _print(self, step: Print, now: float) -> None:
-        values = {q: self._number(value) for q, value in step.values.items()}
+        values = {q: self._number(value, now) for q, value in step.values.items()}
         moment = self.begin + timedelta(seconds=int(now))
         lines = self.lines.setdefault(step.target, [])
         lines += [line.filled(values, moment) for line in step.lines]
 
-    def _number(self, value: Value) -> float:
+    def _number(self, value: Value | Sensor, now: float) -> float:
+        if isinstance(value, Sensor):
+            return (self.temperature(value.name, now) - value.offset) / value.factor
         return float(self.results[value.touch, value.part]) if isinstance(value, Result) else value

@@ -102,7 +102,7 @@ def interpret(
     head, features = heading(blocks, path)
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
-    runner = Runner(blocks, places, frame, path, name, masks, head.log_lines)
+    runner = Runner(blocks, places, frame, path, name, masks, head)
     state = _begun(path, frame, stated, head.is_tilted)
     steps = runner.run(0, state)
     runner.check_logged()

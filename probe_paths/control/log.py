@@ -7,7 +7,7 @@ what no touch means anything without: set-up, probe and calibration in the head 
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from itertools import pairwise
 from pathlib import Path
@@ -66,6 +66,7 @@ class LogPart:
         rotary: Rotary positions by letter, degrees, each (N,).
         side: Side that each rotary axis came from, by letter, each (N,).
         time: s since `begin`, (N,); never falling.
+        temperature: degC by sensor, each (N,); nan where a line could not be read.
         is_complete: The program ran to its end.
         remarks: What was left out or mended, one line each.
     """
@@ -87,6 +88,7 @@ class LogPart:
     time: Array
     is_complete: bool
     remarks: tuple[str, ...] = ()
+    temperature: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def is_ball(self) -> bool:
@@ -169,6 +171,7 @@ class _PartReader:
         self.path, self.lines, self.rotary = path, list(lines), tuple(rotary)
         self.place = 0
         self.remarks: list[str] = []
+        self.sensed: list[list[str]] = []
         self.names = [["P", "S", "F"], ["X", "Y", "Z"]]
         if rotary:
             self.names += [list(rotary), [f"U{a}" for a in rotary]]
@@ -183,6 +186,9 @@ class _PartReader:
         self.place += 1
         heading, count = parse_heading(self.lines[self.place :], self.path)
         self.place += count
+        sensed = [sensor.word for sensor in heading.sensors]
+        self.sensed = [sensed[i : i + 4] for i in range(0, len(sensed), 4)]
+        self.names += self.sensed
         day, start = self._date(), self._head_clock()
         self._pairs(("TOOL", "PRESET"), is_needed=False)
         calibration = self._pairs(("R", "L"))
@@ -191,7 +197,8 @@ class _PartReader:
         clock = LogClock(start)
         rows, is_complete = self._touches(clock)
         begin = (day or UNDATED) + timedelta(seconds=clock.start or 0)
-        table = np.array([row for _, row in rows]).reshape(len(rows), 7 + 2 * len(self.rotary))
+        count = 6 + 2 * len(self.rotary)
+        table = np.array([row for _, row in rows]).reshape(len(rows), count + len(sensed) + 1)
         return LogPart(
             path=self.path,
             program=words[1],
@@ -210,6 +217,10 @@ class _PartReader:
             time=table[:, -1],
             is_complete=is_complete,
             remarks=(*self.remarks, *clock.remarks),
+            temperature={
+                sensor.name: sensor.factor * table[:, count + i] + sensor.offset
+                for i, sensor in enumerate(heading.sensors)
+            },
         )
 
     def _peek(self, expected: str) -> str:
@@ -304,6 +315,12 @@ class _PartReader:
                 values = None if now is None else [float(now)]
             else:
                 values = _numbers(text, names)
+            if values is None and names in self.sensed:  # a touch without it is a touch
+                line = self.lines[min(self.place, len(self.lines) - 1)][0]
+                self.remarks.append(f"line {line}: found {text!r}, expected {expected}")
+                row += [np.nan] * len(names)
+                self.place += text.startswith(names[0])
+                continue
             if values is None or (names == ["P", "S", "F"] and not _are_counters(values)):
                 line = self.lines[min(self.place, len(self.lines) - 1)][0]
                 self.remarks.append(

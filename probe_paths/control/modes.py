@@ -1,5 +1,7 @@
 """Modes, system data and numbers of cycle 4: what a block may set, read and ask for."""
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 
 from probe_paths.control.state import State
@@ -21,35 +23,43 @@ preset that forgot to read where the axis stands is seen."""
 LONGEST_SEARCH = 10.0
 """Beyond the expected contact, mm: what a probe may be driven into where nothing is expected."""
 
+_PRESET = "preset "  # before the letter of an axis: its coordinate from the preset
+_CALIBRATED: Mapping[Datum, Callable[[State], float]] = {
+    Datum.RADIUS: lambda state: state.frame.probe.radius,
+    Datum.LENGTH: lambda state: state.frame.probe.tool_length,
+    Datum.OFFSET_X: lambda _: 0.0,
+    Datum.OFFSET_Y: lambda _: 0.0,
+    Datum.ROTATION: lambda _: 0.0,
+    Datum.TOP: lambda state: state.frame.chain.link("Z").range[1],
+}
+
 
 def system_datum(block: Block, state: State) -> float:
     """Calibration of the probe, number of the tool, positions, end of Z, basic rotation."""
-    frame, probe = state.frame, state.frame.probe
-    known = {
-        Datum.RADIUS: probe.radius,
-        Datum.LENGTH: probe.tool_length,
-        Datum.OFFSET_X: 0.0,
-        Datum.OFFSET_Y: 0.0,
-        Datum.ROTATION: 0.0,
-        Datum.TOP: frame.chain.link("Z").range[1],
-    }
-    places = {Datum(word) for a in frame.letters for word in (a, f"preset {a}")}
-    for letter in frame.letters:
-        reading = float(np.nan_to_num(state.q[frame.chain.axis_index(letter)], nan=_ANYWHERE))
-        known[Datum(letter)] = reading if letter in LINEAR else reading / DEG
-        known[Datum(f"preset {letter}")] = (state.plane or frame).coordinate(letter, reading)
-    if state.tool is not None:
-        known[Datum.TOOL] = float(state.tool)
-    system = language_of(state.path).SYSTEM
+    frame, system = state.frame, language_of(state.path).SYSTEM
     datum = next((d for d, text in system.items() if text == block.word("datum")), None)
+    places = {Datum(f"{kind}{a}"): a for a in frame.letters for kind in ("", _PRESET)}
+    known = {*_CALIBRATED, *places, *([] if state.tool is None else [Datum.TOOL])}
     if datum is None or datum not in known:
-        available = ", ".join(system[d] for d in known if d in system)
+        available = ", ".join(text for d, text in system.items() if d in known)
         raise state.refusal(block, block.word("datum"), f"one of {available}")
     if datum in places and not state.is_synchronous:
         raise state.refusal(block, "a position read ahead", f"{state.says.sync} before it")
     fault = state.fault
     is_off = fault is not None and datum == (fault.work or fault.datum)
-    return known[datum] + is_off * state.off
+    value = _CALIBRATED[datum](state) if datum in _CALIBRATED else _place(datum, places, state)
+    return value + is_off * state.off
+
+
+def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
+    """Number of the tool, or where an axis stands: by its reading or from the preset."""
+    if datum not in places:
+        return float(state.tool or 0)
+    letter, frame = places[datum], state.frame
+    reading = float(np.nan_to_num(state.q[frame.chain.axis_index(letter)], nan=_ANYWHERE))
+    if datum.startswith(_PRESET):
+        return (state.plane or frame).coordinate(letter, reading)
+    return reading if letter in LINEAR else reading / DEG
 
 
 def check_cycle(state: State, block: Block, vector: Block, length: float) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from probe_paths.control.modes import check_cycle, set_mode, system_datum
 from probe_paths.control.motion import retract_max, straight_line
 from probe_paths.control.state import State
-from probe_paths.control.steps import STATUS, Halt, Move, Print, ProbeStep, Result, Step
+from probe_paths.control.steps import STATUS, Halt, Move, Print, ProbeStep, Result, Step, Value
 from probe_paths.language import (
     Block,
     Interlock,
@@ -22,7 +22,7 @@ from probe_paths.language import (
     parse_mask,
     shared_masks,
 )
-from probe_paths.plan import ProgramFrame
+from probe_paths.plan import Heading, ProgramFrame, Sensor
 from twin.errors import BadFile
 from twin.units import MINUTE
 
@@ -66,16 +66,17 @@ class Runner:
         path: Path,
         name: str,
         masks: MaskSource,
-        remarks: Sequence[str],
+        head: Heading,
     ) -> None:
         self.blocks, self.places, self.frame, self.path = blocks, places, frame, path
         self.name, self.folder = name, ""
         self.source = masks
         self.masks: dict[str, tuple[MaskLine, ...]] = {}
         form = language_of(path).LOG
-        rotary = frame.chain.rotary_axes
+        rotary, remarks = frame.chain.rotary_axes, head.log_lines
+        self.sensed = {sensor.parameter: sensor for sensor in head.sensors}
         texts = [head_mask(form, name, remarks)]
-        texts += shared_masks(form, _DECIMALS, rotary).values()
+        texts += shared_masks(form, _DECIMALS, rotary, head.sensors).values()
         texts.append(head_mask(form, name, remarks, rotary, _DECIMALS))
         self.readable = {_shape(parse_mask(text, path)) for text in texts}
         self.touches: list[ProbeStep] = []
@@ -270,7 +271,9 @@ class Runner:
         self._check_place(block, state)
         lines = self._mask(block, state)
         wanted = {a for line in lines for a in line.arguments if isinstance(a, int)}
-        values = {q: state.value(block, q) for q in sorted(wanted)}
+        values: dict[int, Value | Sensor] = {
+            q: self.sensed.get(q) or state.value(block, q) for q in sorted(wanted)
+        }
         self.logged |= {v.touch for v in values.values() if isinstance(v, Result)}
         return Print(block.line, lines, block.word("target").split("\\")[-1], values)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from probe_paths.language import MaskLine
-from probe_paths.plan import Heading
+from probe_paths.plan import Heading, Sensor
 from twin.frames import Array
 
 STATUS = 3
@@ -87,13 +87,13 @@ class Print:
         line: In the program file.
         lines: Of the mask.
         target: Name of the log file.
-        values: Of the Q parameters in the mask.
+        values: Of the Q parameters in the mask; a sensor for one that it is read from then.
     """
 
     line: int
     lines: tuple[MaskLine, ...]
     target: str
-    values: Mapping[int, Value]
+    values: Mapping[int, Value | Sensor]
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,12 @@ from the stated side, looks at the status of every touch, and is read back by th
 before it is handed out.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control import BALL, FIRST, Clock, interpret, step_times
+from probe_paths.control import BALL, FIRST, Clock, ReadProgram, interpret, step_times
 from probe_paths.emit.first import FirstWriter
 from probe_paths.emit.writer import Feeds, Special, Writer
 from probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
@@ -37,6 +37,7 @@ class Program:
         text: Whole file.
         touches: How many it makes.
         duration: By the clock, s.
+        read: What the interpreter understood of it.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Program:
     text: str
     touches: int
     duration: float
+    read: ReadProgram = field(repr=False, compare=False)
 
     @property
     def blocks(self) -> int:
@@ -221,7 +223,7 @@ class _Maker:
         self.plan, self.dialect, self.clock = plan, dialect, clock
         self.language = LANGUAGES[dialect.language]
         form, rotary = self.language.LOG, plan.chain.rotary_axes
-        self.shared = shared_masks(form, dialect.log_decimals, rotary)
+        self.shared = shared_masks(form, dialect.log_decimals, rotary, dialect.sensors)
         self.masks = dict(self.shared)
         self.is_first = special is not None and special.is_first
         written_by = FirstWriter if self.is_first else Writer
@@ -251,9 +253,12 @@ class _Maker:
         rotary = self.plan.chain.rotary_axes if self.is_first else None
         self.masks[f"{name}.A"] = head_mask(form, name, remarks, rotary, self.dialect.log_decimals)
         # the head states the duration, which is known once the program has been read back
-        duration = self._duration(name, self.writer.text(name, title, part, 0.0))
+        first = self.writer.text(name, title, part, 0.0)
+        read = self._read(name, first)
+        duration = self._duration(read)
         text = self.writer.text(name, title, part, duration)
-        self._duration(name, text)
+        if not _is_same_but_for_a_remark(first, text):
+            read = self._read(name, text)
         touches = 0 if self.writer.raised is not None else np.isin(self.plan.visit, part).sum()
         touches = 1 if self.is_first else touches
         return Program(
@@ -262,17 +267,30 @@ class _Maker:
             text=text,
             touches=int(touches),
             duration=duration,
+            read=read,
         )
 
-    def _duration(self, name: str, text: str) -> float:
-        """Duration of a program, read back from its text, s."""
+    def _read(self, name: str, text: str) -> ReadProgram:
+        """A program, read back from its text."""
         plan, path = self.plan, Path(f"{name}{self.language.ENDING}")
         data, masks = text.encode("ascii"), self.masks.get
-        read = interpret(data, path, masks, plan.chain, plan.probe, self.dialect)
+        return interpret(data, path, masks, plan.chain, plan.probe, self.dialect)
+
+    def _duration(self, read: ReadProgram) -> float:
+        """Duration of a program, s."""
+        plan = self.plan
         # what a search meets nobody knows: as long as it can take
         travel = np.full(len(read.touches), plan.options.standoff)
         travel = np.full(len(travel), plan.distance) if read.is_search else travel
         return float(step_times(plan.chain, read.steps, self.clock, travel)[-1])
+
+
+def _is_same_but_for_a_remark(text: str, other: str) -> bool:
+    """Whether at most one line of two programs differs, in its remark: they do the same."""
+    lines, others = text.splitlines(), other.splitlines()
+    changed = [pair for pair in zip(lines, others, strict=False) if pair[0] != pair[1]]
+    before = [{line.partition(";")[0] for line in pair} for pair in changed]
+    return len(lines) == len(others) and len(changed) <= 1 and all(len(b) == 1 for b in before)
 
 
 def _parts(sizes: IntArray, count: int) -> list[list[int]]:

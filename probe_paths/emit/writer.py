@@ -1,10 +1,11 @@
 """The blocks of a plan's programs, in the order in which a cautious operator would have them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from artefact.body import Standard
 from probe_paths.language import (
     LANGUAGES,
     MAX_LINE,
@@ -100,7 +101,8 @@ class Writer:
         self.special = special
         self.raised = special.raised if special else None
         self.language = LANGUAGES[dialect.language]
-        tilted = dialect.is_tilted and not (special is not None and special.is_first)
+        is_first = special is not None and special.is_first
+        tilted = dialect.is_tilted and not is_first
         self.tilting = self.language.TILTING if tilted and dialect.has_planes else None
         if tilted and self.tilting is None:
             raise DesignError("coordinates of tilted planes: the control has no PLANE SPATIAL")
@@ -114,12 +116,22 @@ class Writer:
             probe=plan.probe,
             workshop=plan.options.workshop,
             serial=stated_serial(plan.standard.serial),
-            calibration=calibration_hash(plan.standard),
+            calibration=calibration_hash(self._alone(plan)),
+            ball=plan.options.ball,
             is_tilted=self.tilting is not None,
+            sensors=() if is_first else dialect.sensors,
         )
         top = plan.chain.link("Z").range[1]
         self.top = top - plan.options.retract
         self.retract = self.language.retract(self.top)
+
+    @staticmethod
+    def _alone(plan: TouchPlan) -> Standard:
+        """The standard without the ball of the workshop, which has no calibration of its own."""
+        standard = plan.standard
+        if plan.options.ball is None:
+            return standard
+        return replace(standard, spheres=standard.spheres[:-1])
 
     def text(self, name: str, title: str, part: list[int], duration: float) -> str:
         """Whole text of a program that makes the visits `part`."""

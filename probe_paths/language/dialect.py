@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Literal
 
+from probe_paths.plan import Sensor
+
 
 class Q(IntEnum):
     """Parameters of our programs, all in Q1600-Q1999, which no cycle and no builder uses."""
@@ -115,6 +117,7 @@ class Dialect:
         slow_feed: Of the second touch, mm/min, where the control measures by a second, slow one.
         step_back: From the surface before the second touch, mm.
         has_planes: The control has PLANE SPATIAL.
+        sensors: Temperatures that the control hands to programs.
         is_tilted: Programs use it: coordinates are those of planes tilted with the table.
     """
 
@@ -131,6 +134,7 @@ class Dialect:
     step_back: float = 0.0
     has_planes: bool = True
     is_tilted: bool = False
+    sensors: tuple[Sensor, ...] = ()
 
     def on_control(self, name: str) -> str:
         """Full name of a file on the control."""

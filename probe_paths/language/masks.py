@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from probe_paths.language.dialect import TOOL_LENGTH, Q
 from probe_paths.language.text import MAX_LINE, checked_name
+from probe_paths.plan import Sensor
 from twin.errors import BadFile, DesignError
 
 
@@ -37,6 +38,8 @@ _CLOCK: dict[str, Callable[[datetime], int]] = {
     "SECONDS": lambda now: 3600 * now.hour + 60 * now.minute + now.second,
 }
 """What a clock can be asked for: SECONDS of the day, CALENDAR as one number 20310506."""
+
+_SENSORS_A_LINE = 4
 
 LINE_END = "\r\n"
 
@@ -139,24 +142,29 @@ def _q(parameter: int) -> str:
     return f"Q{int(parameter)}"
 
 
-def shared_masks(form: LogForm, decimals: int, rotary: Sequence[str]) -> dict[str, str]:
+def shared_masks(
+    form: LogForm, decimals: int, rotary: Sequence[str], sensors: Sequence[Sensor] = ()
+) -> dict[str, str]:
     """Masks that every program of a campaign uses, by file name.
 
     Args:
         form: Of the control.
         decimals: Of coordinates.
         rotary: Letters of the machine's rotary axes.
+        sensors: Temperatures that are logged with every touch.
     """
     clock = form.clock
     missed = _fields([("NOCONTACT P", Q.TOUCH)], form.counter)
     return {
-        f"{SharedMask.POINT}.A": _mask(_point_lines(form, decimals, rotary)),
+        f"{SharedMask.POINT}.A": _mask(_point_lines(form, decimals, rotary, sensors)),
         f"{SharedMask.END}.A": _mask([(f"END {clock[0]}", clock[1])]),
         f"{SharedMask.NO_CONTACT}.A": _mask([missed, clock]),
     }
 
 
-def _point_lines(form: LogForm, decimals: int, rotary: Sequence[str]) -> list[Fields]:
+def _point_lines(
+    form: LogForm, decimals: int, rotary: Sequence[str], sensors: Sequence[Sensor] = ()
+) -> list[Fields]:
     """Lines of one touch."""
     number = _number(form, decimals)
     side = "%5.1LF" if form.is_wide else form.counter
@@ -169,7 +177,9 @@ def _point_lines(form: LogForm, decimals: int, rotary: Sequence[str]) -> list[Fi
     point: list[Fields] = [_fields(counters, form.counter), _fields(measured, number)]
     if turned:
         point += [_fields(turned, number), _fields(came_from, side)]
-    return [*point, form.clock]
+    read = [(sensor.word, sensor.parameter) for sensor in sensors]
+    lots = [read[i : i + _SENSORS_A_LINE] for i in range(0, len(read), _SENSORS_A_LINE)]
+    return [*point, *(_fields(lot, "%11.4LF") for lot in lots), form.clock]
 
 
 def _number(form: LogForm, decimals: int) -> str:

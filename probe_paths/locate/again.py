@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from artefact.body import Standard
-from artefact.reach import Requests
+from artefact.reach import DatumBall, Requests, Workshop
 from probe_paths.control import ReadProgram
 from probe_paths.linuxcnc import shortened
 from probe_paths.plan import TouchPlan, plan_touches
@@ -18,7 +18,11 @@ DROPPED = 0.1
 
 
 def planned_again(
-    programs: Sequence[ReadProgram], standard: Standard, chain: Chain, setup: Setup
+    programs: Sequence[ReadProgram],
+    standard: Standard,
+    chain: Chain,
+    setup: Setup,
+    ball: DatumBall | None = None,
 ) -> TouchPlan:
     """Plan of the touches that programs make, for another place of the standard.
 
@@ -29,6 +33,7 @@ def planned_again(
         programs: Of one set-up, as read.
         standard: For which they were made.
         setup: Where the standard stands.
+        ball: On the table, by which the probe is watched; programs state it as cylinders.
 
     Raises:
         NotReachable: More touches cannot be made there than may be dropped.
@@ -44,4 +49,10 @@ def planned_again(
         np.array([visit.rotary for visit in old.visits])[old.visit[rows]],
     )
     options = replace(old.options, tolerated=int(DROPPED * len(rows)))
+    if ball is not None:
+        room = options.workshop
+        known = Workshop(room.table, (), ball)
+        stated = {solid.name for solid in known.solids}
+        others = tuple(solid for solid in room.bodies if solid.name not in stated)
+        options = replace(options, workshop=replace(known, bodies=others))
     return plan_touches(standard, chain, old.probe, setup, wanted, options)

@@ -1,4 +1,4 @@
-"""Touches on one ball of the standard, by which the probe is compared with itself."""
+"""Touches on one ball, of the standard or beside it, by which the probe is compared with itself."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ times as well as 45, and leave a stem the room of its own thickness."""
 _RING = 6
 
 
-def plan_ball(plan: TouchPlan) -> TouchPlan:
+def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
     """Plan of a pole and a ring of six touches on a ball, all at one table pose.
 
     The ball is the first of the standard, and the pose the first, that let the probe have all of
@@ -27,6 +27,7 @@ def plan_ball(plan: TouchPlan) -> TouchPlan:
 
     Args:
         plan: Of the programs that the ball is measured before and after.
+        is_beside: The ball is that of the workshop, on the table beside the standard.
 
     Raises:
         NotReachable: No ball can be touched all round at any pose.
@@ -35,23 +36,30 @@ def plan_ball(plan: TouchPlan) -> TouchPlan:
     poses = np.unique([visit.rotary for visit in plan.visits], axis=0)
     steps = np.abs(poses - home).max(axis=1, initial=0.0)
     poses = np.concatenate([home[None], poses[np.argsort(steps, kind="stable")]])
+    standard, general = plan.standard, plan.options
+    balls = standard.spheres
+    if is_beside:
+        ball, room = general.workshop.ball, replace(general.workshop, ball=None)
+        assert ball is not None
+        standard = ball.beside(standard, plan.setup.T_table_artefact)
+        balls, general = standard.spheres[-1:], replace(general, workshop=room, ball=ball)
     why = "it has no ball"
     for tilt in _TILTS:
         for rotary in poses:
-            for ball in plan.standard.spheres:
+            for sphere in balls:
                 # the first touch of every visit is that of an anchor: on the same ball
                 options = replace(
-                    plan.options, anchor=ball.name, tolerated=0, shortest_visit=2 * _RING
+                    general, anchor=sphere.name, tolerated=0, shortest_visit=2 * _RING
                 )
-                wanted = _ring(plan, ball, rotary, tilt)
+                wanted = _ring(plan, sphere, rotary, tilt)
                 try:
                     made = plan_touches(
-                        plan.standard, plan.chain, plan.probe, plan.setup, wanted, options
+                        standard, plan.chain, plan.probe, plan.setup, wanted, options
                     )
                 except NotReachable as error:
                     why = str(error)
                     continue
-                if set(made.feature.tolist()) == {ball.name}:
+                if set(made.feature.tolist()) == {sphere.name}:
                     return made
     raise NotReachable(f"no ball of {plan.standard.name} can be touched all round; the last: {why}")
 

@@ -68,11 +68,13 @@ def companions(
     made = Companions(
         dry_run=make_dry_run(plan, raised, dialect, feeds), raised=raised, spread=SPREADS[-1]
     )
+    is_beside = plan.options.workshop.ball is not None
     try:
-        ball = plan_ball(plan)
+        own = plan_ball(plan)
+        ball = plan_ball(plan, is_beside) if is_beside else own
         made = replace(made, ball=make_ball(ball, dialect, feeds))
         if dialect.language == "klartext" and not is_further:
-            made = replace(made, first=make_first(ball, dialect, feeds))
+            made = replace(made, first=make_first(own, dialect, feeds))
     except NotReachable as error:
         made = replace(made, no_ball=str(error))
     if is_further:

@@ -233,7 +233,7 @@ def _check(plan: TouchPlan, path: float) -> None:
         probe=plan.probe,
         workshop=plan.options.workshop,
     )
-    ours = np.isin(room.bodies.name, [body.name for body in plan.options.workshop.bodies])
+    ours = np.isin(room.bodies.name, [solid.name for solid in plan.options.workshop.solids[1:]])
     spared = np.broadcast_to(~ours, (len(end), len(ours)))
     gap, nearest = room.swept_gap(plan.start, end, spared=spared)
     worst = int(np.argmin(gap))

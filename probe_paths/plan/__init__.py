@@ -15,7 +15,13 @@ from probe_paths.plan.clearance import (
     top_height,
 )
 from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import Heading, calibration_hash, parse_heading, stated_serial
+from probe_paths.plan.heading import (
+    Heading,
+    Sensor,
+    calibration_hash,
+    parse_heading,
+    stated_serial,
+)
 from probe_paths.plan.order import (
     Visit,
     home_readings,
@@ -25,7 +31,7 @@ from probe_paths.plan.order import (
 )
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
-from probe_paths.plan.strokes import Stage, stroke_gaps
+from probe_paths.plan.strokes import stroke_gaps
 from probe_paths.plan.touch_plan import PlanOptions, Refusal, TouchPlan, requests_at
 
 __all__ = [
@@ -36,7 +42,7 @@ __all__ = [
     "Probe",
     "ProgramFrame",
     "Refusal",
-    "Stage",
+    "Sensor",
     "ToolClearance",
     "TouchPlan",
     "Visit",

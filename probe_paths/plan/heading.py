@@ -8,13 +8,14 @@ first of them are literal lines of its log, which names the workshop by a hash a
 import hashlib
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from artefact.body import Standard
-from artefact.reach import TABLE, Solid, Workshop
+from artefact.reach import TABLE, DatumBall, Solid, Workshop
 from probe_paths.plan.probe import Probe
 from twin.errors import BadFile, DesignError
 from twin.frames import Array, fixed_xyz, fixed_xyz_angles, pose
@@ -33,8 +34,42 @@ _STACK = re.compile(rf"STACK TO{_NUMBER} R{_NUMBER}")
 _NOSE = re.compile(rf"NOSE R{_NUMBER}")
 _SOLID = re.compile(rf"BODY (\S+) (BOX|DISC) A{_NUMBER} B{_NUMBER} Z{_NUMBER} TO{_NUMBER}")
 _PLACE = re.compile(rf"AT X{_NUMBER} Y{_NUMBER} C{_NUMBER} ON (\S+)")
+_SENSOR = re.compile(rf"SENSOR (\w{{1,16}}) Q(10[0-7]) FACTOR{_NUMBER} OFFSET{_NUMBER}")
+_BALL = re.compile(rf"DATUM BALL X{_NUMBER} Y{_NUMBER} Z{_NUMBER}")
+_BALL_SIZE = re.compile(rf"DATUM R{_NUMBER} S{_NUMBER} F{_NUMBER} U{_NUMBER}")
 _EARLIER = re.compile(r"(STYLUS L.* BODY R.*|NOSE R.* TABLE R.*)")
 _TABLE_WORD, _HASH = "TABLE", 12
+
+
+_FIRST_PARAMETER = 100
+"""In which a PLC hands values to programs; there are eight."""
+
+
+class Sensor(NamedTuple):
+    """A temperature that the control itself knows, and logs with every touch.
+
+    Attributes:
+        name: Of the sensor; its column in a run is `T_<name>_degC`.
+        parameter: Q parameter in which the control's PLC hands it to programs.
+        factor: degC per unit of the parameter.
+        offset: degC at zero.
+    """
+
+    name: str
+    parameter: int
+    factor: float = 1.0
+    offset: float = 0.0
+
+    @property
+    def line(self) -> str:
+        """As a head states it."""
+        scale = f"FACTOR{self.factor:+.6f} OFFSET{self.offset:+.6f}"
+        return f"SENSOR {self.name} Q{self.parameter} {scale}"
+
+    @property
+    def word(self) -> str:
+        """Before the reading in a log: TA for Q100, TB for Q101."""
+        return f"T{chr(ord('A') + self.parameter - _FIRST_PARAMETER)}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +86,8 @@ class Heading:
             programs.
         stated: Hash of probe and workshop; likewise.
         is_tilted: Coordinates are those of planes that are tilted with the table.
+        sensors: That are logged with every touch.
+        ball: On the table beside the standard, where that is what is touched.
     """
 
     standard: str
@@ -61,6 +98,20 @@ class Heading:
     calibration: str = ""
     stated: str = ""
     is_tilted: bool = False
+    sensors: tuple[Sensor, ...] = ()
+    ball: DatumBall | None = None
+
+    def touched(self, standard: Standard, T_table_artefact: Array | None = None) -> Standard:
+        """What a program has before it: the standard, and the ball if that is touched.
+
+        Args:
+            standard: By itself.
+            T_table_artefact: Where it stands; None for where it is believed to.
+        """
+        if self.ball is None:
+            return standard
+        place = self.setup.T_table_artefact if T_table_artefact is None else T_table_artefact
+        return self.ball.beside(standard, place)
 
     @property
     def log_lines(self) -> list[str]:
@@ -85,6 +136,8 @@ class Heading:
             "TURNED " + _words("ABC", angles),
             f"PROBE RADIUS {probe.radius:+.6f} LENGTH TO BALL CENTRE {probe.length:+.6f}",
             *(f"{name} {value}" for name, value in named.items() if value),
+            *(sensor.line for sensor in self.sensors),
+            *_ball_lines(self.ball),
         ]
 
     @property
@@ -111,6 +164,15 @@ class Heading:
             f"NOSE R{self.probe.nose_radius:+.6f}",
             *(line for solid in self.workshop.solids for line in _solid_lines(solid)),
         ]
+
+
+def _ball_lines(ball: DatumBall | None) -> list[str]:
+    """The ball on the table in two lines."""
+    if ball is None:
+        return []
+    size = _words("RSF", np.array([ball.radius, ball.stem, ball.low]))
+    u = _words("U", np.array([ball.u]), 7)
+    return ["DATUM BALL " + _words("XYZ", np.array([ball.x, ball.y, ball.z])), f"DATUM {size} {u}"]
 
 
 def _solid_lines(solid: Solid) -> Iterator[str]:
@@ -159,8 +221,10 @@ def rounded_setup(setup: Setup) -> Setup:
 
 def rounded_workshop(workshop: Workshop) -> Workshop:
     """The workshop as a program can state it, likewise."""
-    table, *bodies = (_rounded(solid) for solid in workshop.solids)
-    return Workshop(table, tuple(bodies))
+    ball = workshop.ball
+    if ball is not None:
+        ball = DatumBall(*(round(getattr(ball, field.name), 6) for field in fields(ball)))
+    return Workshop(_rounded(workshop.table), tuple(map(_rounded, workshop.bodies)), ball)
 
 
 def _rounded(solid: Solid) -> Solid:
@@ -189,15 +253,12 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
     angles = _numbers(_TURNED, lines[2], path, "TURNED A.. B.. C..")
     radius, length = _numbers(_PROBE, lines[3], path, "PROBE RADIUS .. LENGTH TO BALL CENTRE ..")
     T_table_artefact = pose(fixed_xyz(angles * DEG), origin)
-    stated, count = {}, 4
-    for _, text in lines[4:]:
-        if match := _STATED.fullmatch(text.strip()):
-            stated[match[1]] = match[2]
-            if match[1] == "FRAME" and match[2] != _TILTED:
-                raise BadFile(path, f"line {lines[count][0]}", repr(text), f"FRAME {_TILTED}")
-        elif not _EARLIER.fullmatch(text.strip()):
-            break
-        count += 1
+    stated, sensors, count = _stated_lines(lines, path)
+    ball = None
+    if len(lines) > count + 1 and lines[count][1].startswith("DATUM BALL "):
+        place = _numbers(_BALL, lines[count], path, "DATUM BALL X.. Y.. Z..")
+        size = _numbers(_BALL_SIZE, lines[count + 1], path, "DATUM R.. S.. F.. U..")
+        ball, count = DatumBall(*place.tolist(), *size.tolist()), count + 2
     head = Heading(
         standard=words[1],
         setup=Setup(words[3], T_table_artefact),
@@ -206,6 +267,8 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
         calibration=stated.get("CALIBRATION", ""),
         stated=stated.get("WORKSHOP", ""),
         is_tilted="FRAME" in stated,
+        sensors=sensors,
+        ball=ball,
     )
     if len(lines) == count or not lines[count][1].startswith("STACK "):
         return head, count
@@ -215,6 +278,27 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
         raise
     except DesignError as error:  # a probe or a body that cannot be
         raise BadFile(path, f"line {lines[count][0]} and after", str(error), "a probe") from None
+
+
+def _stated_lines(
+    lines: Sequence[tuple[int, str]], path: str | Path
+) -> tuple[dict[str, str], tuple[Sensor, ...], int]:
+    """What lines after the first four state, by their first word; sensors; where others begin."""
+    stated: dict[str, str] = {}
+    sensors: list[Sensor] = []
+    count = 4
+    for number, text in lines[4:]:
+        if match := _SENSOR.fullmatch(text.strip()):
+            scale = (float(match[3]), float(match[4]))
+            sensors.append(Sensor(match[1], int(match[2]), *scale))
+        elif match := _STATED.fullmatch(text.strip()):
+            stated[match[1]] = match[2]
+            if match[1] == "FRAME" and match[2] != _TILTED:
+                raise BadFile(path, f"line {number}", repr(text), f"FRAME {_TILTED}")
+        elif not _EARLIER.fullmatch(text.strip()):
+            break
+        count += 1
+    return stated, tuple(sensors), count
 
 
 def _with_workshop(

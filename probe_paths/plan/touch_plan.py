@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from artefact.body import Standard
-from artefact.reach import ProbeReach, Requests, Workshop
+from artefact.reach import DatumBall, ProbeReach, Requests, Workshop
 from probe_paths.plan.order import Visit
 from probe_paths.plan.probe import Probe
 from twin.frames import Array
@@ -43,6 +43,7 @@ class PlanOptions:
         anchor_tilt: Angle between the anchor touch's normal and the tool axis, rad.
         shortest_visit: Fewest touches for which a pose is visited twice, half of them each time.
         workshop: What stands beside the standard and is kept clear.
+        ball: Of the workshop, where that is what is touched; the standard has it as a feature.
         tolerated: How many requests may be refused before the whole plan is.
         is_swept: Whether moves are swept with the whole tool; a plan that is timed and never run
             need not be.
@@ -59,6 +60,7 @@ class PlanOptions:
     anchor_tilt: float = 40.0 * DEG
     shortest_visit: int = 4
     workshop: Workshop = field(default_factory=Workshop)
+    ball: DatumBall | None = None
     tolerated: int = 0
     is_swept: bool = True
 

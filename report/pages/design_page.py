@@ -1,5 +1,6 @@
 """The page of a design run: pictures, figures and tables of everything that was made."""
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -54,11 +55,15 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
     remarks: list[str] = comparison_remarks(design.placement)
     chain, stands = design.project.chain, design.project.setup.T_table_artefact
     assumed = [*chain.remarks, *standing_remarks(chain, stands)]
-    pictures = _standard_pictures(design, folder, remarks)
-    maps = [*design.maps, *_volumes(design, folder, remarks)]
-    write_touches_picture(folder / "plan_touches.png", design.plan)
-    write_order_picture(folder / "plan_order.png", design.plan)
-    write_proof_picture(folder / "proof.png", [m.in_workspace for m in design.machines])
+    with ThreadPoolExecutor(1) as beside:  # pictures are rendered in processes of their own
+        counted = beside.submit(_times, design)
+        pictures = _standard_pictures(design, folder, remarks)
+        maps = [*design.maps, *_volumes(design, folder, remarks)]
+        write_touches_picture(folder / "plan_touches.png", design.plan)
+        write_order_picture(folder / "plan_order.png", design.plan)
+        write_proof_picture(folder / "proof.png", [m.in_workspace for m in design.machines])
+        curves = _draw_curves(design, folder)
+        on_machine, in_order = counted.result()
     write_page(
         folder / "report.html",
         "design.html",
@@ -71,11 +76,11 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         pictures=pictures,
         remarks=[*assumed, *remarks],
         placeholders=(folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER"),
-        curves_caption=_draw_curves(design, folder),
+        curves_caption=curves,
         **study_content(design.study, maps),
-        **_standard(design),
+        **_standard(design, on_machine),
         **_proof(design),
-        **order_content(design),
+        **in_order,
         **known_content(design, folder),
         excerpt="\n".join([*design.programs.programs[0].text.splitlines()[:_EXCERPT], "..."]),
     )
@@ -122,9 +127,18 @@ def _on(criterion: Criterion, body: Standard | None) -> Criterion:
     return criterion if body is None else criterion.on(body)
 
 
-def _standard(design: Design) -> dict[str, Any]:
-    """Tables of the patches, of other artefacts and of the CAD files."""
-    c, on_machine = design.conformity, minutes(design)
+def _times(design: Design) -> tuple[dict[str, float], dict[str, Any]]:
+    """Minutes of every artefact, and what the page tells of the order: without any picture."""
+    return minutes(design), order_content(design)
+
+
+def _standard(design: Design, on_machine: dict[str, float]) -> dict[str, Any]:
+    """Tables of the patches, of other artefacts and of the CAD files.
+
+    Args:
+        on_machine: Minutes of every artefact.
+    """
+    c = design.conformity
     faces, best = max(c.face_deviation.values()) / UM, best_rival(design.placement)
     return {
         "patches": [_patch(p, design) for p in design.placement.standard.patches],

@@ -1,4 +1,4 @@
-"""Pictures of what a machine reaches of a blank, and of the faces that fit on it side by side."""
+"""Pictures of what a machine reaches of a blank, and of the bodies that fit on it side by side."""
 
 from __future__ import annotations
 
@@ -6,16 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from artefact.body import FreeformPatch
 from artefact.layout import Blank, least_gap
+from artefact.place import Room
 from artefact.reach import ANGLE, Limit, PlacesInReach
 from report.style import BLUE, INK, RED, figure, plain
 from twin.machine import Chain
 from twin.units import DEG
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -110,28 +108,28 @@ def _words(limit: Limit) -> str:
     return f"{limit.name} {'above' if limit.upper else 'below'} {limit.at:g} mm"
 
 
-def draw_room(faces: Sequence[FreeformPatch], wanted: int, blank: Blank) -> Figure:
-    """Faces that stand side by side, from above and the side.
-
-    Args:
-        faces: Those that fit.
-        wanted: How many were asked for.
-        blank: On which they stand.
-    """
+def draw_room(room: Room) -> Figure:
+    """Faces and balls that stand side by side, from above and the side."""
+    blank = room.blank
     drawn = figure(5.0)
     drawn.suptitle(
-        f"{len(faces)} of {wanted} patches fit side by side: between two of them cutter and "
-        f"probe need {least_gap(blank.limits):g} mm",
+        f"{len(room.faces)} of {room.wanted} patches and {len(room.balls)} balls fit side by side: "
+        f"between two bodies cutter and probe need {least_gap(blank.limits):g} mm",
         color=INK,
     )
     a, b = blank.base.half_size
     views = ((1, "from above", -b, b), (2, "from the side", 0.0, blank.height))
+    round_it = np.linspace(0.0, 2.0 * np.pi, 60)
     for axes, (other, title, low, high) in zip(drawn.subplots(1, 2), views, strict=True):
-        for face in faces:
+        for face in room.faces:
             x, y = face.half_size
             uv = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
             outline = face.point(uv)
             axes.fill(outline[:, 0], outline[:, other], color=BLUE, alpha=0.5, lw=0.0)
+        for ball in room.balls:
+            x, y = ball.centre[0], ball.centre[other]
+            turned = ball.radius * np.stack([np.cos(round_it), np.sin(round_it)])
+            axes.fill(x + turned[0], y + turned[1], color=RED, alpha=0.7, lw=0.0)
         axes.plot([-a, a, a, -a, -a], [low, low, high, high, low], color=INK, lw=1.0)
         axes.set(
             xlabel="x of the standard in mm",

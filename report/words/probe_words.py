@@ -1,6 +1,7 @@
 """Words of where a standard stands, and of what a ball tells of the probe."""
 
 from collections.abc import Mapping, Sequence
+from datetime import datetime
 
 import numpy as np
 
@@ -15,6 +16,7 @@ def ball_lines(
     changes: Sequence[BallChange],
     limit: float | None = None,
     heights: Sequence[Mapping[str, float]] = (),
+    radii: Sequence[tuple[datetime, float, float]] = (),
 ) -> list[str]:
     """What the same ball tells of the time between two looks at it, in words.
 
@@ -22,6 +24,8 @@ def ball_lines(
         changes: In the order of time.
         limit: Beyond which measurements are refused, mm; None where they are not.
         heights: What touches of commissioning programs tell of Z, by its meanings, mm.
+        radii: What the calibrated ball of the workshop tells: when, of the effective radius of the
+            probe what it is beyond its calibration, and the uncertainty of that, mm.
     """
     lines = []
     for beside in heights:
@@ -31,6 +35,11 @@ def ball_lines(
             f"commissioning touch: Z of the control is that of {best} (--z {best}): the ball is "
             f"{abs(beside[best]):.3f} mm beside its place, {others}"
         )
+    lines += [
+        f"datum ball at {begin:%H:%M}: effective radius of the probe {excess / UM:+.1f} ± "
+        f"{u / UM:.1f} µm beyond its calibration"
+        for begin, excess, u in radii
+    ]
     within = "" if limit is None else f" (limit {limit / UM:g} µm)"
     for change in changes:
         moved = ", ".join(

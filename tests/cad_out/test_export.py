@@ -198,6 +198,7 @@ def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(upright):
     assert up @ (corners.mean(axis=0) - sphere.centre) == pytest.approx(sphere.radius - sagitta)
 
 
+@pytest.mark.slow
 def test_same_standard_gives_the_same_bytes(upright, built, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONHASHSEED", "77")
     cad_out.verify.export_standard(upright, tmp_path, chord=0.02)

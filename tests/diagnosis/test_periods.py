@@ -54,20 +54,28 @@ def test_a_fine_log_shows_a_short_period(period: float) -> None:
 
 
 @pytest.mark.slow
-def test_a_fine_log_of_many_rows_shows_two_periods() -> None:
-    """A screw of 2 mm and an encoder of 0.27 mm, written down while the axis moves evenly.
-
-    An encoder of 0.25 mm is told as the eighth harmonic of the screw, which it may be.
-    """
+@pytest.mark.parametrize(
+    ("encoder", "told"),
+    [
+        pytest.param(0.27, [("periodic(EXX)", 0.27), ("periodic(EXX)", 2.0)], id="no harmonic"),
+        pytest.param(0.25, [("periodic(EXX,8)", 2.0)], id="the eighth harmonic, which it may be"),
+    ],
+)
+def test_a_fine_log_of_many_rows_shows_two_periods(
+    encoder: float, told: list[tuple[str, float]]
+) -> None:
+    """A screw of 2 mm and an encoder, written down while the axis moves evenly."""
     rng = np.random.default_rng(4)
     x = np.arange(0.0, 100.0, 100.0 / 12000.0)
-    error = 3.0 * np.sin(2.0 * np.pi * x / 2.0 + 1.0) + 0.8 * np.sin(2.0 * np.pi * x / 0.27)
+    error = 3.0 * np.sin(2.0 * np.pi * x / 2.0 + 1.0) + 0.8 * np.sin(2.0 * np.pi * x / encoder)
     run = run_of(x, -error * UM + rng.normal(0.0, 0.05 * UM, len(x)), 0.05 * UM)
     run = replace(run, touches=replace(run.touches, time=0.1 * np.arange(len(x))))
     found = diagnose(run)
     assert found.verdict is Verdict.MISSING
-    periods = [e.tuning["period"] for e in found.found if isinstance(e, Tunable)]
-    assert sorted(periods) == pytest.approx([0.27, 2.0], rel=1e-4)
+    tuned = [e for e in found.found if isinstance(e, Tunable)]
+    waves = sorted((e.tuning["period"], e.name.partition("#")[0]) for e in tuned)
+    assert [name for _, name in waves] == [name for name, _ in told]
+    assert [p for p, _ in waves] == pytest.approx([p for _, p in told], rel=1e-4)
     assert found.fit.rms < 0.055 * UM
 
 
@@ -115,6 +123,7 @@ def test_what_was_scanned_is_told() -> None:
     assert "this run says nothing" in sentence
 
 
+@pytest.mark.slow
 def test_effects_of_a_log_do_not_cancel_one_another() -> None:
     """Reading and time run together: growth and polynomials would cancel, thousands of µm each."""
     rng = np.random.default_rng(0)

@@ -17,6 +17,7 @@ from artefact.place.placement import PlacementOptions
 from artefact.worth import ball_choice
 from artefact.worth.touch_choice import TouchOptions
 from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
+from cad_out.verify.conformity import FACE_LIMIT
 from matstd.cli import main
 from matstd.stages import design, study_run
 from matstd.stages.from_project import blank, placement_options, probe_reach
@@ -44,7 +45,8 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
         ("hsm600u-machine.toml", "machine.toml"),
         ("poses = 2000", "poses = 300"),
         ("draws = 2000", "draws = 300"),
-        ("patches = 6 ", "patches = 5 "),
+        ("patches = 6 ", "patches = 3 "),
+        ("# balls = 13", "balls = 5"),
         ("# proof_touches = 160", "proof_touches = 60"),
         ("touches = 480", f"touches = {touches}"),
         ("poses = 30 ", f"poses = {poses} "),
@@ -141,6 +143,13 @@ def test_the_run_can_be_made_again_from_the_files(made: Path, tmp_path: Path) ->
     assert 0.8 < np.std(difference) < 1.25  # the noise of the first run, 1 um
 
 
+def test_what_was_measured_stands_with_its_limits(made: Path) -> None:
+    told = json.loads((made / "conformity.json").read_text())
+    assert told["faults"] == []
+    assert 0.0 < told["measured"]["mass"] < 60.0
+    assert told["limits"]["face_deviation_mm"] == FACE_LIMIT
+
+
 def test_the_page_stands_alone(made: Path) -> None:
     page = (made / "report.html").read_text(encoding="utf-8")
     assert "http://" not in page
@@ -164,7 +173,7 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("X = [-150.0, 150.0]", "X = [150.0, -150.0]", "workspace.X"),
         ("X = [-150.0, 150.0]", "Q = [-150.0, 150.0]", "workspace.Q"),
         ("X = [-150.0, 150.0]", "X = [-900.0, 150.0]", "within the travel"),
-        ("patches = 5", "patches = 2", "standard.patches"),
+        ("patches = 3", "patches = 2", "standard.patches"),
         ("noise_um = 1.0", "noise_um = nan", "simulation.noise_um"),
         ("noise_um = 1.0", "noises = 1.0", "simulation.noises"),
         ("# [errors.classes]", "[errors.classes]\nspeed = [1.0, 2.0]", "errors.classes.speed"),
@@ -260,7 +269,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert placement_options(read_project(path)) == PlacementOptions(
-        name="FFS-600U", serial="001", patches=5, choice=TouchOptions(120, 10, 60)
+        name="FFS-600U", serial="001", patches=3, balls=5, choice=TouchOptions(120, 10, 60)
     )
     plain = re.sub(
         r"(?m)^(criterion|potential|robust_machines|robust_share|poses = 10).*\n", "", text

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 from cad_out.build.process import Ending
 from report.scenes.standard_scene import draw_standard
@@ -29,7 +30,20 @@ def scene(values=None, **changes):
 
 
 @pytest.fixture(scope="module")
-def pictures(built, tmp_path_factory):
+def stl(upright, tmp_path_factory):
+    """Base and balls alone as body: that real ones are drawn shows in `matstd/test_design`."""
+    (a, b), thick = upright.base.half_size, upright.base.thickness
+    body = [trimesh.creation.box(bounds=[[-a, -b, 0.0], [a, b, thick]])]
+    for sphere in upright.spheres:
+        ball = trimesh.creation.icosphere(subdivisions=4, radius=sphere.radius)
+        body.append(ball.apply_translation(sphere.centre))
+    path = tmp_path_factory.mktemp("body") / "standard.stl"
+    trimesh.util.concatenate(body).export(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def pictures(stl, tmp_path_factory):
     """Pixels by name, of one rendering; on a machine without OpenGL there are none."""
     from matplotlib.image import imread
 
@@ -45,7 +59,7 @@ def pictures(built, tmp_path_factory):
     place = tmp_path_factory.mktemp("volumes")
     paths = {name: place / f"{name}.png" for name in wanted}
     try:
-        draw_volumes({paths[n]: w for n, w in wanted.items()}, built[0] / "standard.stl")
+        draw_volumes({paths[n]: w for n, w in wanted.items()}, stl)
     except MissingLibrary:
         return None
     return {name: imread(path)[..., :3] for name, path in paths.items()}
@@ -107,7 +121,7 @@ def test_what_cannot_be_drawn_is_refused(tmp_path):
 
 
 def test_a_renderer_that_fails_names_the_package_and_nothing_is_written(tmp_path, monkeypatch):
-    """As it fails without OpenGL, which `test_study_page` takes away."""
+    """As it fails without OpenGL, which a test below takes away."""
     failed = Ending(1, "", "libEGL warning")
     monkeypatch.setattr("report.scenes.renderer.run_apart", lambda *_, **__: failed)
     with pytest.raises(MissingLibrary, match="apt-get install libegl1") as caught:
@@ -119,12 +133,12 @@ def test_a_renderer_that_fails_names_the_package_and_nothing_is_written(tmp_path
 # the standard by itself
 
 
-def test_faces_spheres_and_plane_are_in_the_picture(upright, built, tmp_path):
+def test_faces_spheres_and_plane_are_in_the_picture(upright, stl, tmp_path):
     from matplotlib.image import imread
 
     path = tmp_path / "standard.png"
     try:
-        draw_standard(upright, built[0] / "standard.stl", path)
+        draw_standard(upright, stl, path)
     except MissingLibrary:  # on a machine without OpenGL; what it says is tested below
         return
     image = imread(path)[..., :3]
@@ -136,11 +150,11 @@ def test_faces_spheres_and_plane_are_in_the_picture(upright, built, tmp_path):
 
 
 def test_without_opengl_the_package_is_named_and_nothing_written(
-    upright, built, tmp_path, monkeypatch
+    upright, stl, tmp_path, monkeypatch
 ):
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
     with pytest.raises(MissingLibrary, match="apt-get install libegl1") as caught:
-        draw_standard(upright, built[0] / "standard.stl", tmp_path / "standard.png")
+        draw_standard(upright, stl, tmp_path / "standard.png")
     assert "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
 

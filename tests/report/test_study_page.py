@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cad_out.build.process import Ending
 from report.pages.study_page import (
     ERROR_3D,
     S_3D,
@@ -105,7 +106,8 @@ def test_the_page_holds_every_map_once_and_the_regions_in_words(study, tmp_path)
 
 
 def test_without_opengl_the_page_is_written_with_a_remark(study, tmp_path, monkeypatch):
-    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
+    failed = Ending(1, "", "libEGL warning")  # as in `test_scenes`, without OpenGL indeed
+    monkeypatch.setattr("report.scenes.renderer.run_apart", lambda *_, **__: failed)
     (remark,) = write_study_page(study, tmp_path, [])
     assert "apt-get install libegl1" in remark
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -90,6 +90,7 @@ def own_cluster(tmp_path):
     made.close()
 
 
+@pytest.mark.slow
 def test_workers_of_a_cluster_give_the_same_bits_and_may_die(study, own_cluster, capfd):
     run, local = study
     with cluster(own_cluster.address, START) as client:

@@ -1,4 +1,4 @@
-"""`matstd serve`: corrections while the machine moves, as an OPC UA server."""
+"""`matstd serve`: corrections while the machine moves, over OPC UA or on LinuxCNC."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from matstd.commands.compensation.options import add_state
 
 if TYPE_CHECKING:
-    from compensation.service import Service
+    from compensation.service import OutputLimits, Service
+    from matstd.commands.compensation.job import Job
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,6 +21,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="URL",
         default="opc.tcp://localhost:4840",
         help="where clients connect (opc.tcp://localhost:4840: this computer alone)",
+    )
+    parser.add_argument(
+        "--linuxcnc",
+        metavar="MACHINE.ini",
+        help="correct this LinuxCNC on this computer by its external offsets, instead of OPC UA",
     )
     for name, unit, default, words in (
         ("--most", "UM", 200.0, "added to an axis at most, µm"),
@@ -45,13 +51,45 @@ def run(args: argparse.Namespace) -> int:
 
     limits = OutputLimits(args.most * UM, args.rate * UM, args.patience, args.hold)
     job = read_job(args)
-    service = Service(job.errors, args.tool_length, job.datum, limits)
+    if args.linuxcnc:
+        return _on_linuxcnc(args.linuxcnc, job, limits)
+    service = Service(job.errors, job.datum.length, job.datum, limits)
     logging.getLogger("asyncua").setLevel(logging.CRITICAL)  # what stops it is told by us
 
     def ready() -> None:
         say(f"{args.endpoint}: {_corrected(service)}; Ctrl-C stops it")
 
     asyncio.run(serve(service, args.endpoint, ready))
+    return 0
+
+
+def _on_linuxcnc(ini: str, job: Job, limits: OutputLimits) -> int:
+    """Write the files of the control, answer its component until somebody stops it."""
+    import asyncio
+    from pathlib import Path
+
+    from compensation.linuxcnc import (
+        HAL_FILE,
+        SOCKET,
+        Control,
+        serve_linuxcnc,
+        write_control_files,
+    )
+    from compensation.service import Service
+    from matstd.console import say
+
+    control = Control(Path(ini))
+    control.check(job.errors.chain)
+    service = Service(job.errors, job.datum.length, job.datum, limits)
+    written = write_control_files(control, service, limits)
+    say(f"{', '.join(map(str, written))}: for the control")
+    if not control.reads_ours:
+        say(f"{ini}: add HALFILE = {HAL_FILE} below the others in [HAL]", style="bold")
+
+    def ready() -> None:
+        say(f"{ini}: {_corrected(service)}; start LinuxCNC when you like; Ctrl-C stops it")
+
+    asyncio.run(serve_linuxcnc(service, Path(ini).parent / SOCKET, ready))
     return 0
 
 

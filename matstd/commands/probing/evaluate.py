@@ -49,18 +49,20 @@ def run(args: argparse.Namespace) -> int:
 
     from artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
-    from probe_paths.campaign import ball_changes, check_changes, evaluate, read_heights
+    from probe_paths.campaign import (
+        ball_changes,
+        check_changes,
+        effective_radii,
+        evaluate,
+        read_heights,
+    )
     from probe_paths.control import read_log
     from probe_paths.language import Dialect
     from report.words import ball_lines
-    from twin.errors import DesignError
     from twin.files import read_machine, read_sensors, refuse_to_overwrite, write_run
     from twin.units import UM
 
-    if not 1e-3 <= args.u_um <= 1000.0:
-        raise DesignError(f"--u-um {args.u_um:g}: expected an uncertainty from 0.001 to 1000 µm")
-    if not 0.0 < args.probe_limit_um < np.inf:
-        raise DesignError(f"--probe-limit-um {args.probe_limit_um:g}: expected more than 0 µm")
+    _check_numbers(args)
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.machine)
     standard = read_standard(args.standard)
@@ -68,15 +70,19 @@ def run(args: argparse.Namespace) -> int:
     dialect, u, limit = Dialect(result_height=args.z), args.u_um * UM, args.probe_limit_um * UM
     changes = ball_changes(parts, standard, chain, u, dialect)
     heights = [read_heights(part, standard, chain) for part in parts if part.is_first]
-    told = ball_lines(changes, limit, heights)
+    radii = effective_radii(parts, chain, u, dialect)
+    told = ball_lines(changes, limit, heights, radii)
     if not any(part.is_measuring for part in parts) and told:
         say("no run file: the logs hold no measurements")
         say_each(told)
         return 0
     check_changes(changes, limit)
     measured = evaluate(parts, standard, chain, u, dialect)
+    twice: list[str] = []
     if args.sensors:
-        measured = read_sensors(args.sensors).joined(measured, min(part.begin for part in parts))
+        record = read_sensors(args.sensors)
+        twice = [name for name in measured.touches.temperature if name in record.temperature]
+        measured = record.joined(measured, min(part.begin for part in parts))
     write_run(args.output, measured, seen_from(Path(args.output).parent, args.machine))
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
     say(
@@ -88,9 +94,20 @@ def run(args: argparse.Namespace) -> int:
     if not changes and any(part.is_ball for part in parts):
         say_each(["the ball was measured once: whether the probe has changed is not known"])
     say_each(measured.remarks)
+    say_each(f"T_{name}_degC: that of {args.sensors} counts, not the log's" for name in twice)
     say_each(
         f"{part.path}: {part.program} stopped after {len(part.number)} touches"
         for part in parts
         if not part.is_complete
     )
     return 0
+
+
+def _check_numbers(args: argparse.Namespace) -> None:
+    """Refuse an uncertainty or a limit that means nothing; raises DesignError."""
+    from twin.errors import DesignError
+
+    if not 1e-3 <= args.u_um <= 1000.0:
+        raise DesignError(f"--u-um {args.u_um:g}: expected an uncertainty from 0.001 to 1000 µm")
+    if not 0.0 < args.probe_limit_um < float("inf"):
+        raise DesignError(f"--probe-limit-um {args.probe_limit_um:g}: expected more than 0 µm")

@@ -18,6 +18,7 @@ from matstd.options import (
 
 if TYPE_CHECKING:
     from artefact.body import Standard
+    from artefact.reach import DatumBall
     from probe_paths.control import LogPart, ReadProgram
     from probe_paths.emit import Feeds
     from probe_paths.language import Dialect
@@ -134,16 +135,30 @@ def _stations(
 
     out = []
     for words, mine in _by_probe(programs, control).items():
-        plan = planned_again(mine, standard, chain, setup)
+        plan = planned_again(mine, standard, chain, setup, _ball_of(mine[0], words, chain))
         out.append(Station(plan, words, make_programs(plan, words, feeds_of(mine, chain))))
     return out
 
 
+def _ball_of(program: ReadProgram, words: Dialect, chain: Chain) -> DatumBall | None:
+    """The ball on the table, as the program that touches it states it."""
+    from probe_paths.control import BALL, read_program
+
+    file = program.path.parent.parent / SHEET / f"{program.name.rpartition('_')[0]}_{BALL}.H"
+    return read_program(file, chain, dialect=words).heading.ball if file.exists() else None
+
+
 def _by_probe(programs: list[ReadProgram], control: str | None) -> dict[Dialect, list[ReadProgram]]:
     """Programs by the words, with tool and first letters, that they were written with."""
+    from dataclasses import replace
+
     found: dict[Dialect, list[ReadProgram]] = {}
     for program in programs:
-        found.setdefault(_dialect(control, program.path), []).append(program)
+        words, head = _dialect(control, program.path), program.heading
+        if words.language == "klartext":
+            tilted = head.is_tilted and words.has_planes
+            words = replace(words, is_tilted=tilted, sensors=head.sensors)
+        found.setdefault(words, []).append(program)
     return found
 
 
@@ -216,7 +231,6 @@ def _dialect(control: str | None, program: Path) -> Dialect:
         dialect = replace(dialect, tool=int(tool[1]))
     if prefix := re.match(r"(.+?)_[A-Z0-9_]+_\d+\Z", program.stem.upper()):
         dialect = replace(dialect, prefix=prefix[1])
-    dialect = replace(dialect, is_tilted=";FRAME SPATIAL" in text and dialect.has_planes)
     if preset := re.search(r";PRESET (\d+):", text):
         dialect = replace(dialect, preset=int(preset[1]))
     if folder := re.search(r"F-PRINT (\S+)\\[A-Z0-9_]+\.A ", text):

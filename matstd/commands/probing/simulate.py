@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from matstd.options import add_effects, add_output, load_effects, seen_from
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
 
     from artefact.body import Standard
@@ -57,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     from artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
-    from probe_paths.campaign import SMALLEST_U, ball_changes, simulate
+    from probe_paths.campaign import SMALLEST_U, ball_changes, effective_radii, simulate
     from probe_paths.control import read_program, stated_probe
     from probe_paths.language import read_dialect
     from report.words import ball_lines
@@ -92,7 +94,8 @@ def run(args: argparse.Namespace) -> int:
     say_assumed(run.touches.chain)
     u = max(machine.noise, SMALLEST_U)
     changes = ball_changes(campaign.parts, standard, machine.chain, u, dialect)
-    say_each(ball_lines(changes))
+    radii = effective_radii(campaign.parts, machine.chain, u, dialect)
+    say_each(ball_lines(changes, radii=radii))
     say_each(run.remarks)
     return 0
 
@@ -215,4 +218,15 @@ def virtual_machine(
         noise=args.noise_um * UM,
         begin=FIRST_MORNING if record is None else record.begin,
         dialect=dialect,
+        temperature=_thermometers(record),
     )
+
+
+def _thermometers(record: SensorRecord | None) -> Callable[[str, float], float]:
+    """What the control reads of a sensor: the record, or 20 degC of one that is not in it."""
+    import numpy as np
+
+    if record is None:
+        return lambda name, now: 20.0
+    since, known = record.since(record.begin), record.temperature
+    return lambda name, now: float(np.interp(now, since, known[name])) if name in known else 20.0

@@ -1,0 +1,17 @@
+"""Corrections on LinuxCNC: the service, asked by a component of the control's hardware layer.
+
+In: a `Service`, and the control's INI file (`Control`). Out: a HAL file and the component beside it
+(`write_control_files`), and answers on a socket (`serve_linuxcnc`). The component gives them to the
+control as external offsets, which are added before kinematics.
+"""
+
+from compensation.linuxcnc.control_files import HAL_FILE, SOCKET, Control, write_control_files
+from compensation.linuxcnc.link import serve_linuxcnc
+
+__all__ = [
+    "HAL_FILE",
+    "SOCKET",
+    "Control",
+    "serve_linuxcnc",
+    "write_control_files",
+]

@@ -1,0 +1,164 @@
+"""A calibrated ball on the table beside the standard: kept clear of, touched by one program."""
+
+from dataclasses import replace
+from datetime import timedelta
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from artefact.brief.project_file import read_project
+from artefact.reach.datum_ball import DatumBall
+from artefact.reach.workshop import Workshop
+from matstd.stages.from_project import workshop
+from probe_paths.campaign.ball_change import ball_changes, effective_radii
+from probe_paths.campaign.collisions import check_moves
+from probe_paths.campaign.contact_solver import VirtualMachine
+from probe_paths.campaign.virtual_run import run_program
+from probe_paths.control.interpreter import interpret
+from probe_paths.control.log import read_log
+from probe_paths.control.steps import Move
+from probe_paths.emit.program import make_ball, make_programs
+from probe_paths.linuxcnc.replanned import shortened
+from probe_paths.locate.again import planned_again
+from probe_paths.locate.ball_plan import plan_ball
+from report.words.probe_words import ball_lines
+from twin.errors import BadFile, DesignError
+from twin.frames import pose, rotation
+from twin.units import NM, UM
+
+BALL = DatumBall(x=118.0, y=20.0, z=70.0, radius=12.5, stem=5.0, low=0.0, u=0.25 * UM)
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(scope="module")
+def beside(plan):
+    """The plan's touches where the ball stands there too."""
+    return replace(plan, options=replace(plan.options, workshop=Workshop(ball=BALL)))
+
+
+@pytest.fixture(scope="module")
+def made(beside):
+    return make_ball(plan_ball(beside, is_beside=True))
+
+
+@pytest.fixture(scope="module")
+def program(made, chain):
+    (one,) = made.programs
+    return interpret(one.text.encode("ascii"), Path(one.file), made.masks.get, chain)
+
+
+@pytest.fixture(scope="module")
+def logged(program, small, chain):
+    """The log on a machine, so many hours later."""
+
+    def log(hours=0.0, **machine):
+        virtual = VirtualMachine(chain, **machine)
+        virtual = replace(virtual, begin=virtual.begin + timedelta(hours=hours))
+        run = run_program(program, small, virtual, np.random.default_rng(0))
+        run.check_done()
+        (part,) = read_log("A.TXT", chain.rotary_axes, "".join(run.log.values()))
+        return part
+
+    return log
+
+
+def test_the_program_touches_the_ball_and_nothing_else(program, small, chain):
+    assert {program.features[t.feature] for t in program.touches} == {"DATUM"}
+    check_moves(program, small, chain)
+    # by hand: with the rotary axes at zero the table frame is that of the machine, 500 mm up
+    for touch in program.touches:
+        assert np.all(touch.q[:2] == 0.0)
+        contact = touch.q[2:5] + touch.back * touch.direction[2:5]
+        ball = contact - [0.0, 0.0, 160.0] + [0.0, 0.0, 500.0]
+        away = np.linalg.norm(ball - [BALL.x, BALL.y, BALL.z])
+        assert away == pytest.approx(BALL.radius + 3.0, abs=2e-4)
+
+
+def test_the_radius_is_told_against_the_ball_s_own(logged, chain):
+    (exact,) = effective_radii([logged()], chain, 0.2 * UM)
+    assert abs(exact.excess) < 3.0 * NM
+    assert 0.25 * UM < exact.u < 0.6 * UM
+    part = logged(2.0, radius_error=2.0 * UM)
+    # a ball that is too large meets the surface early: it seems larger by as much
+    (grown,) = effective_radii([part], chain, 0.2 * UM)
+    assert grown.excess == pytest.approx(2.0 * UM, abs=3.0 * NM)
+    assert "datum ball at 10:00: effective radius of the probe +2.0 ± " in ball_lines(
+        [], radii=[grown]
+    )[0]  # fmt: skip
+
+
+def test_it_does_not_mind_where_the_standard_stands(logged, small, chain):
+    moved = pose(rotation(np.array([0.0, 0.0, 2e-4])), np.array([0.05, -0.04, 0.03]))
+    parts = [logged(), logged(1.0, setup_error=moved)]
+    (change,) = ball_changes(parts, small, chain, 0.2 * UM)
+    assert change.ball == "DATUM"
+    assert np.abs(change.centre).max() < 3.0 * NM
+    assert abs(change.radius) < 3.0 * NM
+
+
+@pytest.fixture(scope="module")
+def measuring(beside, chain):
+    made = make_programs(beside)
+    (one,) = made.programs
+    return interpret(one.text.encode("ascii"), Path(one.file), made.masks.get, chain), one.text
+
+
+def test_programs_that_measure_keep_clear_of_it(measuring, small, chain):
+    program, text = measuring
+    assert "BODY DATUM DISC A+12.500 B+12.500 Z+57.500 TO+82.500" in text
+    assert "BODY DATUM.STEM DISC" in text
+    # a move through the ball is refused where it is stated, and only there
+    begin = np.array([0.0, 0.0, BALL.x, BALL.y - 60.0, BALL.z - 340.0, 0.0])
+    end = np.array([0.0, 0.0, BALL.x, BALL.y + 60.0, BALL.z - 340.0, 0.0])
+    through = replace(program, steps=(Move(1, begin, None), Move(2, end, None)))
+    with pytest.raises(BadFile, match="DATUM"):
+        check_moves(through, small, chain)
+    check_moves(
+        replace(through, heading=replace(program.heading, workshop=Workshop())), small, chain
+    )
+
+
+def test_a_new_plan_keeps_the_ball(measuring, beside, small, chain):
+    program, _ = measuring
+    old = shortened([program], small, chain)
+    assert [b.name for b in old.options.workshop.bodies] == ["DATUM", "DATUM.STEM"]
+    again = planned_again([program], small, chain, beside.setup, BALL).options.workshop
+    assert (again.ball, again.bodies) == (BALL, ())
+
+
+def test_a_tilted_standard_has_no_such_ball():
+    with pytest.raises(DesignError, match="expected it upright"):
+        BALL.sphere(pose(rotation(np.array([0.2, 0.0, 0.0])), np.zeros(3)))
+
+
+@pytest.mark.parametrize(
+    ("keys", "reason"),
+    [
+        ("at_mm = [9.0, 0.0, 70.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 30.0", "less than the"),
+        (
+            "at_mm = [9.0, 0.0, 10.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 9.0",
+            "than 12.5 in z",
+        ),
+        ("at_mm = [9.0, 0.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 9.0", "workshop.ball.at_mm"),
+    ],
+)
+def test_a_ball_that_cannot_be_is_one_line(keys, reason, tmp_path):
+    with pytest.raises(BadFile, match=reason):
+        read_project(_project(tmp_path, keys))
+
+
+def test_the_ball_of_a_project_stands_in_the_workshop(tmp_path):
+    keys = "at_mm = [118.0, 20.0, 70.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 10.0"
+    assert workshop(read_project(_project(tmp_path, keys))).ball == BALL
+
+
+def _project(folder, keys):
+    path = folder / "project.toml"
+    machine = EXAMPLES / "hsm600u-machine.toml"
+    path.write_text(
+        f'format = "project/1"\nmachine = "{machine}"\nseed = 1\n'
+        f"[probe]\nradius_mm = 3.0\nlength_mm = 160.0\n[workshop.ball]\n{keys}\n",
+        encoding="utf-8",
+    )
+    return path
