@@ -178,18 +178,13 @@ class BodyChoice:
         while True:
             faces = freeform_faces(self.blank, count, self.tried, self.rng, balls, holes)
             fits = faces_fit(faces, holes, self.blank.limits)
-<<<<<<< HEAD
-            if len(balls) <= FEWEST_BALLS or len(most_side_by_side(fits, count, _STARTS)) == count:
-                hides = self._in_the_way(faces, touches).mean(axis=1)
-                poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
-                return _Beside(faces, fits, hides, poses), balls
-=======
             if (
                 len(balls) <= FEWEST_BALLS
                 or len(most_side_by_side(fits, count, starts=_STARTS)) == count
             ):
-                return _Beside(faces, fits, self._in_the_way(faces, touches).mean(axis=1)), balls
->>>>>>> main
+                hides = self._in_the_way(faces, touches).mean(axis=1)
+                poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
+                return _Beside(faces, fits, hides, poses), balls
             balls = balls[:-1]  # the last one chosen tells least
 
     def _chosen(self, there: "_Beside", count: int, take: int) -> list[int]:
@@ -319,11 +314,7 @@ def body_choice(
             f"no face at any of {len(all_faces)} places can be touched at a table pose with every "
             "axis within its travel"
         )
-<<<<<<< HEAD
-    return BodyChoice(criterion=criterion, blank=blank, tried=tried, rng=rng)
-=======
-    return BodyChoice(criterion=criterion, blank=blank, poses=few, tried=tried, rng=rng, room=room)
->>>>>>> main
+    return BodyChoice(criterion=criterion, blank=blank, tried=tried, rng=rng, room=room)
 
 
 def _touches_on(faces: list[FreeformPatch], poses: Array) -> Requests:

@@ -6,7 +6,6 @@ deviation is ``Ra = 4 h / (9 sqrt 3)``. The tip of a ball-end mill does not cut,
 between its axis and the normal, at which it touches, should stay away from zero.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,8 +86,8 @@ def _tilts(
     best: tuple[float, float] | None = None
     contact: tuple[float, float] | None = None
     for tilt in (0.0, *TILTS):
-        azimuths: Sequence[float] = np.arange(_AZIMUTHS) * 2.0 * np.pi / _AZIMUTHS
-        for azimuth in azimuths if tilt else (0.0,):
+        for k in range(_AZIMUTHS if tilt else 1):
+            azimuth = k * 2.0 * np.pi / _AZIMUTHS
             across = np.sin(tilt)
             axis = np.array([across * np.cos(azimuth), across * np.sin(azimuth), np.cos(tilt)])
             angle = np.arccos(np.clip(normal @ axis, -1.0, 1.0))
@@ -96,6 +95,6 @@ def _tilts(
                 continue
             good += [tilt] if tilt not in good else []
             if contact is None or angle.min() > contact[0] + 1e-9:
-                best = (tilt, float(azimuth))
+                best = (tilt, azimuth)
                 contact = (float(angle.min()), float(angle.max()))
     return tuple(good), best, contact

@@ -70,17 +70,13 @@ class ContactSolver:
         self.direction = np.array([t.direction for t in touches]).reshape(self.start.shape)
         self.distance = np.array([t.distance for t in touches])
         believed = program.heading.setup.T_table_artefact
-<<<<<<< HEAD
         stands = believed @ machine.setup_error
         self.T_artefact_table = inverse(stands)
-=======
-        self.T_artefact_table = inverse(believed @ machine.setup_error)
         # a ball on the table stands where it does, wherever the standard does
-        self.standard = program.heading.touched(standard, believed @ machine.setup_error)
->>>>>>> main
+        self.standard = program.heading.touched(standard, stands)
         self.disturbance = machine.disturbance
         self._nominal_contact()
-        self.moved = standard.moved(machine.chain, self.start, stands, self.feature)
+        self.moved = self.standard.moved(machine.chain, self.start, stands, self.feature)
 
     def _nominal_contact(self) -> None:
         """First contact of every ball with the standard where it stands, on a perfect machine."""

@@ -73,15 +73,11 @@ def evaluate(
         good, far = _near(parts, gap, ABSURD)
         if not far:
             break
-<<<<<<< HEAD
     u_touch = _uncertainty(standard, touches, u)
     if standard.sag is not None:
         down, source = standard.sag.down, standard.sag.source
         remarks.append(f"sag of the standard taken off: {source}, weight along {down}")
-=======
-    u_touch = _uncertainty(standard, touches.feature, u)
     remarks += sensed(parts)[1]
->>>>>>> main
     run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
