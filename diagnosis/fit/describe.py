@@ -166,9 +166,9 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
     """Peak to valley of the curve that an effect of many parameters is, and its reversal.
 
     Over the rows used, in the unit of the component error that it is: an angle of a rotary axis.
-    Of a component error it is the whole curve that the model has of it, but for the straight line,
-    which is a scale or where the standard stands: what is added where a parabola does not suffice
-    has no size of its own. Of others (`is_told_whole`) it is the effect's alone.
+    Of a component error it is the whole curve that the model has of it, of a length without its
+    straight line, which is a scale or where the standard stands: what is added where a parabola
+    does not suffice has no size of its own. Of others (`is_told_whole`) it is the effect's alone.
     """
     touches = fit.run.touches[fit.used]
     own = _of_same_curve(fit, effect)
@@ -197,15 +197,20 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
 
 
 def _of_same_curve(fit: Fit, effect: Effect) -> list[Effect]:
-    """An effect with what else the model holds of the same component error, straight lines not."""
+    """An effect with what else the model holds of the same component error.
+
+    Without its straight line where that is a scale or where the standard stands; of an angle it is
+    part of the error.
+    """
     symbol = getattr(effect, "symbol", None)
+    placed = ("constant",) if symbol is not None and symbol.is_angular else ("constant", "linear")
     alike = [
         e
         for e in fit.model.effects
         if symbol is not None
         and e.kind == "geometric"
         and getattr(e, "symbol", None) == symbol
-        and getattr(e, "shape", "") not in ("constant", "linear")
+        and getattr(e, "shape", "") not in placed
         and e.name != effect.name
     ]
     return [effect, *alike]

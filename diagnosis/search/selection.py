@@ -32,7 +32,8 @@ CHANCE = 1e-3
 """Probability, all candidates and grids together, that a run without a hidden effect gets one."""
 
 WORTH = 3.0
-"""Least gain of log evidence by which an effect pays for its freedom: odds of twenty to one."""
+"""Least gain of log evidence, and of the log density of what was held out, by which an effect pays
+for its freedom: odds of twenty to one."""
 
 ALONE = 1.5
 """Touches that a member must at least explain: what explains a single one explains an accident."""
@@ -149,7 +150,7 @@ class Verified:
             self.p_value < CHANCE
             and self.evidence > WORTH
             and self.held_out < 1.0
-            and self.density > 0.0
+            and self.density > WORTH
             and self.touches > ALONE
         )
 

@@ -151,11 +151,13 @@ def _value(value: float, u: float, factor: float, unit: str) -> str:
 def noted_lines(geometry: LearntGeometry) -> list[str]:
     """What of the geometry a reader should see first: changes, and what exceeds expectations.
 
-    Without such, squareness and scales, zeros of joints and lengths of links, the clearest first.
+    Without such, squareness and scales, zeros of joints and lengths of links, the clearest first;
+    of a run that tells none of them, whatever it does tell.
     """
     noted = [r for r in geometry.rows if r.has_changed or r.is_beyond_expected or _is_of_arm(r)]
     if not noted:
-        noted = [r for r in geometry.rows if _is_usual(r) and r.is_determined]
+        known = [r for r in geometry.rows if r.is_determined]
+        noted = [r for r in known if _is_usual(r)] or known
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
     told = []
     for row in by_size[:NOTED]:

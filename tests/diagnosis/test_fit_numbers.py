@@ -21,7 +21,8 @@ from diagnosis.remarks.run_remarks import (
 )
 from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 from twin.errors import NotEnoughData
-from twin.foreign.positioning import PositioningTest, one_axis_machine, positioning_run
+from twin.foreign.axis_run import one_axis_machine, positioning_run
+from twin.foreign.positioning import PositioningTest
 from twin.library.ordinary import ordinary_model
 from twin.model.model import columns
 from twin.units import NM, UM

@@ -7,12 +7,14 @@ from pathlib import Path
 import openpyxl
 import pytest
 
+from diagnosis.choice.prediction import Choice, ChoiceRule
 from report.pages import pdf
 from report.pages.page import with_contents
 from report.pages.pdf import printer, write_pdf
 from report.pages.tables import page_tables, plain, value, write_tables
 from twin.errors import DesignError, MissingLibrary
 
+TEMPLATES = Path(pdf.__file__).parent / "templates"
 PAGE = """<h2>What is <code>left</code></h2>
 <table><caption>Two   lines</caption>
 <tr><th rowspan="2">artefact</th><th colspan="2">left, µm</th></tr>
@@ -104,3 +106,12 @@ def test_a_browser_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails
         write_pdf(tmp_path / "page.html", tmp_path / "page.pdf", printer())
         assert (tmp_path / "page.pdf").read_text() == "<p>page</p>"
     assert sorted(p.name for p in tmp_path.iterdir() if p.name.startswith(".")) == []
+
+
+def test_the_page_of_a_diagnosis_asks_a_choice_for_what_it_has() -> None:
+    """A choice by prediction stands on few pages: its names are checked against its records."""
+    html = (TEMPLATES / "diagnose.html").read_text(encoding="utf-8")
+    for record, pattern in ((Choice, r"result\.choice\.(\w+)"), (ChoiceRule, r"\bway\.(\w+)")):
+        asked = set(re.findall(pattern, html))
+        assert asked
+        assert asked <= set(dir(record)) | set(record.__dataclass_fields__)

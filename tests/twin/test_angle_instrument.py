@@ -13,13 +13,9 @@ from matstd.console import say
 from report.words import remark_sentence
 from twin.files.run_file import read_run
 from twin.files.run_writer import run_text
+from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.machine_draft import machine_text
-from twin.foreign.positioning import (
-    PositioningTest,
-    one_axis_machine,
-    positioning_run,
-    read_positioning,
-)
+from twin.foreign.positioning import PositioningTest, read_positioning
 from twin.foreign.sheet import read_sheet
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model

@@ -13,9 +13,10 @@ from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from twin.errors import BadFile
 from twin.files.run_file import read_run
+from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.circle import read_circle
 from twin.foreign.points import linear_machine, points_run, read_points
-from twin.foreign.positioning import one_axis_machine, positioning_run, read_positioning
+from twin.foreign.positioning import read_positioning
 from twin.foreign.serial_arm import arm_from_dh
 from twin.foreign.sheet import bare, read_sheet, unit_of_column
 from twin.library.ordinary import ordinary_model

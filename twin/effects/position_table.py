@@ -42,6 +42,9 @@ FEWEST_TARGETS = 5
 REVISITED = 0.5
 """Share of the rows at readings that were approached before from which they are targets."""
 
+UNFELT = 1e-6
+"""Share of what is felt most below which a component is not felt at all."""
+
 WHOLE_TURN = 2.0 * np.pi - 0.02
 """Travel of a rotary axis, rad, from which its curve closes in itself: a degree less is no gap."""
 
@@ -159,7 +162,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> PositionTable:
 
 def propose(touches: Touches) -> Iterable[PositionTable]:
     """Positioning of an axis that moved alone, or that an instrument beside the machine saw at the
-    same targets again and again.
+    same targets again and again; what leads aside or tilts where that was measured.
 
     Where a ball touches in many poses no axis stands often enough at one reading.
     """  # noqa: D205
@@ -167,11 +170,27 @@ def propose(touches: Touches) -> Iterable[PositionTable]:
     beside = not touches.instrument.is_ball_on_standard
     for axis in axes:
         if len(axes) == 1 or (beside and _has_targets(touches.reading(axis))):
-            own = touches.chain.link(axis).own_component
-            symbol = Symbol(own, axis, Family.COMPONENT)
+            symbol = Symbol(_measured(touches, axis), axis, Family.COMPONENT)
             yield position_table(touches.chain, symbol)
             if len(np.unique(touches.last_move(axis))) > 1:
                 yield position_table(touches.chain, symbol, by_direction=True)
+
+
+def _measured(touches: Touches, axis: str) -> int:
+    """Component of an axis that an instrument beside it sees: its own, unless that is not felt.
+
+    Of a straightness it is the one across, of an angle of a linear axis that about which it tilts.
+    """
+    chain = touches.chain
+    own = chain.link(axis).own_component
+    felt = [
+        float(np.abs(touches.signature.of(chain.twist_of(Symbol(c, axis, Family.COMPONENT)))).sum())
+        for c in range(6)
+    ]
+    if felt[own] > UNFELT * max(felt):
+        return own
+    kind = slice(3, 6) if touches.instrument.reads_angle else slice(0, 3)
+    return (kind.start or 0) + int(np.argmax(felt[kind]))
 
 
 def _has_targets(q: Array) -> bool:

@@ -7,6 +7,7 @@ and said to the user: what a machine did wrong is the negative of what its contr
 """
 
 from twin.foreign.acceptance import positioning_figures
+from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.circle import circle_machine, circle_run, read_circle
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
@@ -17,12 +18,7 @@ from twin.foreign.points import (
     points_run,
     read_points,
 )
-from twin.foreign.positioning import (
-    PositioningTest,
-    one_axis_machine,
-    positioning_run,
-    read_positioning,
-)
+from twin.foreign.positioning import PositioningTest, read_positioning
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
 from twin.foreign.sheet import ANGLES, MM, Sheet, read_sheet, unit_of_column
 

@@ -1,4 +1,4 @@
-"""Positioning tests of one axis (ISO 230-2): targets, cycles, both directions of approach.
+"""Tests of one axis (ISO 230-2, ISO 230-1): targets, cycles, both directions of approach.
 
 The instrument (laser interferometer, autocollimator, encoder) says by how much the axis really
 moved: ``actual - target``, tool relative to workpiece, which is the component error of the axis. A
@@ -20,18 +20,11 @@ from twin.foreign.axis_log import approaches, strokes, temperatures
 from twin.foreign.clock import seconds
 from twin.foreign.directions import DOWN, UP, signs
 from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
-from twin.frames import Array, pose
-from twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
-from twin.record import Instrument, IntArray, Run, Setup, Touches
-
-ARM = 1000.0
-"""Arm (mm) by which the angle of a rotary axis is told as a length: 1 µrad is 1 µm."""
+from twin.frames import Array
+from twin.record import IntArray
 
 ALL_BUT = 0.1
 """Slope over the targets, off from 1 by less, of positions: no axis is wrong by a tenth."""
-
-ENOUGH_CYCLES = 4
-"""Cycles from which one can be held out: of fewer it would be more than a quarter of the test."""
 
 _TARGET = re.compile(
     r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|cible|consigne|\bp_?i\b",
@@ -41,6 +34,12 @@ _ACTUAL = re.compile(r"actual|measured|ist\b|\bist|réel|mesur", re.IGNORECASE)
 _REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)
 """The better instrument, in tables of two; a `reference position` is a target to others."""
 _DEVIATION = re.compile(r"dev|error|abweich|fehler|écart|erreur|\bx_?ij\b", re.IGNORECASE)
+_ASIDE = re.compile(
+    r"straight|gerad|rectitud|pitch|yaw|roll\b|angle|tilt|winkel|neig|nick|gier|roulis|tangage|"
+    r"lacet|\be[a-cx-z][x-z]\b",
+    re.IGNORECASE,
+)
+"""Names of columns of straightness and angular errors."""
 _CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
 _DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
 _WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
@@ -70,6 +69,7 @@ class PositioningTest:
         time: Since the start of a log, (N,), s; zeros of a table.
         temperature: By sensor, each (N,), degC; of a log.
         is_by_order: Whether directions are those in which the rows follow each other.
+        component: Component error that was measured, such as EYX; "" of positioning.
     """
 
     axis: str
@@ -81,10 +81,33 @@ class PositioningTest:
     time: Array = field(default_factory=lambda: np.zeros(0))
     temperature: Mapping[str, Array] = field(default_factory=dict)
     is_by_order: bool = False
+    component: str = ""
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is how far the axis went, not how it leads aside or tilts."""
+        return _is_own(self.axis, self.component)
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether deviations are angles."""
+        return _is_angle(self.axis, self.component)
+
+
+def _is_own(axis: str, component: str) -> bool:
+    return component in ("", f"E{axis}{axis}")
+
+
+def _is_angle(axis: str, component: str) -> bool:
+    return (axis if _is_own(axis, component) else component[1]) in "ABC"
 
 
 def read_positioning(
-    sheet: Sheet, axis: str, unit: str | None = None, named: tuple[str, str] = ("", "")
+    sheet: Sheet,
+    axis: str,
+    unit: str | None = None,
+    named: tuple[str, str] = ("", ""),
+    component: str = "",
 ) -> PositioningTest:
     """A positioning test from a table.
 
@@ -99,6 +122,7 @@ def read_positioning(
         unit: Of deviations whose column names none.
         named: Names of the columns of targets and of actual positions, where the words of the
             header do not tell, as in a log of two encoders; empty for those that do.
+        component: Component error that was measured, such as EYX or EBX; "" for positioning.
 
     Raises:
         BadFile: No column of targets or deviations, a unit that is not stated.
@@ -110,16 +134,14 @@ def read_positioning(
     if target is None:
         expected = "a column of targets, or its name by --target (and --actual)"
         raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
+    is_own = _is_own(axis, component)
     base = ANGLES if axis in "ABC" else MM
     factor = base[_unit(sheet, target, base, "deg" if axis in "ABC" else "mm")]
     at = sheet.numbers(target) * factor
-    values, actual = _only(names, _DEVIATION), _only(names, _ACTUAL)
-    if named[1]:
-        values, actual = None, sheet.column(named[1])
-    elif values is None and actual is None:
-        actual = _only(names, _REFERENCE)
+    base = ANGLES if _is_angle(axis, component) else MM
+    values, actual = _read_columns(sheet, names, target, named[1], is_own)
     if values is None and actual is None:
-        return _wide(sheet, axis, target, at, unit, base)
+        return replace(_wide(sheet, axis, target, at, unit, base), component=component)
     cycle, direction = _only(names, _CYCLE), _only(names, _DIRECTION)
     clock = _only(names, _TIME)
     if values is not None:
@@ -148,8 +170,25 @@ def read_positioning(
             time=time,
             temperature=temperatures(sheet) if clock is not None else {},
             is_by_order=direction is None and bool(np.any(sign < 0)),
+            component=component,
         ),
     )
+
+
+def _read_columns(
+    sheet: Sheet, names: list[str], target: int, named: str, is_own: bool
+) -> tuple[int | None, int | None]:
+    """Columns of deviations and of actual positions; of a component there are deviations alone."""
+    values, actual = _only(names, _DEVIATION), _only(names, _ACTUAL)
+    if is_own and named:
+        return None, sheet.column(named)
+    if is_own:
+        neither = values is None and actual is None
+        return values, _only(names, _REFERENCE) if neither else actual
+    aside = [i for i, name in enumerate(names) if _ASIDE.search(name) and i != target]
+    values = next(iter(aside), actual) if values is None else values
+    values = None if len(aside) > 1 else values  # a column a run
+    return sheet.column(named) if named else values, None
 
 
 def _held(at: Array) -> Array:
@@ -252,8 +291,8 @@ def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
     rows = np.isfinite(test.target) & np.isfinite(test.deviation)
     if not rows.any():
         raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
-    return PositioningTest(
-        axis=test.axis,
+    return replace(
+        test,
         target=test.target[rows],
         deviation=test.deviation[rows],
         cycle=test.cycle[rows],
@@ -261,7 +300,6 @@ def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
         line=test.line[rows],
         time=test.time[rows] if len(test.time) else np.zeros(int(rows.sum())),
         temperature={name: values[rows] for name, values in test.temperature.items()},
-        is_by_order=test.is_by_order,
     )
 
 
@@ -294,91 +332,3 @@ def _whole(sheet: Sheet, column: int) -> IntArray:
     if len(odd):
         raise sheet.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", "the number of a cycle")
     return numbers.astype(np.int64)
-
-
-def one_axis_machine(axis: str, target: Array) -> Chain:
-    """A machine of one axis whose travel is that of the targets."""
-    low, high = float(target.min()), float(target.max())
-    turns = axis in "ABC"
-    chain = f"[w {axis}' f t]" if turns else f"[w f {axis} t]"
-    table = Axis(range=(low, high), point=(0.0, 0.0, 0.0) if turns else None)
-    return make_chain(f"{axis} axis", chain, {axis: table})
-
-
-def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
-    """Run of a positioning test on a machine that has its axis.
-
-    Every reading is a distance along the motion: its direction is that in which the tool moves
-    relative to the workpiece while the reading grows, its deviation the negative of what the
-    instrument says. Of a rotary axis it is the angle times `ARM`, as an autocollimator reads it:
-    it feels neither an eccentric polygon nor a table that wanders aside.
-
-    Args:
-        test: The readings.
-        chain: The machine; its other axes stand at zero.
-        u: Standard uncertainty of one deviation, mm, or rad on a rotary axis.
-
-    Raises:
-        UnknownAxis: The machine does not have the axis.
-    """
-    n = len(test.target)
-    i = chain.axis_index(test.axis)
-    q = np.zeros((n, len(chain.axes)))
-    q[:, i] = test.target
-    link = chain.link(test.axis)
-    turns = link.kind == "rotary"
-    middle, target = _on_line(link) if turns else (chain.table_origin, np.zeros(3))
-    at, centre = np.tile(target, (n, 1)), middle - chain.table_origin
-    point = tip(chain, q, at)
-    # the other axes stand at zero, where all frames have the same directions
-    motion = np.cross(link.direction, point - centre) / ARM if turns else link.direction
-    per_unit = ARM if turns else 1.0
-    approach = np.zeros(q.shape)
-    approach[:, i] = test.direction
-    # what repeats at the targets is what the test is for: held out are cycles, if it has some
-    cycles = np.unique(test.cycle, return_inverse=True)[1].reshape(-1)
-    targets = np.unique(np.round(test.target, 9), return_inverse=True)[1].reshape(-1)
-    is_log = bool(np.any(test.time))  # which hardly ever reads the same twice
-    held_out = cycles if is_log or cycles.max(initial=0) + 1 >= ENOUGH_CYCLES else targets
-    touches = Touches(
-        chain=chain,
-        q=q,
-        length=-at[:, 2],
-        offset=at[:, :2],
-        radius=np.zeros(n),
-        point=point - centre,
-        normal=np.broadcast_to(motion, (n, 3)),
-        setups=(Setup("a", pose(t=centre)),),
-        setup=np.zeros(n, dtype=np.int64),
-        time=test.time if len(test.time) else np.zeros(n),
-        approach=approach,
-        temperature=test.temperature,
-        feature=np.array([f"cycle{c}" for c in test.cycle]),
-        pose=held_out.astype(np.int64),
-        # a test without times, and yet what warms up moves from cycle to cycle
-        value={"cycle_1": test.cycle.astype(float)} if not is_log and cycles.max() > 1 else {},
-        instrument=_instrument(turns, is_log),
-    )
-    # one line of the file may hold many readings: the rows of the run are what messages name
-    u_of_row = np.full(n, u * per_unit)
-    return Run(touches, -test.deviation * per_unit, u_of_row, repeat=test.cycle)
-
-
-def _on_line(link: Link) -> tuple[Array, Array]:
-    """A point of a rotary axis's line, and one of the tool `ARM` beside it, below the spindle.
-
-    Machine and tool frame coincide with every axis at zero.
-    """
-    d, point = link.direction, link.point
-    if LETTERS[link.own] == "Z":
-        point = point - d * point[2] / d[2]
-    down = np.eye(3)[0] if LETTERS[link.own] == "Z" else -np.eye(3)[2]
-    aside = down - (down @ d) * d
-    return point, point + ARM * aside / np.linalg.norm(aside)
-
-
-def _instrument(turns: bool, is_log: bool) -> Instrument:
-    """What measured: beside the axis where it turns, else the two encoders of a log or a laser."""
-    if turns:
-        return Instrument.AUTOCOLLIMATOR
-    return Instrument.ENCODER if is_log else Instrument.LASER

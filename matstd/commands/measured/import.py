@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from typing import TYPE_CHECKING, Any
 
 from matstd.options import add_output, seen_from
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
     "dev_um = -(actual - target) along the direction of motion",
+    "component": "an error of the tool relative to the workpiece, along the axis that it is named "
+    "after or about it; in the run it stands with the other sign",
     "circle": "a radial deviation (actual - nominal) is where the tool really went; in the run it "
     "stands as dev_um = -(actual - nominal) along the radius outwards",
     "arm": "the tracker says where the reflector really is, the readings where the controller "
@@ -55,6 +58,12 @@ def _add_kinds(parser: argparse.ArgumentParser) -> None:
     kind = parser.add_mutually_exclusive_group(required=True)
     kind.add_argument(
         "--positioning", metavar="AXIS", help="ISO 230-2 table of this axis: targets, cycles"
+    )
+    kind.add_argument(
+        "--component",
+        metavar="NAME",
+        help="straightness (such as EYX of X in Y) or angular error (EBX) of a linear axis: "
+        "positions, readings",
     )
     kind.add_argument(
         "--circle",
@@ -202,7 +211,7 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     from twin.units import UM
 
     meaning = next(m for m in _SIGN if getattr(args, m))
-    if args.positioning:
+    if args.positioning or args.component:
         measured, chain = _positioning(args, sheets[0])
     elif args.circle:
         measured, chain = _circle(args, sheets[0])
@@ -234,12 +243,14 @@ def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     from twin.foreign import one_axis_machine, positioning_run, read_positioning
     from twin.units import UM, URAD
 
-    axis = args.positioning
+    name = args.component or ""
+    axis = name[-1:] if name else args.positioning
+    if name and not re.fullmatch("E[XYZABC][XYZ]", name):
+        raise DesignError(f"--component {name}: expected a component error of X, Y or Z, as EYX")
     if axis not in tuple("XYZABC"):
         raise DesignError(f"--positioning {axis}: expected one of X Y Z A B C")
-    turns = axis in "ABC"
-    u = _uncertainty(args, "u_urad", URAD) if turns else _uncertainty(args, "u_um", UM)
-    test = read_positioning(sheet, axis, args.unit, (args.target, args.actual))
+    test = read_positioning(sheet, axis, args.unit, (args.target, args.actual), name)
+    u = _uncertainty(args, "u_urad", URAD) if test.is_angle else _uncertainty(args, "u_um", UM)
     _say_positioning(test)
     chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
     return positioning_run(test, chain, u), chain
@@ -263,6 +274,9 @@ def _say_positioning(test: PositioningTest) -> None:
     )
     if not up and not down:
         say("- no direction of approach is stated (columns up and down): no reversal can be found")
+    if not test.is_own:
+        _say_component(test)
+        return
     found = None if np.any(test.time) else positioning_figures(test)
     if found is not None:
         unit, name = (URAD, "µrad") if turns else (UM, "µm")
@@ -272,6 +286,25 @@ def _say_positioning(test: PositioningTest) -> None:
             f"E {found.systematic / unit:.3g}, R {found.repeatability / unit:.3g}, "
             f"A {found.accuracy / unit:.3g} {name}"
         )
+
+
+def _say_component(test: PositioningTest) -> None:
+    """Peak to valley of the mean curve, of a straightness about its line of least squares."""
+    import numpy as np
+
+    from matstd.console import say
+    from twin.units import UM, URAD
+
+    targets, of = np.unique(np.round(test.target, 6), return_inverse=True)
+    mean = np.bincount(of.ravel(), test.deviation) / np.bincount(of.ravel())
+    if test.is_angle:
+        say(f"- angular error {test.component}: {np.ptp(mean) / URAD:.3g} µrad peak to valley")
+        return
+    left = mean - np.polyval(np.polyfit(targets, mean, 1), targets)
+    say(
+        f"- straightness {test.component}: {np.ptp(left) / UM:.3g} µm peak to valley about the "
+        "line of least squares"
+    )
 
 
 def _circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
