@@ -21,7 +21,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "fixtures")]
 
-from foreign_cases import foreign_readers  # noqa: E402  (found through the path above)
+from border_cases import border_readers  # noqa: E402  (found through the path above)
+from foreign_cases import foreign_readers  # noqa: E402
 from reader_cases import Reader, damage, golden, readers  # noqa: E402
 
 from twin.errors import DesignError  # noqa: E402
@@ -71,7 +72,8 @@ def main() -> int:
     args = parser.parse_args()
     warnings.simplefilter("error")
     with tempfile.TemporaryDirectory() as folder:
-        every = [*readers(Path(folder)), *foreign_readers(Path(folder), golden())]
+        place, made = Path(folder), golden()
+        every = [*readers(place), *foreign_readers(place, made), *border_readers(place, made)]
         chosen = [r for r in every if args.only in ("", r.name)]
         faults: Counter[tuple[str, str, str]] = Counter()
         for reader in chosen:

@@ -5,6 +5,7 @@
 
 import numpy as np
 import pytest
+from border_cases import border_readers
 from foreign_cases import foreign_readers, holes_said, mapped_said
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -22,9 +23,10 @@ NAMES = (
 
 OTHERS = (
     "holes", "laser", "encoders", "map", "mapped", "dh", "dialect", "workshop", "several",
-    "gcode log", "gcode",
+    "gcode log", "gcode", "drift", "probed", "law", "beams", "task", "cmm", "loads", "part", "ngc",
 )  # fmt: skip
-"""Tables of others, dialects, the workshop of a project, two runs, a second control."""
+"""Tables of others, dialects, the workshop of a project, two runs, a second control; what belongs
+to drift, to tasks and calibrations, to parts."""
 
 
 class Cases(dict):
@@ -38,7 +40,8 @@ class Cases(dict):
 def cases(tmp_path_factory):
     """Every reader with its valid text."""
     folder = tmp_path_factory.mktemp("files")
-    made = [*readers(folder), *foreign_readers(folder, golden())]
+    own = golden()
+    made = [*readers(folder), *foreign_readers(folder, own), *border_readers(folder, own)]
     return Cases({r.name: (r, r.path.read_text(encoding="utf-8")) for r in made})
 
 

@@ -123,6 +123,7 @@ def test_what_was_scanned_is_told() -> None:
     assert "this run says nothing" in sentence
 
 
+@pytest.mark.slow
 def test_effects_of_a_log_do_not_cancel_one_another() -> None:
     """Reading and time run together: growth and polynomials would cancel, thousands of µm each."""
     rng = np.random.default_rng(0)

@@ -121,6 +121,7 @@ def test_an_effect_of_all_runs_is_known_better_than_from_one(knocked) -> None:
     assert u[1] < 0.9 * u[0]
 
 
+@pytest.mark.slow
 def test_a_slow_change_is_seen_though_no_step_of_it_would_be() -> None:
     """Each run 12 µrad after the last: less than four uncertainties, but all of them are not."""
     runs = joined(made(6, [{"EC0Y": 12.0 * URAD * i} for i in range(5)]))

@@ -35,6 +35,7 @@ def test_every_feature_tolerance_and_party_is_on_the_sheet(upright, drawn):
 
 
 def test_nothing_leaves_the_paper(drawn):
+    drawn.figure.set_dpi(36)  # as good as any: what is looked at scales with it
     drawn.figure.canvas.draw()
     sheet = drawn.figure.bbox
     for artist in (*drawn.axes.texts, *drawn.axes.patches):
@@ -58,6 +59,7 @@ def test_a_view_is_to_scale_and_looks_the_right_way(upright):
         assert any((b.x0 + b.x1) / 2 == pytest.approx(middle) for b in sides)
 
 
+@pytest.mark.slow
 def test_files_are_one_a2_page_and_the_same_bytes_again(upright, tmp_path):
     for folder in ("one", "two"):
         (tmp_path / folder).mkdir()
