@@ -16,11 +16,11 @@ _DECIMALS = 5
 
 _KEPT_G = {4.0, 17.0, 18.0, 19.0, 40.0, 49.0, 61.0, 61.1, 64.0, 80.0, 94.0, 21.0, 20.0}
 _KEPT_M = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30, 48, 49}
+_SIDES = {40.0: 0.0, 41.0: 1.0, 42.0: -1.0}
+_TAKEN_G = {0.0, 1.0, 2.0, 3.0, 41.0, 42.0, 43.0, 53.0, 80.0, 90.0, 91.0, 90.1, 91.1}
 _PLANES = {17.0: "XY", 18.0: "ZX", 19.0: "YZ"}
 _CENTRES = dict(zip("XYZ", "IJK", strict=True))
 _REFUSED = {
-    41.0: "cutter radius compensation resolved before: paths of the tool's centre",
-    42.0: "cutter radius compensation resolved before: paths of the tool's centre",
     92.0: "one datum for the whole program",
     10.0: "one datum for the whole program",
     52.0: "one datum for the whole program",
@@ -85,13 +85,12 @@ def _line(
         if m not in _KEPT_M:
             raise reading.refusal(number, f"M{m:g}", "M0 to M9, M30, M48 or M49")
         kept.append(f"M{m:g}")
-    if "T" in other:
-        called = reading.lengths.get(int(other["T"]), reading.frame.datum.length)
-        reading.switch(False, called)
+    _tool(number, {v for k, v in words if k == "G"}, other, reading)
     reading.feed = other.get("F", reading.feed / reading.unit) * reading.unit
     is_dwell = ("G", 4.0) in words
     axes = {k: v for k, v in other.items() if k in "XYZABCUVW"}
     spent = set(axes) | (set("IJKRP") if axes or set("IJK") & set(other) else set())
+    spent |= {"D"}
     spent -= {"P"} if is_dwell or ("G", 64.0) in words else set()
     kept += [f"{k}{v:.10g}" for k, v in other.items() if k not in spent]
     if not axes and not (set("IJK") & set(other) and modes.motion in (2.0, 3.0)):
@@ -103,9 +102,23 @@ def _line(
     _motion(number, axes, other, " ".join(kept), is_machine, reading, modes)
 
 
+def _tool(number: int, modes: set[float], other: dict[str, float], reading: Reading) -> None:
+    """Tool of a T word, and that whose radius a D word means."""
+    if "T" in other:
+        if reading.side:
+            raise reading.refusal(number, f"T{other['T']:g}", "G40 before another tool")
+        reading.tool = int(other["T"])
+        called = reading.lengths.get(reading.tool, reading.frame.datum.length)
+        reading.switch(False, called)
+    if "D" in other:
+        if not {41.0, 42.0} & modes:
+            raise reading.refusal(number, f"D{other['D']:g}", "it with G41 or G42")
+        reading.tool = int(other["D"])
+
+
 def _refuse(number: int, g: float, reading: Reading, modes: _Modes) -> None:
     expected = _REFUSED.get(
-        g, "G0 to G4, G17 to G21, G40, G43, G49, G53 to G64, G80, G90, G91, G94"
+        g, "G0 to G4, G17 to G21, G40 to G43, G49, G53 to G64, G80, G90, G91, G94"
     )
     if 54.0 <= g < 60.0:
         expected = f"G{modes.datum:g} alone: a compensated program holds for one datum"
@@ -129,9 +142,9 @@ def _mode(g: float, reading: Reading, modes: _Modes) -> bool:
         return modes.datum == g
     elif g == 80.0:
         modes.motion = None
-    return g in _KEPT_G | {0.0, 1.0, 2.0, 3.0, 43.0, 53.0, 80.0, 90.0, 91.0, 90.1, 91.1} or (
-        54.0 <= g < 60.0
-    )
+    elif g in _SIDES:
+        reading.side = _SIDES[g]
+    return g in _KEPT_G | _TAKEN_G or 54.0 <= g < 60.0
 
 
 def _motion(
@@ -180,6 +193,7 @@ def _motion(
             words=kept,
             turned=tuple(a for a in axes if not reading.is_linear(a)),
             arc=_arc(number, end, other, reading, modes) if is_arc else None,
+            beside=reading.beside(number),
         )
     )
 

@@ -1,10 +1,12 @@
 """Heidenhain Klartext of part programs: a reader, and the blocks of motions."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
+from compensation.programs.klartext_flow import Block, in_order
 from compensation.programs.language import NUMBER, Reading, centre_by_radius, checked_arc
 from compensation.programs.motion import Arc, Motion
 from twin.frames import Array
@@ -16,15 +18,16 @@ _DECIMALS = 4
 
 _KEPT = re.compile(
     r"BEGIN PGM \S+ MM|END PGM \S+ MM|BLK FORM .*|TOOL DEF .*|STOP.*|\* - .*|"
-    r"PLANE RESET STAY|CYCL DEF 247.*|CYCL DEF (?:32|9)\.\d.*|CYCL DEF 7\.0 .*|LBL 0"
+    r"PLANE RESET STAY|CYCL DEF 247.*|CYCL DEF (?:32|9)\.\d.*|CYCL DEF 7\.0 .*"
 )
 _KEPT_M = {0, 1, 2, 3, 4, 5, 6, 8, 9, 13, 14, 30, 126, 127}
 _TOOL = re.compile(r"TOOL CALL (\d+)(?: Z)?(.*)")
 _SHIFT = re.compile(rf"CYCL DEF 7\.[1-9] ([XYZ])({NUMBER})")
+_SIDES = {"R0": 0.0, "RL": 1.0, "RR": -1.0}
 _AXIS = re.compile(rf"(I?)([XYZABCUVW])({NUMBER})\Z")
 _EXPECTED = (
-    (r"FN|.*\bQ\d|.*=", "numbers: parameters are resolved before"),
-    (r"LBL|CALL", "a program without labels and calls"),
+    (r"FN|.*\bQ|.*=", "numbers, and parameters Q that the program sets itself"),
+    (r"LBL|CALL", "LBL and CALL LBL, with REP or without"),
     (r"CYCL", "cycles 7, 9, 32 and 247: others are resolved into motions before"),
     (r"LP|CP|CT|APPR|DEP|CHF|RND", "L, CC, C and CR: others are resolved into them before"),
     (r"PLANE", "PLANE RESET STAY, or rotary axes in L blocks"),
@@ -49,6 +52,12 @@ def read(text: str, reading: Reading) -> None:
         BadFile: A block that is not understood, with its line.
     """
     modes = _Modes()
+    for number, block in in_order(list(_blocks(text)), reading):
+        _block(number, block, reading, modes)
+
+
+def _blocks(text: str) -> Iterator[Block]:
+    """Blocks of a file; one that goes on in the next line ends in ~."""
     lines = text.replace("~\r\n", "~\n").splitlines()
     i = 0
     while i < len(lines):
@@ -57,8 +66,7 @@ def read(text: str, reading: Reading) -> None:
             i += 1
             raw = f"{raw}\n{lines[i]}"
         i += 1
-        block = re.sub(r"\A\s*\d+\s+", "", raw).strip()
-        _block(number, block, reading, modes)
+        yield Block(number, re.sub(r"\A\s*\d+\s+", "", raw).strip())
 
 
 def _block(number: int, block: str, reading: Reading, modes: _Modes) -> None:
@@ -104,6 +112,10 @@ def _tool(number: int, block: str, bare: str, reading: Reading) -> None:
     if reading.tcpm:
         raise reading.refusal(number, repr(bare), "M129 before a TOOL CALL")
     added = re.search(rf"\bDL({NUMBER})", match[2])
+    if reading.side:
+        raise reading.refusal(number, repr(bare), "R0 before a TOOL CALL")
+    more = re.search(rf"\bDR({NUMBER})", match[2])
+    reading.tool, reading.more_radius = int(match[1]), float(more[1]) if more else 0.0
     length = reading.lengths.get(int(match[1]), reading.frame.datum.length)
     reading.switch(False, length + (float(added[1]) if added else 0.0))
     feed = re.search(r"\bF(\d+(?:\.\d+)?)", match[2])
@@ -163,11 +175,9 @@ class _Words:
 
     def _path(self, word: str) -> bool:
         """Radius compensation, and sense and radius of a circle."""
-        if word in ("RL", "RR"):
-            expected = "R0: cutter radius compensation resolved before, paths of the tool's centre"
-            raise self.reading.refusal(self.number, word, expected)
-        if word == "R0":
-            self.kept.append(word)
+        if word in _SIDES:
+            self.reading.side = _SIDES[word]
+            self.kept.append("R0")
         elif self.kind in ("C", "CR") and word in ("DR+", "DR-"):
             self.sense = word[2]
         elif self.kind == "CR" and re.fullmatch(rf"R{NUMBER}", word):
@@ -222,6 +232,7 @@ def _motion(number: int, bare: str, reading: Reading, modes: _Modes) -> None:
             words=" ".join(said.kept),
             turned=tuple(a for a in said.named if not reading.is_linear(a)),
             arc=_arc(said, reading, modes) if is_arc else None,
+            beside=reading.beside(number),
         )
     )
 

@@ -25,13 +25,18 @@ class Reading:
         path: Of the program, for messages.
         frame: Where the program's zero stands on the machine.
         lengths: Of tools by number, mm; of the others that of the datum.
+        radii: Of tools by number, mm.
         at: Program coordinates with the shift, (A,), mm and rad; nan where unknown.
         offset: Shift of the program's zero, (A,), mm.
+        tool: Number of that in the spindle.
+        more_radius: What the program adds to its radius, mm.
+        side: Of the contour on which the tool goes: 1 left, -1 right, 0 on it.
     """
 
     path: Path
     frame: Frame
     lengths: dict[int, float]
+    radii: dict[int, float] = field(default_factory=dict)
     at: Array = field(init=False)
     offset: Array = field(init=False)
     items: list[Item] = field(default_factory=list)
@@ -39,6 +44,9 @@ class Reading:
     feed: float = 0.0
     tcpm: bool = False
     unit: float = 1.0
+    tool: int | None = None
+    more_radius: float = 0.0
+    side: float = 0.0
 
     def __post_init__(self) -> None:
         self.at = self.frame.datum.q.copy()
@@ -90,6 +98,20 @@ class Reading:
         """Whether all linear axes have a place after a motion, and an arc's before it."""
         ends = (end, self.at) if is_arc else (end,)
         return all(math.isfinite(e[k]) for e in ends for k in self.linear)
+
+    def beside(self, line: int) -> float:
+        """Way of the tool's centre to the left of the contour, mm; raises BadFile."""
+        if not self.side:
+            return 0.0
+        if self.tool not in self.radii:
+            named = "the tool" if self.tool is None else f"tool {self.tool}"
+            number = "NUMBER" if self.tool is None else self.tool
+            found = f"a contour beside {named}, whose radius nobody has stated"
+            raise self.refusal(line, found, f"--tool-radius {number}=MM")
+        radius = self.radii[self.tool] + self.more_radius
+        if radius <= 0.0:
+            raise self.refusal(line, f"a tool of radius {radius:g} mm", "one above zero")
+        return self.side * radius
 
     def needed_feed(self, line: int, is_rapid: bool) -> float:
         """Feed of a motion; raises BadFile where none is in force."""

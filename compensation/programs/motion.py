@@ -56,6 +56,8 @@ class Motion:
         words: What else stands in the block, for its first line.
         turned: Rotary axes that the block names.
         arc: None for a straight line.
+        beside: Way by which the tool's centre goes to the left of the path that is programmed, mm;
+            to the right below zero. Zero once it is resolved.
     """
 
     line: int
@@ -70,6 +72,7 @@ class Motion:
     words: str
     turned: tuple[str, ...]
     arc: Arc | None = None
+    beside: float = 0.0
 
     @property
     def travel(self) -> float:

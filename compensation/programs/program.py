@@ -12,6 +12,7 @@ from compensation.programs.frame import Frame
 from compensation.programs.language import Reading
 from compensation.programs.loads import Load
 from compensation.programs.motion import Item, Motion
+from compensation.programs.radius import resolved
 from twin.errors import BadFile
 from twin.files import read_any_text
 from twin.units import DEG
@@ -49,13 +50,17 @@ class Program:
 
 
 def read_part_program(
-    path: str | Path, frame: Frame, lengths: dict[int, float] | None = None
+    path: str | Path,
+    frame: Frame,
+    lengths: dict[int, float] | None = None,
+    radii: dict[int, float] | None = None,
 ) -> Program:
     """Read a Klartext (`.H`) or G-code (`.ngc`, `.nc`) program.
 
     Args:
         frame: Where its zero stands; the datum's tool is that of tools without a length.
         lengths: Of tools by number, mm.
+        radii: Likewise; where the program goes beside a contour.
 
     Raises:
         BadFile: Another ending, a block that is not understood, a program that was compensated.
@@ -73,9 +78,10 @@ def read_part_program(
         line = text[: absurd.start()].count("\n") + 1
         raise BadFile(path, f"line {line}", f"a number of {len(absurd[0])} digits", "30 at most")
     frame.linear  # noqa: B018  (a machine without them is refused before anything is read)
-    reading = Reading(path, frame, lengths or {})
+    reading = Reading(path, frame, lengths or {}, radii or {})
     language.read(text, reading)
-    program = Program(path, frame, tuple(reading.items), language)
+    items = resolved(reading.items, reading, is_square=language is klartext)
+    program = Program(path, frame, tuple(items), language)
     if not program.motions:
         raise BadFile(path, "file", "no motion from a known place", "one at least")
     _check_travel(program)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.commands.compensation.options import add_state
+from matstd.commands.compensation.options import add_state, add_tool_radius
 from twin.errors import DesignError
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="lengths of tools of the program; others have that of the datum",
     )
+    add_tool_radius(parser)
     parser.add_argument(
         "--loads",
         metavar="LOADS.csv",
@@ -86,7 +87,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
         read_part_program,
         write_trajectory,
     )
-    from matstd.commands.compensation.job import tool_lengths
+    from matstd.commands.compensation.job import by_tool
     from matstd.console import say
     from report.compensation import draw_program, program_lines
     from twin.files import refuse_to_overwrite, write_whole
@@ -97,7 +98,12 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     for path in (output, *beside):
         refuse_to_overwrite(path, args.force)
     frame = Frame(job.errors.chain, job.datum)
-    program = read_part_program(args.program, frame, tool_lengths(args.tool))
+    program = read_part_program(
+        args.program,
+        frame,
+        by_tool("--tool", args.tool),
+        by_tool("--tool-radius", args.tool_radius),
+    )
     if args.loads:
         program = replace(program, loads=read_loads(args.loads))
     tolerance = TOLERANCE if args.tolerance is None else args.tolerance * UM

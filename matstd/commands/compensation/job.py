@@ -96,13 +96,13 @@ def _with_added(errors: MachineErrors, text: str) -> MachineErrors:
     return errors.with_known([(added.effect, added.theta)])
 
 
-def tool_lengths(words: Sequence[str]) -> dict[int, float]:
-    """Lengths of tools by number, mm; raises DesignError."""
+def by_tool(option: str, words: Sequence[str]) -> dict[int, float]:
+    """Lengths or radii of tools by number, mm; raises DesignError."""
     out = {}
-    for number, length in _numbers("--tool", words):
+    for number, size in _numbers(option, words):
         if not number.isdigit():
-            raise DesignError(f"--tool {number}={length:g}: expected a number, such as 3=120")
-        out[int(number)] = length
+            raise DesignError(f"{option} {number}={size:g}: expected a number, such as 3=120")
+        out[int(number)] = size
     return out
 
 

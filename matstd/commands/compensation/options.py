@@ -77,3 +77,13 @@ def _add_driven(parser: argparse.ArgumentParser) -> None:
         help="a further error, such as 'beam(Z,cantilever,180x180,at:420,sense:-1,mass:80)="
         "weight=1,load=1'",
     )
+
+
+def add_tool_radius(parser: argparse.ArgumentParser) -> None:
+    """The option `--tool-radius`."""
+    _several(
+        parser,
+        "--tool-radius",
+        "NUMBER=MM",
+        "radii of tools, where the program goes beside a contour (RL, RR, G41, G42)",
+    )
