@@ -115,7 +115,11 @@ def features_points(standard: Standard, T: Array, pitch: float = PITCH) -> dict[
 
 def tool_gap(points: Array, centre: Array, axis: Array) -> Array:
     """Smallest gaps of points (K, 3) from the tool at places (N, 3), (N, K)."""
-    way = points - centre[:, None]
+    return gaps_beside(points - centre[:, None], axis)
+
+
+def gaps_beside(way: Array, axis: Array) -> Array:
+    """Gaps of the tool from points that are so far from its ball centre, (..., 3)."""
     along = way @ axis
     across = np.sqrt(np.maximum((way**2).sum(axis=-1) - along**2, 0.0))
     gap = np.hypot(across, along) - PROBE.radius
@@ -146,6 +150,34 @@ def way_gaps(points: Array, ways: list[Way], axis: Array, step: float) -> Array:
     return best
 
 
+def nearest_gaps(points: Array, ways: list[Way], axis: Array) -> Array:
+    """Gaps every `STEP` along some ways, (K,): exact for the nearest point, of others from below.
+
+    A gap changes by no more than the tool moves, so that between two coarse places whose gaps are
+    large no nearer one lies.
+    """
+    looks = []
+    for begin, end in ways:
+        count = int(np.linalg.norm(end - begin) / _COARSE) + 2
+        places = begin + np.linspace(0.0, 1.0, count)[:, None] * (end - begin)
+        lots = np.array_split(places, min(count * len(points) // 400_000 + 1, count))
+        looks.append((places, np.concatenate([tool_gap(points, some, axis) for some in lots])))
+    best = min(float(gap.min(initial=np.inf)) for _, gap in looks)
+    out = np.full(len(points), np.inf)
+    for places, gap in looks:
+        step = float(np.linalg.norm(places[1] - places[0]))
+        low = np.minimum(gap[:-1], gap[1:]) - 0.5 * step
+        i, k = np.nonzero(low < best)
+        shares = np.linspace(0.0, 1.0, int(np.ceil(step / STEP)) + 1)
+        for some in np.array_split(np.arange(len(i)), len(i) // 20_000 + 1):
+            begin, end = places[i[some]], places[i[some] + 1]
+            centre = begin[:, None] + shares[:, None] * (end - begin)[:, None]
+            fine = gaps_beside(points[k[some]][:, None] - centre, axis).min(axis=1, initial=np.inf)
+            low[i[some], k[some]] = fine
+        out = np.minimum(out, low.min(axis=0))
+    return out
+
+
 def lower_bounds(points: Array, ways: list[Way], axis: Array) -> Array:
     """What no point can be nearer than, (K,): few places for all, more for those that are near.
 
@@ -161,8 +193,9 @@ def smallest_gap(points: Array, ways: list[Way], axis: Array) -> float:
     """Of all points: coarse places say which of them need the fine ones."""
     lower = lower_bounds(points, ways, axis)
     few = np.argsort(lower)[:500]
-    gap = way_gaps(points[few], ways, axis, STEP).min()
-    return float(min(gap, way_gaps(points[lower < gap], ways, axis, STEP).min(initial=np.inf)))
+    gap = nearest_gaps(points[few], ways, axis).min()
+    left = points[lower < gap]
+    return float(min(gap, nearest_gaps(left, ways, axis).min() if len(left) else np.inf))
 
 
 def pushed(points: Array, ways: list[Way], axis: Array, push: Array, wanted: float) -> float | None:
@@ -175,7 +208,7 @@ def pushed(points: Array, ways: list[Way], axis: Array, push: Array, wanted: flo
         there = [(begin + way * push, end + way * push) for begin, end in ways]
         few = np.argsort(lower)[:300]
         while True:
-            lower[few] = way_gaps(points[few], there, axis, STEP)
+            lower[few] = nearest_gaps(points[few], there, axis)
             gap = float(lower[few].min())
             few = np.setdiff1d(np.flatnonzero(lower < gap), few)
             if not len(few):

@@ -145,12 +145,14 @@ def beam_law(
             residual=law.residual,
             memory=law.memory,
         )
-    left = rest.displacement[np.concatenate(parts)]
+    rows = np.concatenate(parts)
+    offset = rest.displacement[rows].mean(axis=0)
+    left = record.centred(rest.displacement[rows] - offset, rows)
     memory = memory_of(left / UM, record.step)
     return BeamLaw(
         beams=tuple(beams),
         rest=None,
-        offset=left.mean(axis=0),
+        offset=offset,
         residual=left.std(axis=0),
         memory=memory,
     )

@@ -84,18 +84,21 @@ class Judged:
 def offered(
     record: DriftRecord, beams: Sequence[Beam] = (), networks: bool = True
 ) -> dict[str, Fits]:
-    """Every law that suits a record, by name."""
+    """Every law that suits a record, by name.
+
+    Where logs have zeros of their own, those that work with changes within a log.
+    """
     has_speed = any(map(is_speed, record.drives))
     laws: dict[str, Fits] = {
         "constant": constant,
-        "one-step-arx": one_step_arx,
+        **({} if record.zeros is not None else {"one-step-arx": one_step_arx}),
         "static-ridge": lambda r, p: ridge(r, at_once(r), p),
     }
     if has_speed:
         laws["speed-lags"] = lambda r, p: ridge(r, remembered(r, temperatures=False), p)
     laws["lags"] = lambda r, p: ridge(r, remembered(r, temperatures=True), p)
     laws["arx"] = arx
-    if networks and has_network():
+    if networks and has_network() and record.zeros is None:
         laws["network"] = network
     if beams:
         laws["beams"] = partial(_with_beams, beams, False)
@@ -168,18 +171,22 @@ def _judged(
         if isinstance(own, OneStepArx) and not own.is_stable:
             pole = own.pole
             break
-        error = own.predicted(record)[part] - record.displacement[part]
+        error = record.centred((own.predicted(record) - record.displacement)[part], part)
         errors.append(error)
         spread = np.sqrt(1.0 + own.leverage(record)[part])[:, None]
         ratios.append(error / np.maximum(own.residual * spread, 1e-12))
     free = law.predicted(record)
+
+    def missed(predicted: Array) -> Array:
+        return rms(record.centred((predicted - record.displacement)[held], held))
+
     return Judged(
         name=name,
         law=law,
         one_step=rms((_one_step(law, record, free) - record.displacement)[held]),
         left_out=nothing if pole else rms(np.concatenate(errors)),
-        free_run=rms((free - record.displacement)[held]),
-        noisy=rms((law.predicted(noisy) - record.displacement)[held]) if noisy else None,
+        free_run=missed(free),
+        noisy=missed(law.predicted(noisy)) if noisy else None,
         factor=nothing if pole else rms(np.concatenate(ratios)),
         pole=pole,
     )
@@ -190,6 +197,8 @@ def _one_step(law: Law, record: DriftRecord, free: Array) -> Array:
     if isinstance(law, OneStepArx):
         return law.one_step(record)
     before = np.maximum(np.arange(len(record)) - 1, 0)
+    if record.zeros is not None:  # nothing is known at the first row of a log
+        before = np.where(np.diff(record.zeros, prepend=-1) != 0, np.arange(len(record)), before)
     return record.displacement[before] + free - free[before]
 
 

@@ -121,11 +121,13 @@ def standardised(X: Array, rows: IntArray) -> tuple[Array, Array, Array]:
 
 def sums(record: DriftRecord, Z: Array, parts: Sequence[IntArray]) -> Sums:
     """Sums of standardised columns over blocks of rows."""
-    Z, y = _with_one(Z), record.displacement / record.size
+    y = record.displacement / record.size
+    columns = [_with_one(record.centred(Z[b], b)) for b in parts]
+    moved = [record.centred(y[b], b) for b in parts]
     return Sums(
-        np.array([Z[b].T @ Z[b] for b in parts]),
-        np.array([Z[b].T @ y[b] for b in parts]),
-        np.array([(y[b] ** 2).sum(axis=0) for b in parts]),
+        np.array([X.T @ X for X in columns]),
+        np.array([X.T @ v for X, v in zip(columns, moved, strict=True)]),
+        np.array([(v**2).sum(axis=0) for v in moved]),
         np.array([float(len(b)) for b in parts]),
     )
 
@@ -145,16 +147,19 @@ def fitted(
     """A linear law with a given weight, from all blocks.
 
     The residual is no white noise: rows count as many as there are spans of twice its memory.
+    Where logs have zeros of their own, only changes within a log count.
     """
     rows = np.concatenate(parts)
     Z, mean, scale = standardised(inputs(record), rows)
-    X, y = _with_one(Z), record.displacement
+    X, y = _with_one(record.centred(Z[rows], rows)), record.displacement[rows]
+    middle = y.mean(axis=0)
+    y = record.centred(y, rows)
     penalty = weight * len(rows) * np.diag(np.arange(X.shape[1]) > 0)
-    gram = X[rows].T @ X[rows]
+    gram = X.T @ X
     theta: Array = np.asarray(
-        np.linalg.solve(gram + penalty + _tiny(gram), X[rows].T @ y[rows]), dtype=np.float64
+        np.linalg.solve(gram + penalty + _tiny(gram), X.T @ y), dtype=np.float64
     )
-    left = y[rows] - X[rows] @ theta
+    left = y - X @ theta
     spread: Array = np.sqrt(np.mean(left**2, axis=0))
     memory = memory_of(left / record.size, record.step)
     independent = max(len(rows) * record.step / (2.0 * memory), 1.0)
@@ -165,7 +170,7 @@ def fitted(
         inputs=inputs,
         mean=mean,
         scale=scale,
-        intercept=theta[0],
+        intercept=theta[0] if record.zeros is None else middle,
         coefficients=theta[1:],
         weight=weight,
         covariance=inverse / independent,

@@ -38,9 +38,10 @@ class Constant:
 
 def constant(record: DriftRecord, parts: Sequence[IntArray]) -> Constant:
     """The mean over blocks."""
-    y = record.displacement[np.concatenate(parts)]
-    left = y - y.mean(axis=0)
-    return Constant(y.mean(axis=0), y.std(axis=0), memory_of(left / record.size, record.step))
+    rows = np.concatenate(parts)
+    y = record.displacement[rows]
+    left = record.centred(y - y.mean(axis=0), rows)
+    return Constant(y.mean(axis=0), left.std(axis=0), memory_of(left / record.size, record.step))
 
 
 @dataclass(frozen=True, eq=False)

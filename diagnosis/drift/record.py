@@ -30,6 +30,8 @@ class DriftRecord:
         units: Of each, "mm" or "rad".
         displacement: (N, K), base units.
         remarks: What a reader noticed.
+        zeros: Number of the zero that the displacement of a row counts from, (N,); None where all
+            count from one.
     """
 
     time: Array
@@ -41,6 +43,7 @@ class DriftRecord:
     units: tuple[str, ...]
     displacement: Array
     remarks: tuple[str, ...] = ()
+    zeros: IntArray | None = None
 
     def __len__(self) -> int:
         return len(self.time)
@@ -63,6 +66,36 @@ class DriftRecord:
     def columns(self, names: Sequence[str]) -> Array:
         """Values of some drives, (N, len(names))."""
         return self.drive[:, [self.drives.index(name) for name in names]]
+
+    def centred(self, values: Array, rows: IntArray) -> Array:
+        """Values of some rows, (n, M), less their mean where zeros are not known: within each.
+
+        Where all displacements count from one zero they stay as they are.
+        """
+        if self.zeros is None:
+            return values
+        out = values.copy()
+        zeros = self.zeros[rows]
+        for zero in np.unique(zeros):
+            own = zeros == zero
+            out[own] -= values[own].mean(axis=0)
+        return out
+
+    def rezeroed(self, predicted: Array, rows: IntArray | None = None) -> "DriftRecord":
+        """The same with every zero of its own moved to where a prediction fits best.
+
+        Args:
+            predicted: (N, K), base units.
+            rows: At which it shall fit; None for all.
+        """
+        if self.zeros is None:
+            return self
+        out = self.displacement.copy()
+        rows = np.arange(len(self)) if rows is None else rows
+        for zero in np.unique(self.zeros[rows]):
+            own = rows[self.zeros[rows] == zero]
+            out[self.zeros == zero] += (predicted - self.displacement)[own].mean(axis=0)
+        return replace(self, displacement=out)
 
     def with_noise(self, sd: float, rng: np.random.Generator) -> "DriftRecord":
         """The same with normal noise on every temperature, degC; speeds stay."""
@@ -94,8 +127,13 @@ def is_speed(drive: str) -> bool:
     return drive.endswith("_rpm")
 
 
-def joined(records: Sequence[DriftRecord]) -> DriftRecord:
-    """Several logs of one machine, one after the other; their drives and components are equal."""
+def joined(records: Sequence[DriftRecord], own_zeros: bool = False) -> DriftRecord:
+    """Several logs of one machine, one after the other; their drives and components are equal.
+
+    Args:
+        records: Of each.
+        own_zeros: Whether displacements of each log count from a zero of its own.
+    """
     first = records[0]
     offsets = np.cumsum([0, *(int(r.stretch[-1]) + 1 for r in records[:-1])])
     return replace(
@@ -105,6 +143,7 @@ def joined(records: Sequence[DriftRecord]) -> DriftRecord:
         drive=np.concatenate([r.drive for r in records]),
         displacement=np.concatenate([r.displacement for r in records]),
         remarks=tuple(remark for r in records for remark in r.remarks),
+        zeros=np.repeat(np.arange(len(records)), [len(r) for r in records]) if own_zeros else None,
     )
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from artefact.body import Standard
-from twin.effects import setup_errors
+from twin.effects import StylusError, setup_errors
 from twin.frames import Array
 from twin.library import ordinary_model
 from twin.model import Model
@@ -81,7 +81,8 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
         run = replace(run, touches=t, deviation=computed_deviation(t))
         if np.abs(run.deviation - before).max() < _STILL:
             break
-    return replace(run, remarks=(*run.remarks, *_displaced_feature(run, residual)))
+    told = (*_displaced_feature(run, residual), *_stylus_lines(run))
+    return replace(run, remarks=(*run.remarks, *told))
 
 
 def _displaced_feature(run: Run, residual: Array) -> list[str]:
@@ -108,6 +109,30 @@ def _displaced_feature(run: Run, residual: Array) -> list[str]:
                 "wrongly"
             ]
     return out
+
+
+def _stylus_lines(run: Run) -> list[str]:
+    """How every stylus but the first stands beside its calibration, by the same model."""
+    t = run.touches
+    free = setup_errors(t)
+    model = Model(t.chain, (*ordinary_model(t.chain).effects, *free))
+    sd = np.array([p.sd for effect in model.effects for p in effect.parameters])
+    A, end, out = np.zeros((0, len(sd))), len(sd), []
+    for stylus in reversed([one for one in free if isinstance(one, StylusError)]):
+        if not len(A):
+            A = np.concatenate([model.columns(t) * sd / run.u[:, None], np.eye(len(sd))])
+            y = np.concatenate([run.deviation / run.u, np.zeros(len(sd))])
+            root = np.linalg.pinv(A)
+        place = slice(end - len(stylus.parameters), end)
+        found, u = sd[place] * (root[place] @ y), sd[place] * np.linalg.norm(root[place], axis=1)
+        x, y_, z, r = (f"{a / UM:+.1f} ± {b / UM:.1f}" for a, b in zip(found, u, strict=True))
+        out.append(
+            f"stylus of length {stylus.length:.3f} mm and radius {stylus.radius:.3f} mm: against "
+            f"the first its ball stands x {x}, y {y_}, z {z} µm beside its calibration (tool "
+            f"frame), its radius is {r} µm larger; both are free in every fit"
+        )
+        end = place.start
+    return out[::-1]
 
 
 def _displacement(run: Run, weight: Array) -> tuple[Array, Array, Array]:

@@ -17,6 +17,7 @@ def ball_lines(
     limit: float | None = None,
     heights: Sequence[Mapping[str, float]] = (),
     radii: Sequence[tuple[datetime, float, float]] = (),
+    calibrated: Sequence[tuple[float, float]] = (),
 ) -> list[str]:
     """What the same ball tells of the time between two looks at it, in words.
 
@@ -26,6 +27,8 @@ def ball_lines(
         heights: What touches of commissioning programs tell of Z, by its meanings, mm.
         radii: What the calibrated ball of the workshop tells: when, of the effective radius of the
             probe what it is beyond its calibration, and the uncertainty of that, mm.
+        calibrated: Radii of the ball in logs of commissioning programs, which have no block left to
+            test them: as the control has calibrated it, and as planned, mm.
     """
     lines = []
     for beside in heights:
@@ -35,6 +38,11 @@ def ball_lines(
             f"commissioning touch: Z of the control is that of {best} (--z {best}): the ball is "
             f"{abs(beside[best]):.3f} mm beside its place, {others}"
         )
+    lines += [
+        f"commissioning: radius of the ball {known:.4f} mm as calibrated, {planned:.4f} mm as "
+        "planned (alarm 101 of the other programs)"
+        for known, planned in calibrated
+    ]
     lines += [
         f"datum ball at {begin:%H:%M}: effective radius of the probe {excess / UM:+.1f} ± "
         f"{u / UM:.1f} µm beyond its calibration"

@@ -224,3 +224,51 @@ def test_beams_that_make_no_sense_are_refused(planted, tmp_path, text, words):
     path.write_text(f'[[beam]]\nname = "b"\nlength_mm = 1.0\nalpha_um_per_m_K = 11.0\n{text}\n')
     with pytest.raises(BadFile, match=words):
         read_beams(str(path), planted)
+
+
+# --- logs with zeros of their own ---------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def days():
+    """Three days of one law, z = 3 um/K t0 + 0.5 um/K t1, each from another zero."""
+    rng = np.random.default_rng(8)
+    out = []
+    for zero in (0.0, 80.0, -45.0):
+        drive = heat(rng, rows=200, drives=2)
+        drift = 3.0 * drive[:, :1] + 0.5 * drive[:, 1:2] + zero + rng.normal(0.0, 0.3, (200, 1))
+        out.append(record_of(drive, drift * UM))
+    return out
+
+
+def test_own_zeros_are_dummy_columns_of_least_squares(days):
+    """By a column for every log, as a textbook would have it."""
+    record = joined(days, own_zeros=True)
+    parts = [np.flatnonzero(record.zeros == k) for k in range(3)]
+    law = fitted(record, at_once(record), parts, 1e-12)
+    dummies = (record.zeros[:, None] == np.arange(3)).astype(float)
+    X = np.column_stack([record.drive, dummies])
+    theta = np.linalg.lstsq(X, record.displacement[:, 0])[0]
+    np.testing.assert_allclose(law.coefficients[:, 0] / law.scale, theta[:3], rtol=1e-5)
+    np.testing.assert_allclose(theta[:2] / UM, [3.0, 0.5], atol=0.05)
+
+
+def test_a_day_from_another_zero_is_predicted(days):
+    """The third day held out: as good as its noise with own zeros, lost without them."""
+    left = {}
+    for own_zeros in (False, True):
+        record = joined(days, own_zeros)
+        train, held = np.arange(400), np.arange(400, 600)
+        judged = judge(record, train, held, offered(record, networks=False), silent)
+        best = chosen(judged, record)
+        left[own_zeros] = best.free_run[0] / UM
+        ratio = best.u(record)[held].mean() / UM
+        assert "one-step-arx" in {j.name for j in judged} or own_zeros
+    assert left[False] > 10.0
+    assert left[True] < 0.4
+    assert 0.2 < ratio < 0.6
+    moved = record.rezeroed(best.law.predicted(record))
+    assert np.abs(moved.displacement - best.law.predicted(record)).max() < 2.0 * UM
+    first = record.rezeroed(best.law.predicted(record), np.array([400]))
+    assert first.displacement[400, 0] == pytest.approx(best.law.predicted(record)[400, 0])
+    np.testing.assert_array_equal(first.displacement[:400], record.displacement[:400])

@@ -1,5 +1,6 @@
 """The commissioning program: few blocks, all of them needed, and a touch that must meet nothing."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -143,8 +144,13 @@ def test_simulate_and_evaluate_take_it(made, small, tmp_path, capsys):
     assert "a commissioning program leave a log" in capsys.readouterr().err
     assert main(["simulate", str(path), *words, *out, "--logs", str(tmp_path)]) == 0
     log = str(tmp_path / "MS_A_COM.TXT")
+    text = Path(log).read_text(encoding="ascii")
+    calibrated = re.sub(r"(?m)^R +3\.000000", "R     3.250000", text)  # another stylus
+    assert calibrated != text
+    Path(log).write_text(calibrated, encoding="ascii")
     assert main(["evaluate", log, *words, *out]) == 0
     told = capsys.readouterr().out
     assert "no run file" in told
     assert "Z of the control is that of gauge (--z gauge)" in told
+    assert "radius of the ball 3.2500 mm as calibrated, 3.0000 mm as planned" in told
     assert not (tmp_path / "run.csv").exists()

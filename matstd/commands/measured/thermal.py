@@ -40,6 +40,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--held-out", metavar="LOG.csv", nargs="+", default=[], help="whole logs that are held out"
     )
     parser.add_argument(
+        "--own-zeros",
+        action="store_true",
+        help="displacements of every log count from a zero of its own",
+    )
+    parser.add_argument(
         "--step-min", metavar="MIN", type=float, default=STEP / 60.0, help="of the laws (5)"
     )
     parser.add_argument(
@@ -76,6 +81,8 @@ def _check(args: argparse.Namespace) -> None:
         raise DesignError("expected --law thermal.json with --probed")
     if args.train_until is not None and (args.held_out or len(args.logs) > 1):
         raise DesignError("expected --train-until with one log, or --held-out LOG.csv with several")
+    if args.own_zeros and not args.held_out:
+        raise DesignError("expected several logs and --held-out LOG.csv with --own-zeros")
     if len(args.logs) > 1 and not args.held_out:
         raise DesignError("expected --held-out LOG.csv, since there are several logs")
     for name, low, high in (
@@ -108,6 +115,7 @@ def _compare(args: argparse.Namespace) -> int:
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:
         judged = judge(record, train, held, laws, show, noisy)
         best = chosen(judged, record)
+        record = record.rezeroed(best.law.predicted(record))
         hold = _hold(record, held)
         probings = _probings(args, record, held, best)
         said = {
@@ -141,7 +149,7 @@ def _record(args: argparse.Namespace) -> tuple[DriftRecord, NDArray[np.int64], N
     paths = [*args.logs, *args.held_out]
     records = [read_log(path, args.step_min * 60.0) for path in paths]
     check_alike(records, paths)
-    record = joined(records)
+    record = joined(records, args.own_zeros)
     if args.held_out:
         count = sum(len(r) for r in records[: len(args.logs)])
     else:
@@ -177,6 +185,8 @@ def _probings(
     args: argparse.Namespace, record: DriftRecord, held: NDArray[np.int64], best: Judged
 ) -> list[str]:
     """What probing the drift in held-out hours leaves, as a sentence."""
+    import numpy as np
+
     from diagnosis.drift import kept
     from report.drift import kept_line
 
@@ -184,6 +194,9 @@ def _probings(
         return []
     every = max(1, round(args.probe_every * 3600.0 / record.step))
     rows = held[::every]
+    if record.zeros is not None:  # the first probing in a log tells where its zero is
+        firsts = rows[np.unique(record.zeros[rows], return_index=True)[1]]
+        record = record.rezeroed(best.law.predicted(record), firsts)
     result = kept(best, record, rows, args.u_um)
     return [kept_line(result, record, held, every * record.step)]
 

@@ -69,9 +69,11 @@ def run(args: argparse.Namespace) -> int:
     parts = [part for path in args.logs for part in read_log(path, chain.rotary_axes)]
     dialect, u, limit = Dialect(result_height=args.z), args.u_um * UM, args.probe_limit_um * UM
     changes = ball_changes(parts, standard, chain, u, dialect)
-    heights = [read_heights(part, standard, chain) for part in parts if part.is_first]
+    first = [part for part in parts if part.is_first]
+    heights = [read_heights(part, standard, chain) for part in first]
+    known = [(part.radius, part.heading.probe.radius) for part in first]
     radii = effective_radii(parts, chain, u, dialect)
-    told = ball_lines(changes, limit, heights, radii)
+    told = ball_lines(changes, limit, heights, radii, known)
     if not any(part.is_measuring for part in parts) and told:
         say("no run file: the logs hold no measurements")
         say_each(told)
