@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from artefact.body import Standard
-from twin.effects import setup_errors
+from twin.effects import StylusError, setup_errors
 from twin.frames import Array
 from twin.library import ordinary_model
 from twin.model import Model
@@ -39,11 +39,20 @@ _STILL = 1e-5
 """Deviations that change less than this in a round are settled, mm."""
 
 
-def foot_points(standard: Standard, feature: Labels, ball: Array) -> tuple[Array, Array]:
+def foot_points(
+    standard: Standard, feature: Labels, ball: Array, moved: Array | float = 0.0
+) -> tuple[Array, Array]:
     """Foot points (N, 3) of balls (N, 3) on their features, and outward normals, artefact frame.
 
     nan where a ball is so far off that its surface has no foot point for it.
+
+    Args:
+        standard: As calibrated.
+        feature: Names, (N,).
+        ball: Centres, (N, 3), mm.
+        moved: Displacements of the features from their calibrated places, (N, 3), mm.
     """
+    ball = ball - moved
     point, normal = np.full(ball.shape, np.nan), np.full(ball.shape, np.nan)
     for name in dict.fromkeys(feature.tolist()):
         rows = np.flatnonzero(feature == name)
@@ -52,7 +61,7 @@ def foot_points(standard: Standard, feature: Labels, ball: Array) -> tuple[Array
         there = np.all(np.isfinite(uv), axis=1)
         point[rows[there]] = surface.point(uv[there])
         normal[rows[there]] = surface.normal(uv[there])
-    return point, normal
+    return point + moved, normal
 
 
 def at_true_contacts(run: Run, standard: Standard) -> Run:
@@ -69,11 +78,12 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
     Returns:
         The run anew, with the old foot point where a moved ball has none.
     """
-    weight = np.ones(len(run))
+    weight, t = np.ones(len(run)), run.touches
+    moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)
     for _ in range(_ROUNDS):
         t, before = run.touches, run.deviation
-        moved, residual, weight = _displacement(run, weight)
-        point, normal = foot_points(standard, t.feature, t.ball_artefact + moved)
+        beside, residual, weight = _displacement(run, weight)
+        point, normal = foot_points(standard, t.feature, t.ball_artefact + beside, moved)
         found = np.all(np.isfinite(point), axis=1, keepdims=True)
         t = replace(
             t, point=np.where(found, point, t.point), normal=np.where(found, normal, t.normal)
@@ -81,7 +91,8 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
         run = replace(run, touches=t, deviation=computed_deviation(t))
         if np.abs(run.deviation - before).max() < _STILL:
             break
-    return replace(run, remarks=(*run.remarks, *_displaced_feature(run, residual)))
+    told = (*_displaced_feature(run, residual), *_stylus_lines(run))
+    return replace(run, remarks=(*run.remarks, *told))
 
 
 def _displaced_feature(run: Run, residual: Array) -> list[str]:
@@ -108,6 +119,30 @@ def _displaced_feature(run: Run, residual: Array) -> list[str]:
                 "wrongly"
             ]
     return out
+
+
+def _stylus_lines(run: Run) -> list[str]:
+    """How every stylus but the first stands beside its calibration, by the same model."""
+    t = run.touches
+    free = setup_errors(t)
+    model = Model(t.chain, (*ordinary_model(t.chain).effects, *free))
+    sd = np.array([p.sd for effect in model.effects for p in effect.parameters])
+    A, end, out = np.zeros((0, len(sd))), len(sd), []
+    for stylus in reversed([one for one in free if isinstance(one, StylusError)]):
+        if not len(A):
+            A = np.concatenate([model.columns(t) * sd / run.u[:, None], np.eye(len(sd))])
+            y = np.concatenate([run.deviation / run.u, np.zeros(len(sd))])
+            root = np.linalg.pinv(A)
+        place = slice(end - len(stylus.parameters), end)
+        found, u = sd[place] * (root[place] @ y), sd[place] * np.linalg.norm(root[place], axis=1)
+        x, y_, z, r = (f"{a / UM:+.1f} ± {b / UM:.1f}" for a, b in zip(found, u, strict=True))
+        out.append(
+            f"stylus of length {stylus.length:.3f} mm and radius {stylus.radius:.3f} mm: against "
+            f"the first its ball stands x {x}, y {y_}, z {z} µm beside its calibration (tool "
+            f"frame), its radius is {r} µm larger; both are free in every fit"
+        )
+        end = place.start
+    return out[::-1]
 
 
 def _displacement(run: Run, weight: Array) -> tuple[Array, Array, Array]:

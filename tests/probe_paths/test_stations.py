@@ -1,5 +1,6 @@
 """Several probes and clampings in one campaign: who touches what, and what their logs tell."""
 
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -162,6 +163,9 @@ def test_a_stylus_calibrated_wrongly_is_told_apart_by_itself(texts, small):
     truth = np.array([0.0, 0.0, -0.020, 0.003])
     assert np.all(np.abs(found - truth) < 4.0 * u + 1e-4)
     assert u[2] < 0.004
+    (told,) = [remark for remark in run.remarks if remark.startswith("stylus of length 200.000 mm")]
+    z = re.search(r"z ([+-][\d.]+) ± ([\d.]+) µm beside its calibration", told)
+    assert abs(float(z[1]) + 20.0) < 4.0 * float(z[2])
 
 
 def test_a_stylus_error_is_what_a_displaced_ball_does(texts, small):

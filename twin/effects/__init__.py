@@ -16,7 +16,7 @@ from twin.effects.periodic import (
 )
 from twin.effects.position_table import PositionTable
 from twin.effects.probe import ProbeRadius, normal_in_tool
-from twin.effects.setup_error import SHIFT_SD, TURN_SD, Free, setup_errors
+from twin.effects.setup_error import SHIFT_SD, TURN_SD, Free, StylusError, setup_errors
 
 __all__ = [
     "MARK",
@@ -34,6 +34,7 @@ __all__ = [
     "Periodic",
     "PositionTable",
     "ProbeRadius",
+    "StylusError",
     "again",
     "component",
     "normal_in_tool",
