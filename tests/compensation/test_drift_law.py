@@ -16,6 +16,7 @@ from diagnosis.drift.lags import Lagged
 from diagnosis.drift.linear import LinearLaw
 from diagnosis.drift.record import DriftRecord
 from matstd.cli import main
+from matstd.commands.compensation.job import _with_unknowns
 from matstd.drift_law import DRIFT_LAW
 from twin.errors import BadFile, DesignError, UnknownEffect, UnknownSymbol
 from twin.library import parse_effect, register
@@ -72,7 +73,7 @@ def thermal_json(tmp_path_factory):
 def drifting(thermal_json, bench_chain):
     """The law of z on EZZ and of the tilt on EAY, which are parts of one effect."""
     register(DRIFT_LAW)
-    return parse_effect(f"drift-law({thermal_json},z:EZZ,tilt:-EAY)", bench_chain)
+    return parse_effect(f"drift-law({thermal_json},z:EZZ,tilt:-EAY)", bench_chain).whole
 
 
 def warmth(time, tau):
@@ -111,10 +112,11 @@ def test_columns_move_what_they_are_bound_to(drifting, bench_chain):
     moved = deviation(errors, errors.touches(q, LENGTH))[0]
     assert moved[2] == pytest.approx(5.0 * PER_K + 1000.0 * PER_RPM, rel=1e-3)
     only = parse_effect(f"drift-law({drifting.path},z:EYY@-100:300)", bench_chain)
+    assert [p.name for p in only.parameters] == ["law"]  # all that touches are to tell
     y = bench_chain.axis_index("Y")
     q = np.zeros((3, 6))
     q[:, y] = -100.0, 100.0, 300.0
-    slope = replace(errors, effects=(only,), theta=(only.known[0],))
+    slope = replace(errors, effects=(only,), theta=(np.ones(1),))
     along = deviation(slope, slope.touches(q, LENGTH))[:, 1]
     np.testing.assert_allclose(along, moved[2] * np.array([0.0, 0.5, 1.0]), rtol=1e-3, atol=1e-9)
 
@@ -129,6 +131,27 @@ def test_u_is_that_of_the_law_and_grows_beyond_its_training(drifting, bench_chai
         z = errors.columns(at)[0, 2] @ errors.root
         expected = LEFT[0] * np.sqrt(1.0 + 1e-3 + (KNOWN * (degc - 20.0) / 2.0) ** 2)
         assert np.linalg.norm(z) == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_model_learns_how_much_of_a_law_there_is_and_keeps_its_unknowns(drifting, bench_chain):
+    """A model's law, 0.9 +- 0.1, between two other errors: covariances stay where they were."""
+    law = parse_effect(drifting.name, bench_chain)
+    others = [parse_effect(n, bench_chain) for n in ("backlash(X)", "backlash(Y)")]
+    state = State(time=HOUR, temperature={"frame": 25.0}, spindle_rpm=0.0)
+    known = [(others[0], np.ones(1)), (law, np.array([0.9])), (others[1], np.ones(1))]
+    root = np.array([[1.0, 0.0], [0.0, 0.1], [0.5, 0.5]])
+    errors = MachineErrors.of_errors(bench_chain, [], state).with_known(known, root)
+    wide = _with_unknowns(errors)
+    count = len(drifting.parameters)
+    assert [len(t) for t in wide.theta] == [1, count, 1]
+    assert wide.theta[1][0] == 0.9
+    full = wide.root @ wide.root.T
+    kept = [0, 1, count + 1]
+    np.testing.assert_allclose(full[np.ix_(kept, kept)], root @ root.T)
+    np.testing.assert_allclose(full[2 : count + 1, 2 : count + 1], np.eye(count - 1))
+    assert not full[2 : count + 1, kept].any()
+    at = wide.touches(np.zeros((1, 6)), LENGTH)
+    np.testing.assert_allclose(deviation(wide, at), deviation(errors, at))
 
 
 # --- in the service -----------------------------------------------------------------------------
