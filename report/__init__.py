@@ -16,7 +16,6 @@ is a number in a result.
     scenes  pictures in three dimensions, rendered in a process of their own
     drawing the sheet for the workshop, PDF and SVG
     pages   HTML, one template a page in `pages/templates`
-    budget  page of the uncertainty of a measuring task
     compensation
             what compensation corrects and leaves, with its page
     drift   laws of a thermal drift beside one another, with their page
@@ -57,7 +56,6 @@ PARTS = (
     "scenes",
     "drawing",
     "pages",
-    "budget",
     "compensation",
     "drift",
 )

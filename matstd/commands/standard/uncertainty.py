@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say, say_each
     from matstd.inputs import is_learnt_from
     from matstd.stages.budgets import PLAIN, budgets
-    from report.budget import write_uncertainty_page
+    from report.pages import write_uncertainty_page
     from report.task import task_lines
     from twin.files import read_run, refuse_to_overwrite
 

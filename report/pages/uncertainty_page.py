@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from diagnosis.task import TaskUncertainty
-from report.pages import write_page
+from report.pages.page import write_page
 from report.task import budget_rows
 from twin.units import UM
 
