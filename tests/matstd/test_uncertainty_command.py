@@ -98,7 +98,9 @@ def test_a_page_tells_the_same(place: Path) -> None:
     text = page.read_text(encoding="utf-8")
     rows = {
         cells[0]: cells[1:]
-        for cells in (re.findall(r"<td[^>]*>(.*?)</td>", r) for r in re.findall("<tr>(.*?)</tr>", text, re.S))
+        for cells in (
+            re.findall(r"<td[^>]*>(.*?)</td>", r) for r in re.findall("<tr>(.*?)</tr>", text, re.S)
+        )
         if cells
     }
     for face in found["by_face"]:
