@@ -244,7 +244,7 @@ def pushed(points: Array, ways: list[Way], axis: Array, push: Array, wanted: flo
 class Scene:
     """The golden standard on its table between two clamps.
 
-    `bodies` are points of what stands above the table's face, `hull` corners of all that turns:
+    `bodies` are points of all but the lower side of the table, `hull` corners of all that turns:
     beyond 90 degrees the lower side of the table is above its face.
     """
 
@@ -283,7 +283,8 @@ def scene() -> Scene:
     bodies = standard_points(standard, read[0].heading.setup.T_table_artefact)
     bodies |= {solid.name: solid_points(solid) for solid in workshop.solids}
     hull = trimesh.convex.convex_hull(np.concatenate(list(bodies.values()))).vertices
-    bodies = {name: p[p[:, 2] > -0.5] for name, p in bodies.items()}  # nothing comes from below
+    lowest = workshop.table.low + 0.5  # nothing comes from below
+    bodies = {name: p[p[:, 2] > lowest] for name, p in bodies.items()}
     return Scene(golden, read, standard, bodies, workshop, hull)
 
 
