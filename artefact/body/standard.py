@@ -1,6 +1,7 @@
 """The whole standard: one body with freeform patches, datum spheres, datum plane and holes."""
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,9 +11,12 @@ from artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_d
 from artefact.body.freeform import FreeformPatch
 from artefact.body.known import Known
 from artefact.body.patch import Surface
+from artefact.body.sag import Sag
 from artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
 from twin.errors import ShapeMismatch
 from twin.frames import Array
+from twin.machine import Chain
+from twin.record import Labels
 
 DATUM_PLANE = "DATUM_A"
 
@@ -85,6 +89,7 @@ class Standard:
         holes: Mounting holes.
         blank_height: Of the blank above the seat, mm; its outline is that of the base.
         known: Its calibration; None for a standard as designed.
+        sag: How its features move under its own weight; None where nobody computed it.
     """
 
     name: str
@@ -97,6 +102,7 @@ class Standard:
     holes: tuple[MountingHole, ...]
     blank_height: float
     known: Known | None = None
+    sag: Sag | None = None
 
     def __post_init__(self) -> None:
         names = [DATUM_PLANE, "BASE", "CORE"]
@@ -118,6 +124,18 @@ class Standard:
         for sphere in self.spheres:
             digest.update(np.array([*sphere.centre, sphere.radius]).tobytes())
         return digest.hexdigest()[:16]
+
+    def sagging(
+        self, source: str, down: str, share: float, per_weight: Mapping[str, Array]
+    ) -> "Standard":
+        """The same standard with what its weight does to it; arguments as of `Sag`."""
+        return replace(self, sag=Sag(source, down, share, per_weight))
+
+    def moved(self, chain: Chain, q: Array, T_table_artefact: Array, feature: Labels) -> Array:
+        """Displacements of features by their own weight, as of `Sag.moved`; zeros without one."""
+        if self.sag is None:
+            return np.zeros((len(q), 3))
+        return self.sag.moved(chain, q, T_table_artefact, feature)
 
     @property
     def plane(self) -> DatumPlane:

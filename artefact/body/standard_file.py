@@ -1,5 +1,6 @@
 """Border: `standard.toml`, everything that is needed to rebuild a standard, without loss."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,6 +10,7 @@ from pydantic import Field
 from artefact.body.datum import DatumSphere, MountingHole
 from artefact.body.freeform import ErrorShare, FreeformPatch
 from artefact.body.known import Known, KnownFeature
+from artefact.body.sag import DIRECTIONS, Sag
 from artefact.body.standard import Base, Core, Material, Standard
 from twin.errors import BadFile, ShapeMismatch
 from twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
@@ -92,6 +94,13 @@ class _Known(Table):
     feature: dict[str, _KnownFeature]
 
 
+class _Sag(Table):
+    source: str
+    down: str = "-Z"
+    share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
+    um: dict[str, Annotated[list[Triple], Field(min_length=3, max_length=3)]]
+
+
 class _File(Table):
     format: str
     name: str
@@ -104,6 +113,7 @@ class _File(Table):
     sphere: list[_Sphere] = Field(default_factory=list)
     hole: list[_Hole] = Field(default_factory=list)
     calibration: _Known | None = None
+    sag: _Sag | None = None
 
 
 def read_standard(path: str | Path) -> Standard:
@@ -148,6 +158,7 @@ def _standard(path: Path, file: _File) -> Standard:
             holes=tuple(_hole(path, i, hole) for i, hole in enumerate(file.hole)),
             blank_height=file.blank_height_mm,
             known=_known(path, file),
+            sag=_sag(path, file),
         )
     except ShapeMismatch as error:
         raise BadFile(path, "names", str(error), "every feature with a name of its own") from error
@@ -157,10 +168,7 @@ def _known(path: Path, file: _File) -> Known | None:
     """The calibration, of features that there are."""
     if file.calibration is None:
         return None
-    names = [patch.name for patch in file.patch] + [sphere.name for sphere in file.sphere]
-    for name in file.calibration.feature:
-        if name not in names:
-            raise BadFile(path, f"calibration.feature.{name}", name, f"one of {', '.join(names)}")
+    _check_features(path, file, "calibration.feature", file.calibration.feature)
     return Known(
         source=file.calibration.source,
         nominal=file.calibration.nominal,
@@ -169,6 +177,25 @@ def _known(path: Path, file: _File) -> Known | None:
             for name, f in file.calibration.feature.items()
         },
     )
+
+
+def _sag(path: Path, file: _File) -> Sag | None:
+    """What weight does, to features that there are."""
+    if file.sag is None:
+        return None
+    _check_features(path, file, "sag.um", file.sag.um)
+    if file.sag.down not in DIRECTIONS:
+        raise BadFile(path, "sag.down", file.sag.down, f"one of {', '.join(DIRECTIONS)}")
+    per_weight = {name: np.array(rows) * UM for name, rows in file.sag.um.items()}
+    return Sag(file.sag.source, file.sag.down, file.sag.share, per_weight)
+
+
+def _check_features(path: Path, file: _File, key: str, named: Iterable[str]) -> None:
+    """Refuse figures of features that the standard has not."""
+    names = [patch.name for patch in file.patch] + [sphere.name for sphere in file.sphere]
+    for name in named:
+        if name not in names:
+            raise BadFile(path, f"{key}.{name}", name, f"one of {', '.join(names)}")
 
 
 def _base(path: Path, base: _Base) -> Base:
@@ -270,6 +297,8 @@ def _table(standard: Standard) -> dict[str, Any]:
     table["hole"] = [_hole_table(hole) for hole in standard.holes]
     if standard.known is not None:
         table["calibration"] = _known_table(standard.known)
+    if standard.sag is not None:
+        table["sag"] = _sag_table(standard.sag)
     return table
 
 
@@ -286,6 +315,15 @@ def _known_table(known: Known) -> dict[str, Any]:
             }
             for name, f in known.features.items()
         },
+    }
+
+
+def _sag_table(sag: Sag) -> dict[str, Any]:
+    return {
+        "source": sag.source,
+        "down": sag.down,
+        "share": float(sag.share),
+        "um": {name: np.round(m / UM, 5).tolist() for name, m in sag.per_weight.items()},
     }
 
 

@@ -41,6 +41,7 @@ class StandardTable(Table):
     potential: float = Field(default=0.3, ge=0.0, le=0.95)
     robust_machines: int = Field(default=0, ge=0, le=100)
     robust_share: float = Field(default=1.0, gt=0.0, le=1.0)
+    down: Literal["+X", "-X", "+Y", "-Y", "+Z", "-Z"] = "-Z"
 
 
 class BlankTable(Table):

@@ -1,5 +1,6 @@
 """What a standard buys over the artefacts that people have, at equal touches and table poses."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -235,10 +236,9 @@ def chosen_touches(
 
 def _scatter(criterion: Criterion, poses: Array, rng: np.random.Generator) -> Requests:
     """Points anywhere in the volume with any normal: no artefact, but what one could hope for."""
-    parts = [
-        random_touches(
-            criterion.reach, criterion.volume, np.stack([p, p], axis=-1), _TRIED // len(poses), rng
-        )
-        for p in poses
-    ]
-    return joined(parts)
+    reach, volume, each = criterion.reach, criterion.volume, _TRIED // len(poses)
+    parts = []
+    for pose in poses:
+        with suppress(NotReachable):  # at some poses a head reaches none of what it swings above
+            parts.append(random_touches(reach, volume, np.stack([pose, pose], axis=-1), each, rng))
+    return joined(parts or [random_touches(reach, volume, criterion.rotary, _TRIED, rng)])

@@ -41,11 +41,13 @@ class _Beside:
         faces: The faces.
         fits: Which of them can stand beside each other, (F, F).
         hides: Share of the touches on the balls that each stands in the way of, (F,).
+        poses: Table poses of these touches, (K, R), rad.
     """
 
     faces: list[FreeformPatch]
     fits: Which
     hides: Array
+    poses: Array
 
 
 _REBUILDS = 8  # choices of faces tried before giving up
@@ -63,7 +65,6 @@ class BodyChoice:
     Attributes:
         criterion: What faces are chosen for, without potential terms.
         blank: On which they stand.
-        poses: Table poses at which faces are looked at, (K, R), rad.
         tried: Number of random faces beside each choice of balls.
         rng: Draws them.
         room: Some faces and balls that stand side by side.
@@ -71,7 +72,6 @@ class BodyChoice:
 
     criterion: Criterion
     blank: Blank
-    poses: Array
     tried: int
     rng: np.random.Generator
     room: Room
@@ -136,15 +136,24 @@ class BodyChoice:
             faces = sorted((there.faces[k] for k in chosen), key=_azimuth_of_face)
             made = self._put_together(name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
-            if not broken:
+            blamed = [c.features for c in broken] or self._untouched(made, there.poses)
+            if not blamed:
                 return made
-            refused, binding = f"; {broken[0]}", [c.name for c in broken]
+            what = broken[0] if broken else f"no touch can be made on {blamed[0][0]}"
+            refused, binding = f"; {what}", [c.name for c in broken]
             in_order = [int(face.name) for face in faces]
-            for constraint in broken:
-                _blame(there.fits, constraint.features, [p.name for p in made.patches], in_order)
+            for features in blamed:
+                _blame(there.fits, features, [p.name for p in made.patches], in_order)
         raise NotBuildable(
             f"no choice of {count} patches meets every limit{refused}", binding=binding
         )
+
+    def _untouched(self, made: Standard, poses: Array) -> list[tuple[str, ...]]:
+        """Faces on which the probe finds no way to any of a few touches."""
+        reach, tried = self.criterion.reach, _touches_on(list(made.patches), poses)
+        tried = tried[reach.is_reachable(tried)]
+        there = set(tried[reach.is_clear(made, tried)].feature.tolist())
+        return [(patch.name,) for patch in made.patches if patch.name not in there]
 
     def _screwed(
         self, balls: list[DatumSphere]
@@ -173,7 +182,9 @@ class BodyChoice:
                 len(balls) <= FEWEST_BALLS
                 or len(most_side_by_side(fits, count, starts=_STARTS)) == count
             ):
-                return _Beside(faces, fits, self._in_the_way(faces, touches).mean(axis=1)), balls
+                hides = self._in_the_way(faces, touches).mean(axis=1)
+                poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
+                return _Beside(faces, fits, hides, poses), balls
             balls = balls[:-1]  # the last one chosen tells least
 
     def _chosen(self, there: "_Beside", count: int, take: int) -> list[int]:
@@ -184,7 +195,8 @@ class BodyChoice:
             fits = there.fits[np.ix_(free, free)]
             found = most_side_by_side(fits, count, starts=_STARTS)
             if len(found) == count:
-                found = self._worth_most([there.faces[k] for k in free], fits, count, take)
+                some = [there.faces[k] for k in free]
+                found = self._worth_most(some, fits, there.poses, count, take)
             if len(found) > len(longest):
                 longest = [int(free[i]) for i in found]
             if len(longest) == count:
@@ -236,10 +248,10 @@ class BodyChoice:
         return np.array([n.reshape(-1, len(ball)).any(axis=0) for n in near])
 
     def _worth_most(
-        self, faces: list[FreeformPatch], fits: Which, count: int, take: int
+        self, faces: list[FreeformPatch], fits: Which, poses: Array, count: int, take: int
     ) -> list[int]:
         """The faces worth most; if their neighbours run out, begun from some that all fit."""
-        wanted = _touches_on(faces, self.poses)
+        wanted = _touches_on(faces, poses)
         wanted = wanted[self.criterion.reach.is_reachable(wanted)]
         if not len(wanted):
             return []
@@ -302,7 +314,7 @@ def body_choice(
             f"no face at any of {len(all_faces)} places can be touched at a table pose with every "
             "axis within its travel"
         )
-    return BodyChoice(criterion=criterion, blank=blank, poses=few, tried=tried, rng=rng, room=room)
+    return BodyChoice(criterion=criterion, blank=blank, tried=tried, rng=rng, room=room)
 
 
 def _touches_on(faces: list[FreeformPatch], poses: Array) -> Requests:

@@ -5,16 +5,21 @@ bodies answer for distances, and plate and pillars are cubes of finite elements.
 """
 
 from cad_out.making.cutting import Cutting
+from cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
 from cad_out.making.making_file import FIRST_MODE, SAG, Making, making_of, write_making
-from cad_out.making.stiffness import Stiffness, stiffness_of
+from cad_out.making.stiffness import Stiffness, stiffness_of, with_sag
 
 __all__ = [
     "FIRST_MODE",
+    "ROUGHNESS",
     "SAG",
     "Cutting",
+    "FaceHint",
     "Making",
     "Stiffness",
+    "hints_of",
     "making_of",
     "stiffness_of",
+    "with_sag",
     "write_making",
 ]

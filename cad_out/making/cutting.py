@@ -16,11 +16,13 @@ RADIUS, OVERHANG = 3.0, 60.0
 CUTTERS = (20.0, 16.0, 12.0, 10.0, 8.0, 6.0)
 """Diameters of ball-end mills, mm."""
 
+TILTS = (15.0 * DEG, 30.0 * DEG, 45.0 * DEG)
+"""Of the cutter's axis."""
+
 _HOLDER = ((60.0, 13.5), (130.0, 25.0))  # mm from the ball's centre, radius: a shrink-fit holder
 _LONG = 220.0  # mm from the ball's centre to what is beside the spindle
 _SHARE = 0.8  # of the least concave radius that a cutter may have
 _SLACK = 0.1  # mm by which a shank that runs along a wall may seem to be in it
-_TILTS = (15.0 * DEG, 30.0 * DEG, 45.0 * DEG)
 _AZIMUTHS = 8
 
 
@@ -52,15 +54,15 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
     """
     name, points, normals = _surface(standard, details)
     centre = points + (RADIUS + 0.01) * normals
-    reached = _is_free(standard, centre, np.array([0.0, 0.0, 1.0]))
+    reached = is_free(standard, centre, np.array([0.0, 0.0, 1.0]))
     upright = float(reached.mean())
-    for tilt, turn in product(_TILTS, np.arange(_AZIMUTHS) * 2.0 * np.pi / _AZIMUTHS):
+    for tilt, turn in product(TILTS, np.arange(_AZIMUTHS) * 2.0 * np.pi / _AZIMUTHS):
         left = np.flatnonzero(~reached)
         if not len(left):
             break
         across = np.sin(tilt)
         axis = np.array([across * np.cos(turn), across * np.sin(turn), np.cos(tilt)])
-        reached[left] = _is_free(standard, centre[left], axis)
+        reached[left] = is_free(standard, centre[left], axis)
     radius = {patch.name: untrimmed_radius(patch) for patch in standard.patches}
     kinds = [n.split()[-1] if " " in n else n[:2] for n in name]
     return Cutting(
@@ -133,7 +135,7 @@ def _walls(patch: FreeformPatch, top: float) -> list[tuple[str, Array, Array]]:
     return out
 
 
-def _is_free(standard: Standard, centre: Array, axis: Array) -> np.ndarray:
+def is_free(standard: Standard, centre: Array, axis: Array) -> np.ndarray:
     """Whether shank, holder and nose of a tool keep out of all bodies, (N,)."""
     side = np.cross(axis, [0.0, 1.0, 0.0] if abs(axis[1]) < 0.9 else [1.0, 0.0, 0.0])
     side /= np.linalg.norm(side)

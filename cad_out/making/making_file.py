@@ -8,9 +8,10 @@ from typing import Any
 from artefact.body import Standard
 from cad_out.details import details_of
 from cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
-from cad_out.making.stiffness import Stiffness, stiffness_of
+from cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
+from cad_out.making.stiffness import Stiffness
 from twin.files import write_whole
-from twin.units import UM
+from twin.units import DEG, UM
 
 FIRST_MODE, SAG = 500.0, 0.1 * UM
 """Least first mode, Hz; most sag that needs no correction, mm."""
@@ -23,16 +24,17 @@ class Making:
     Attributes:
         cutting: Reach of cutters.
         stiffness: First mode and sag.
+        hints: How every face is milled.
     """
 
     cutting: Cutting
     stiffness: Stiffness
+    hints: dict[str, FaceHint]
 
 
-def making_of(standard: Standard) -> Making:
-    """Cutters and stiffness of a standard."""
-    details = details_of(standard)
-    return Making(cutting_of(standard, details), stiffness_of(standard, details))
+def making_of(standard: Standard, stiffness: Stiffness) -> Making:
+    """Cutters of a standard whose stiffness is known."""
+    return Making(cutting_of(standard, details_of(standard)), stiffness, hints_of(standard))
 
 
 def write_making(path: Path, making: Making) -> None:
@@ -50,6 +52,7 @@ def write_making(path: Path, making: Making) -> None:
             face: {
                 "least_concave_radius_mm": radius if radius < 1e6 else None,
                 "ball_end_mill_mm": cutting.cutter[face],
+                **_hint_table(making.hints[face]),
             }
             for face, radius in cutting.radius.items()
         },
@@ -61,3 +64,20 @@ def write_making(path: Path, making: Making) -> None:
         "sag_worst": {"feature": name, "um": sag / UM},
     }
     write_whole(path, json.dumps(table, indent=1, allow_nan=False) + "\n")
+
+
+def _hint_table(hint: FaceHint) -> dict[str, Any]:
+    """Of one face, for the finishing cutter; angles in degrees, null where no axis will do."""
+    return {
+        "least_convex_radius_mm": hint.convex if hint.convex < 1e6 else None,
+        "slope_deg": [angle / DEG for angle in hint.slope],
+        "step_over_mm": {
+            f"Ra {ra / UM:g} um": width for ra, width in zip(ROUGHNESS, hint.step_over, strict=True)
+        },
+        "tilts_deg": [tilt / DEG for tilt in hint.tilts],
+        "best_tilt_deg": None if hint.axis is None else hint.axis[0] / DEG,
+        "best_azimuth_deg": None if hint.axis is None else hint.axis[1] / DEG,
+        "contact_angle_deg": None
+        if hint.contact is None
+        else [angle / DEG for angle in hint.contact],
+    }

@@ -122,6 +122,30 @@ class MachineErrors:
             tool_root=np.vstack([self.tool_root, np.zeros((count, self.tool_root.shape[1]))]),
         )
 
+    def widened(self, number: int, effect: Effect, theta: Array, root: Array) -> "MachineErrors":
+        """The same where one effect has further parameters behind those it has.
+
+        Args:
+            number: Of the effect.
+            effect: With them.
+            theta: Their values, (p,).
+            root: Of their covariance, (p, K'), independent of all others.
+        """
+        end = sum(len(t) for t in self.theta[: number + 1])
+        before, behind = self.root[:end], self.root[end:]
+        wide = np.vstack([block_diag(before, root), np.pad(behind, ((0, 0), (0, root.shape[1])))])
+        return replace(
+            self,
+            effects=(*self.effects[:number], effect, *self.effects[number + 1 :]),
+            theta=(
+                *self.theta[:number],
+                np.append(self.theta[number], theta),
+                *self.theta[number + 1 :],
+            ),
+            root=wide,
+            tool_root=np.insert(self.tool_root, [end] * len(theta), 0.0, axis=0),
+        )
+
     def touches(
         self,
         q: Array,

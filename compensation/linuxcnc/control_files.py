@@ -42,9 +42,12 @@ class Control:
         )
         try:
             self._ini.read_string(self._text)
-        except configparser.Error as error:
-            found = " ".join(str(error).split())
-            raise BadFile(path, "file", found, "an INI file of LinuxCNC") from None
+        except configparser.MissingSectionHeaderError as error:
+            expected = "a section such as [EMC]: an INI file of LinuxCNC"
+            raise BadFile(path, f"line {error.lineno}", repr(error.line), expected) from None
+        except configparser.ParsingError as error:
+            number, line = error.errors[0]
+            raise BadFile(path, f"line {number}", line, "an INI file of LinuxCNC") from None
         self.letters = self._value("TRAJ", "COORDINATES").replace(" ", "").upper()
 
     def _value(self, section: str, key: str) -> str:

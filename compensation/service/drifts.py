@@ -28,12 +28,9 @@ class Drifts:
         """
         self._errors = errors
         self._at_datum = errors.touches(datum.q[None, :], datum.length)
-        self._laws = [
-            LiveDrift(effect, self._at_datum)
-            for effect in errors.effects
-            if isinstance(effect, DriftLaw)
-        ]
-        is_law = [isinstance(effect, DriftLaw) for effect in errors.effects]
+        laws = [e for e in errors.effects if isinstance(e, DriftLaw) and e.has_unknowns]
+        self._laws = [LiveDrift(law, self._at_datum) for law in laws]
+        is_law = [effect in laws for effect in errors.effects]
         counts = [len(theta) for theta in errors.theta]
         self.others = np.flatnonzero(~np.repeat(np.array(is_law, dtype=bool), counts))
 

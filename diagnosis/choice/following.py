@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import ttest_1samp
 
 from diagnosis.choice.prediction import SETS, Choice, ChoiceRule
 from diagnosis.choice.remembering import loudest
@@ -121,6 +120,8 @@ def _chance(choice: Choice) -> float:
     Student's test of the logarithms of the errors, block by block: of few blocks it can never be
     small, and that is honest.
     """
+    from scipy.stats import ttest_1samp  # half a second, a third of what all commands begin with
+
     nothing: ChoiceRule = choice.rules[0]
     gain = np.log(nothing.errors / choice.best.errors)
     return float(ttest_1samp(gain, 0.0, alternative="greater").pvalue)

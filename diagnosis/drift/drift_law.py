@@ -7,7 +7,7 @@ where drives leave what was trained, and probing a standard improves it.
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from weakref import WeakKeyDictionary
 
@@ -94,6 +94,8 @@ class DriftLaw:
         path: Of the law, as it was written.
         saved: The law.
         bound: What its columns move.
+        has_unknowns: Whether what is not known of the law are parameters too. A model that is
+            estimated from touches has only the law, 1 if it is right.
 
     Reference:
         D-MT paper, eq. (4), and 2.3; uncertainty as of `matstd thermal`.
@@ -102,6 +104,7 @@ class DriftLaw:
     path: str
     saved: SavedLaw
     bound: tuple[Bound, ...]
+    has_unknowns: bool = False
     _known: WeakKeyDictionary[Touches, Replay] = field(default_factory=WeakKeyDictionary)
 
     kind = "drift-law"
@@ -136,14 +139,19 @@ class DriftLaw:
 
     @property
     def parameters(self) -> Sequence[Parameter]:
-        """The law itself, which is one, and for every column what is not known of it."""
+        """The law itself, which is one, and where wanted what is not known of every column."""
         out = [Parameter("law", "1", 1.0)]
-        for k in self.columns:
+        for k in self.columns if self.has_unknowns else ():
             name = self.saved.components[k]
             count = self._root.shape[1]
             out += [Parameter(f"{name} coefficient {j + 1}", "1", 1.0) for j in range(count)]
             out += [Parameter(f"{name} {what}", "1", 1.0) for what in ("at first", "later")]
         return out
+
+    @cached_property
+    def whole(self) -> "DriftLaw":
+        """The same with its unknowns."""
+        return replace(self, has_unknowns=True)
 
     @property
     def known(self) -> tuple[Array, Array]:
@@ -169,6 +177,8 @@ class DriftLaw:
             where, share = touches.chain.twist_of(bound.symbol), bound.share(touches)
             k = self.saved.components.index(bound.column)
             out.append(Term(0, where, share * replay.predicted[:, k]))
+            if not self.has_unknowns:
+                continue
             first = 1 + unknown.shape[1] * self.columns.index(k)
             size = share * self.spread[k]
             out += [Term(first + j, where, size * row) for j, row in enumerate(unknown.T)]

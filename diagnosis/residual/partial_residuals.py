@@ -15,7 +15,7 @@ import numpy as np
 
 from diagnosis.fit import Fit
 from diagnosis.residual.patterns import variables
-from twin.effects import normal_in_tool
+from twin.effects import PositionTable, normal_in_tool
 from twin.frames import Array
 from twin.model import Effect, Where, columns, inner_values
 from twin.record import IntArray, Touches
@@ -70,6 +70,7 @@ class Partial:
         weight: Of every touch, one over its variance, (M,).
         shown: Numbers of the touches that see the effect well enough to be drawn as points.
         rows: Of the run, (M,): those in the fit, then those held out.
+        way: Sign of the last motion where the effect is another for either, (M,), else 0.
     """
 
     driver: Driver
@@ -80,6 +81,7 @@ class Partial:
     weight: Array
     shown: IntArray
     rows: IntArray
+    way: IntArray
 
 
 def partial(fit: Fit, effect: Effect) -> Partial:
@@ -112,7 +114,15 @@ def partial(fit: Fit, effect: Effect) -> Partial:
         weight=weight,
         shown=shown,
         rows=rows,
+        way=_ways(effect, touches)[rows],
     )
+
+
+def _ways(effect: Effect, touches: Touches) -> IntArray:
+    """Sign of the last motion of the axis of an effect with a course for either direction, (N,)."""
+    if not (isinstance(effect, PositionTable) and effect.by_direction):
+        return np.zeros(len(touches), dtype=np.int64)
+    return np.sign(touches.last_move(effect.symbol.link)).astype(np.int64)
 
 
 def _split(effect: Effect, touches: Touches, theta: Array) -> tuple[Drawn, Array, Array]:

@@ -15,7 +15,8 @@ from artefact.brief import Project
 from artefact.certify import dmis_program, like_task
 from artefact.compare import identifiability_report
 from artefact.place import Placement, design_standard
-from cad_out.making import making_of, write_making
+from cad_out.details import details_of
+from cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from cad_out.verify import Conformity, export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
 from diagnosis.files import write_uncertainty
@@ -73,6 +74,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     shutil.copyfile(project.machine_path, folder / "machine.toml")
     workspace = Workspace(project.chain, project.workspace, project.probe_length)
     placement = _placement(project, workspace, rng.placement, progress, poses)
+    placement, stiffness = _with_sag(placement, project.standard.down)
     plans = _plans(project, placement)
     write_standard(folder / "standard.toml", placement.standard)
     write_whole(folder / "cmm.dmi", dmis_program(placement.standard), newline="\r\n")
@@ -85,7 +87,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
             project, workspace, project.poses, folder / "sensitivity", rng, progress, workers
         )
         progress("STEP and STL", 0, 1)
-        making = making_of(placement.standard)
+        making = making_of(placement.standard, stiffness)
         write_making(folder / "making.json", making)
         conformity = cad.result()
     _draw(project, placement.standard, conformity, folder)
@@ -159,6 +161,13 @@ def _placement(
     proving = placement.criterion.reach.touches(placement.touches)
     like_task(project.task, placement.standard, proving)
     return placement
+
+
+def _with_sag(placement: Placement, down: str) -> tuple[Placement, Stiffness]:
+    """The standard with what its weight does to it, which evaluations take off."""
+    standard = placement.standard
+    stiffness = stiffness_of(standard, details_of(standard))
+    return replace(placement, standard=with_sag(standard, stiffness, down)), stiffness
 
 
 def _plans(project: Project, placement: Placement) -> list[tuple[int, TouchPlan]]:

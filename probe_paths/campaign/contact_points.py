@@ -39,11 +39,20 @@ _STILL = 1e-5
 """Deviations that change less than this in a round are settled, mm."""
 
 
-def foot_points(standard: Standard, feature: Labels, ball: Array) -> tuple[Array, Array]:
+def foot_points(
+    standard: Standard, feature: Labels, ball: Array, moved: Array | float = 0.0
+) -> tuple[Array, Array]:
     """Foot points (N, 3) of balls (N, 3) on their features, and outward normals, artefact frame.
 
     nan where a ball is so far off that its surface has no foot point for it.
+
+    Args:
+        standard: As calibrated.
+        feature: Names, (N,).
+        ball: Centres, (N, 3), mm.
+        moved: Displacements of the features from their calibrated places, (N, 3), mm.
     """
+    ball = ball - moved
     point, normal = np.full(ball.shape, np.nan), np.full(ball.shape, np.nan)
     for name in dict.fromkeys(feature.tolist()):
         rows = np.flatnonzero(feature == name)
@@ -52,7 +61,7 @@ def foot_points(standard: Standard, feature: Labels, ball: Array) -> tuple[Array
         there = np.all(np.isfinite(uv), axis=1)
         point[rows[there]] = surface.point(uv[there])
         normal[rows[there]] = surface.normal(uv[there])
-    return point, normal
+    return point + moved, normal
 
 
 def at_true_contacts(run: Run, standard: Standard) -> Run:
@@ -69,11 +78,12 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
     Returns:
         The run anew, with the old foot point where a moved ball has none.
     """
-    weight = np.ones(len(run))
+    weight, t = np.ones(len(run)), run.touches
+    moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)
     for _ in range(_ROUNDS):
         t, before = run.touches, run.deviation
-        moved, residual, weight = _displacement(run, weight)
-        point, normal = foot_points(standard, t.feature, t.ball_artefact + moved)
+        beside, residual, weight = _displacement(run, weight)
+        point, normal = foot_points(standard, t.feature, t.ball_artefact + beside, moved)
         found = np.all(np.isfinite(point), axis=1, keepdims=True)
         t = replace(
             t, point=np.where(found, point, t.point), normal=np.where(found, normal, t.normal)

@@ -70,11 +70,13 @@ class ContactSolver:
         self.direction = np.array([t.direction for t in touches]).reshape(self.start.shape)
         self.distance = np.array([t.distance for t in touches])
         believed = program.heading.setup.T_table_artefact
-        self.T_artefact_table = inverse(believed @ machine.setup_error)
+        stands = believed @ machine.setup_error
+        self.T_artefact_table = inverse(stands)
         # a ball on the table stands where it does, wherever the standard does
-        self.standard = program.heading.touched(standard, believed @ machine.setup_error)
+        self.standard = program.heading.touched(standard, stands)
         self.disturbance = machine.disturbance
         self._nominal_contact()
+        self.moved = self.standard.moved(machine.chain, self.start, stands, self.feature)
 
     def _nominal_contact(self) -> None:
         """First contact of every ball with the standard where it stands, on a perfect machine."""
@@ -148,7 +150,7 @@ class ContactSolver:
         self.travel[rows] = np.where(np.isfinite(hit.travel), hit.travel, self.travel[rows])
 
     def _true_balls(self, rows: IntArray, time: Array) -> tuple[Array, Array]:
-        """True ball centres (M, 3) in the artefact frame and radii (M,) at the trigger."""
+        """True ball centres (M, 3) seen from the features as they sag, and radii (M,)."""
         chain = self.machine.chain
         touches = self.touches(time, rows)
         added = Contribution.zeros(len(rows), len(chain.links))
@@ -157,7 +159,7 @@ class ContactSolver:
         length = self.length + self.machine.length_error
         actual = exact_tip(chain, touches.q, length, added) - added.shift
         radius = self.radius + self.machine.radius_error + added.bias + self.noise[rows]
-        return apply(self.T_artefact_table, actual), radius
+        return apply(self.T_artefact_table, actual) - self.moved[rows], radius
 
     def touches(self, time: Array, rows: IntArray | None = None) -> Touches:
         """The record that effects look at, of all touches or some.

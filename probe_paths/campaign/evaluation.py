@@ -73,18 +73,24 @@ def evaluate(
         good, far = _near(parts, gap, ABSURD)
         if not far:
             break
-    u_touch = _uncertainty(standard, touches.feature, u)
+    u_touch = _uncertainty(standard, touches, u)
+    if standard.sag is not None:
+        down, source = standard.sag.down, standard.sag.source
+        remarks.append(f"sag of the standard taken off: {source}, weight along {down}")
     remarks += sensed(parts)[1]
     run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
 
 
-def _uncertainty(standard: Standard, feature: Labels, u: float) -> Array:
-    """Of every touch, with what calibration leaves open of the surface at a point, (N,), mm."""
+def _uncertainty(standard: Standard, t: Touches, u: float) -> Array:
+    """Of every touch, with what calibration and sag leave open at a point, (N,), mm."""
     known = {} if standard.known is None else standard.known.features
-    form = np.array([known[name].u_form if name in known else 0.0 for name in feature.tolist()])
-    return np.asarray(np.hypot(u, form))
+    form = np.array([known[name].u_form if name in known else 0.0 for name in t.feature.tolist()])
+    moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)
+    share = 0.0 if standard.sag is None else standard.sag.share
+    sag = share * np.einsum("ni,ni->n", t.normal, moved)
+    return np.asarray(np.sqrt(u**2 + form**2 + sag**2))
 
 
 def _placed(
@@ -103,10 +109,14 @@ def _placed(
     feature = np.concatenate([names[part.feature - 1] for part in parts])
     setups, setup = _setups(parts)
     ball_table = tip(chain, q, length)
+    stands = np.stack([s.T_table_artefact for s in setups])[setup]
+    moved = standard.moved(chain, q, stands, feature)
     for i, believed in enumerate(setups if is_fitted else ()):
         rows = np.flatnonzero(setup == i)
-        setups[i] = _fitted(believed, standard, feature[rows], ball_table[rows], radius[rows])
-    point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius)
+        setups[i] = _fitted(
+            believed, standard, feature[rows], ball_table[rows], radius[rows], moved[rows]
+        )
+    point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius, moved)
     made = _touches(parts, chain, q, setups, setup, feature, point, normal)
     return replace(made, length=length, radius=radius), gap
 
@@ -118,11 +128,12 @@ def _gaps(
     feature: Labels,
     ball_table: Array,
     radius: Array,
+    moved: Array,
 ) -> tuple[Array, Array, Array]:
     """Foot points and normals in the artefact frame, and gaps between balls and surfaces, mm."""
     T_artefact_table = inverse(np.stack([s.T_table_artefact for s in setups])[setup])
     ball = apply(T_artefact_table, ball_table)
-    point, normal = foot_points(standard, feature, ball)
+    point, normal = foot_points(standard, feature, ball, moved)
     return point, normal, np.einsum("ni,ni->n", normal, ball - point) - radius
 
 
@@ -187,7 +198,12 @@ def _setups(parts: Sequence[LogPart]) -> tuple[list[Setup], IntArray]:
 
 
 def _fitted(
-    setup: Setup, standard: Standard, feature: Labels, ball_table: Array, radius: Array
+    setup: Setup,
+    standard: Standard,
+    feature: Labels,
+    ball_table: Array,
+    radius: Array,
+    moved: Array,
 ) -> Setup:
     """The set-up that makes the deviations smallest.
 
@@ -197,7 +213,7 @@ def _fitted(
     T_table_artefact = setup.T_table_artefact
     for _ in range(_ROUNDS):
         ball = apply(inverse(T_table_artefact), ball_table)
-        point, normal = foot_points(standard, feature, ball)
+        point, normal = foot_points(standard, feature, ball, moved)
         if not np.all(np.isfinite(point)):
             break
         deviation = np.einsum("ni,ni->n", normal, ball - point) - radius

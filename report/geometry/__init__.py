@@ -12,6 +12,7 @@ from report.geometry.geometry_words import (
     correction_line,
     estimate_words,
     geometry_lines,
+    geometry_section,
     quantity_name,
     shown_unit,
 )
@@ -26,6 +27,7 @@ __all__ = [
     "estimate_words",
     "fault_sentences",
     "geometry_lines",
+    "geometry_section",
     "quantity_name",
     "shown_unit",
 ]

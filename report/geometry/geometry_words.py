@@ -1,6 +1,7 @@
 """The machine's geometry in words: what was learnt, what it does, what changed."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from diagnosis.geometry import (
     CLEAR,
@@ -213,3 +214,15 @@ def correction_line(correction: Correction) -> str:
     if len(correction.found) == 1:
         return f"{correction.key} = {numbers}  # was {was}, ± {u} {unit}"
     return f"[{table}] {key} = [{numbers}]  # was [{was}], ± [{u}] {unit}"
+
+
+def geometry_section(geometry: LearntGeometry) -> dict[str, Any]:
+    """What the template of a page's section on geometry needs."""
+    lines = geometry_lines(geometry)
+    return {
+        "lines": [line for line in lines if line.value != "not determined"],
+        "open": [line for line in lines if line.value == "not determined"],
+        "ladder": [(s.rung.value, s.rms / UM, s.test_rms / UM) for s in geometry.ladder],
+        "corrections": [correction_line(c) for c in geometry.corrections],
+        "has_before": any(row.before is not None for row in geometry.rows),
+    }

@@ -13,6 +13,7 @@ from report.pages.pdf import Printer, printer, write_pdf
 from report.pages.residual_section import Picture
 from report.pages.setup_page import write_setup_page
 from report.pages.study_page import write_study_page
+from report.pages.uncertainty_page import write_uncertainty_page
 
 __all__ = [
     "Design",
@@ -27,4 +28,5 @@ __all__ = [
     "write_pdf",
     "write_setup_page",
     "write_study_page",
+    "write_uncertainty_page",
 ]

@@ -7,8 +7,7 @@ import numpy as np
 
 from diagnosis.answer import Comparison
 from diagnosis.fit import Reported
-from report.geometry import fault_sentences
-from report.pages.geometry_section import geometry_section
+from report.geometry import fault_sentences, geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
     Picture,

@@ -10,7 +10,7 @@ from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
 from artefact.compare import Rival
 from artefact.reach import standing_remarks
 from artefact.worth import Criterion, touch_curve
-from cad_out.making import FIRST_MODE, SAG, Making
+from cad_out.making import FIRST_MODE, ROUGHNESS, SAG, FaceHint, Making
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
 from report.pages.page import digits, write_page
@@ -184,6 +184,7 @@ def _making(made: Making) -> list[tuple[str, str]]:
     mode = "" if stiff.first_mode >= FIRST_MODE else f"; at least {FIRST_MODE:.0f} Hz are wanted"
     often = sorted(f for f, value in stiff.sag.items() if value > SAG)
     told = f"; beyond {SAG / UM:g} µm: {', '.join(often)}" if often else ""
+    told += "; taken off by evaluations ([sag] of standard.toml)"
     cutters = ", ".join(f"{face} Ø{d:g}" for face, d in cutting.cutter.items())
     beyond = f", not at all: {', '.join(cutting.out_of_reach)}" if cutting.out_of_reach else ""
     return [
@@ -195,7 +196,27 @@ def _making(made: Making) -> list[tuple[str, str]]:
         ("largest ball-end mill of a face, mm", cutters),
         ("first mode on rigid screws", f"{stiff.first_mode:.0f} Hz{mode}"),
         ("sag from upright to lying on its side", f"{name} {sag / UM:.2f} µm at most{told}"),
+        *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
     ]
+
+
+def _milling(hint: FaceHint) -> str:
+    """Slopes, step-over and tilt of one face in words."""
+    low, high = (angle / DEG for angle in hint.slope)
+    widths = ", ".join(
+        f"{width:.2f} mm for Ra {ra / UM:g} µm"
+        for ra, width in zip(ROUGHNESS, hint.step_over, strict=True)
+    )
+    words = f"slopes {low:.0f} to {high:.0f}°; step-over {widths}; "
+    if hint.axis is None or hint.contact is None:
+        return words + "no single tilt of the axis up to 45° reaches all of it"
+    tilt, azimuth = (angle / DEG for angle in hint.axis)
+    tilts = ", ".join(f"{angle / DEG:.0f}" for angle in hint.tilts)
+    least, most = (angle / DEG for angle in hint.contact)
+    return words + (
+        f"reached at tilts of {tilts}°; farthest from the tip at {tilt:.0f}° towards "
+        f"{azimuth:.0f}° (contact at {least:.0f} to {most:.0f}°)"
+    )
 
 
 def _rival(rival: Rival, design: Design, on_machine: dict[str, float]) -> dict[str, Any]:

@@ -10,9 +10,8 @@ import numpy as np
 from diagnosis.answer import Detectable, Diagnosis, Plan, Step, Verdict
 from diagnosis.fit import file_unit
 from report.effects import class_words, effect_cell, plan_words
-from report.geometry import fault_sentences
+from report.geometry import fault_sentences, geometry_section
 from report.numbers import digits, unit_words
-from report.pages.geometry_section import geometry_section
 from report.pages.page import write_page
 from report.pages.residual_section import (
     Picture,

@@ -301,6 +301,13 @@ def _limits(found: Partial) -> tuple[float, float]:
 
 def _course(ax: Any, found: Partial, effect: Effect, colour: str) -> None:
     """What the effect explains, as a line where it is a function, else as marks."""
+    if found.way.any():
+        for way, style, word in ((1, "-", "forward"), (-1, "--", "backward")):
+            rows = np.flatnonzero(found.way == way)
+            rows = rows[np.argsort(found.x[rows], kind="stable")]
+            label = f"{effect_title(effect)}, {word}"
+            ax.plot(found.x[rows], found.explained[rows], style, color=colour, lw=1.6, label=label)
+        return
     order = np.argsort(found.x, kind="stable")
     x, y = found.x[order], found.explained[order]
     if not found.driver.column:
@@ -327,7 +334,8 @@ def _touches(ax: Any, found: Partial, y: Array, tested: BoolArray) -> None:
         if len(rows):
             part = rows[kept(len(rows))]
             ax.plot(found.x[part], y[part], ".", ms=2.4, color=colour, alpha=0.7, label=word)
-    for which, colour in ((~tested, INK), (tested, RED)):
+    ways = [found.way == way for way in np.unique(found.way)]
+    for which, colour in [(p & w, c) for p, c in ((~tested, INK), (tested, RED)) for w in ways]:
         if which.sum() > 1:
             most = 24 if _roughness(found) < SLOW else 72
             x, mean, error = binned(found.x[which], y[which], found.weight[which], most)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import combinations, product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from artefact.body.datum import outline_distance
 from artefact.body.freeform import graph_patch
 from artefact.body.limits import Limits, max_slope, min_concave_radius
+from artefact.compare.comparison import _scatter
 from artefact.layout.post import post_foot, post_stiffness
 from artefact.layout.shapes import smooth_heights
 from artefact.layout.side_by_side import most_side_by_side
@@ -25,7 +27,7 @@ from artefact.layout.upright import (
 from artefact.reach.probe_clearance import ProbeShape
 from artefact.reach.touchable import ProbeReach, Requests, joined
 from artefact.worth.attribution import error_shares
-from twin.errors import NotBuildable
+from twin.errors import NotBuildable, NotReachable
 from twin.frames import fixed_xyz, pose
 from twin.machine.chain import Axis, make_chain
 from twin.machine.kinematics import inverse_linear
@@ -276,3 +278,24 @@ def test_spread_against_all_choices():
     for k, places in enumerate(many):
         for place in places[::9]:
             assert gap([*found[:k], place, *found[k + 1 :]]) <= gap(found) + NM
+
+
+def test_a_pose_from_which_a_head_reaches_nothing_takes_no_part_in_the_scatter():
+    """Fork head over a standard on a low table: tilted by 100 degrees the ball stays above it."""
+    fork = make_chain(
+        "fork",
+        "[w f X Y Z C A t]",
+        {n: Axis((-400.0, 400.0)) for n in "XY"}
+        | {"Z": Axis((-700.0, 0.0)), "C": Axis((-3.5, 3.5)), "A": Axis((-2.0, 2.0))},
+        (0.0, 0.0, -900.0),
+    )
+    reach = ProbeReach(fork, Setup("a"), PROBE, 160.0)
+    rotary = np.array([[-3.5, 3.5], [-2.0, 2.0]])
+    volume = np.array([[-80.0, -80.0, 30.0], [80.0, 80.0, 120.0]])
+    criterion = SimpleNamespace(reach=reach, volume=volume, rotary=rotary)
+    poses = np.array([[0.0, 0.0], [0.0, 100.0 * DEG]])
+    found = _scatter(criterion, poses, np.random.default_rng(1))
+    np.testing.assert_array_equal(np.unique(found.rotary, axis=0), poses[:1])
+    criterion.rotary = np.stack([poses[1], poses[1]], axis=-1)
+    with pytest.raises(NotReachable, match="none of"):
+        _scatter(criterion, poses[1:], np.random.default_rng(1))

@@ -12,9 +12,11 @@ from artefact.layout.post import post_stiffness
 from cad_out.details.detail_list import details_of
 from cad_out.making.cutting import cutting_of, untrimmed_radius
 from cad_out.making.hexahedron import CORNERS, cube
+from cad_out.making.hints import hints_of, step_over
 from cad_out.making.making_file import Making, write_making
 from cad_out.making.stiffness import GRAVITY, stiffness_of
 from twin.frames import pose
+from twin.units import DEG, UM
 
 E, NU = 200e3, 0.3
 
@@ -104,9 +106,46 @@ def test_the_largest_cutter_fits_the_least_radius_beyond_the_trim(upright):
 
 def test_the_file_has_every_figure_with_its_limit(upright, tmp_path):
     details = details_of(upright)
-    made = Making(cutting_of(upright, details), stiffness_of(upright, details, 25.0))
+    stiffness, hints = stiffness_of(upright, details, 25.0), hints_of(upright)
+    made = Making(cutting_of(upright, details), stiffness, hints)
     write_making(tmp_path / "making.json", made)
     told = json.loads((tmp_path / "making.json").read_text())
     assert told["first_mode_Hz"] == pytest.approx(made.stiffness.first_mode)
     assert told["sag_limit_um"] == 0.1
     assert set(told["sag_um"]) == {"FF1", "FF2", "SPH1", "SPH2", "SPH3"}
+    face = told["faces"]["FF1"]
+    assert face["step_over_mm"]["Ra 0.8 um"] == pytest.approx(
+        2.0 * face["step_over_mm"]["Ra 0.2 um"]
+    )
+    assert face["contact_angle_deg"][0] == pytest.approx(max(hints["FF1"].contact[0] / DEG, 0.0))
+
+
+@pytest.mark.parametrize("curvature", [0.0, 1.0 / 25.0, -1.0 / 15.0])
+def test_a_step_over_leaves_the_roughness_that_it_is_for(curvature):
+    """Against the profile of two passes itself: the ball's circles, from circle to circle."""
+    r, ra = 3.0, 0.4 * UM
+    s = step_over(ra, r, curvature)
+    x = np.linspace(-0.5 * s, 0.5 * s, 20001)
+    profile = r - np.sqrt(r**2 - x**2)
+    if curvature:  # the surface, taken off
+        R = 1.0 / curvature
+        profile += R - np.sign(R) * np.sqrt(R**2 - x**2)
+    profile -= profile.mean()
+    assert np.abs(profile).mean() == pytest.approx(ra, rel=2e-3)
+
+
+def test_a_slope_is_milled_beside_the_tip(upright):
+    """A plane at 20 degrees: upright it touches at 20, tilted away at up to 65."""
+    lean = np.tan(20.0 * DEG)
+    plane = graph_patch(
+        "FF1", pose(t=np.array([0.0, 0.0, 60.0])), (12.0, 12.0),
+        lean * np.linspace(-18.0, 18.0, 4)[:, None] + np.zeros((4, 4)), (3, 3), 52.0,
+    )  # fmt: skip
+    alone = replace(upright, patches=(plane,), spheres=())
+    hint = hints_of(alone)["FF1"]
+    assert hint.convex == np.inf
+    np.testing.assert_allclose(hint.slope, 20.0 * DEG, atol=1e-9)
+    np.testing.assert_allclose(hint.tilts, np.array([0.0, 15.0, 30.0, 45.0]) * DEG)
+    # the normal leans to -x, so the axis leans to +x
+    np.testing.assert_allclose(hint.axis, (45.0 * DEG, 0.0), atol=1e-12)
+    np.testing.assert_allclose(hint.contact, 65.0 * DEG, atol=1e-9)

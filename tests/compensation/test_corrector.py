@@ -282,7 +282,7 @@ def test_files_for_the_control(ini, known, datum):
         ("OFFSET_AV_RATIO = 0.2 # enough\n", "", "found no OFFSET_AV_RATIO"),
         ("0.2 # enough", "0", "OFFSET_AV_RATIO: found 0, expected above 0, and 0.9 at most"),
         ("0.2 # enough", "much", "OFFSET_AV_RATIO: found much, expected a number"),
-        ("[HAL]\n", "HAL\n", "expected an INI file of LinuxCNC"),
+        ("[HAL]\n", "HAL\n", "line 1: found 'HAL\\n', expected a section"),
     ],
 )
 def test_a_control_that_cannot_be_corrected(ini, known, old, new, said):

@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -88,6 +89,27 @@ def test_the_high_face_is_told(place: Path, capsys: pytest.CaptureFixture[str]) 
     said = capsys.readouterr().out
     assert "ISO 15530-3 asks for 10" in said
     assert "u_w is 0" in said
+
+
+def test_a_page_tells_the_same(place: Path) -> None:
+    page = place / "u.html"
+    assert call(place, "--page", str(page)) == 0
+    (found,) = json.loads((place / "u.json").read_text())["budgets"]
+    text = page.read_text(encoding="utf-8")
+    rows = {
+        cells[0]: cells[1:]
+        for cells in (
+            re.findall(r"<td[^>]*>(.*?)</td>", r) for r in re.findall("<tr>(.*?)</tr>", text, re.S)
+        )
+        if cells
+    }
+    for face in found["by_face"]:
+        mean, spread = (float(cell) for cell in rows[face["feature"]])
+        assert mean == pytest.approx(face["mean_um"], abs=0.005)
+        assert spread == pytest.approx(face["spread_um"], abs=0.005)
+    assert "u_w is 0" in text
+    assert "v2.csv" in text
+    assert "src=" not in text.replace('src="data:', "")
 
 
 def test_a_task_chooses_places(place: Path) -> None:

@@ -1,9 +1,13 @@
 """What a page tells of cutters and stiffness: limits that are missed are named."""
 
+import numpy as np
+
 from cad_out.making.cutting import Cutting
+from cad_out.making.hints import FaceHint
 from cad_out.making.making_file import Making
 from cad_out.making.stiffness import Stiffness
 from report.pages.design_page import _making
+from twin.units import DEG
 
 
 def made(mode, sag, out_of_reach=()):
@@ -15,13 +19,31 @@ def made(mode, sag, out_of_reach=()):
         cutter={"FF1": 16.0},
         radius={"FF1": 12.0},
     )
-    return dict(_making(Making(cutting, Stiffness(first_mode=mode, sag=sag, cube=10.0))))
+    soft = {name: np.diag([size, size, 0.0]) for name, size in sag.items()}
+    hints = {
+        "FF1": FaceHint(
+            convex=30.0,
+            slope=(5.0 * DEG, 31.0 * DEG),
+            step_over=(0.13, 0.18, 0.26),
+            tilts=(0.0, 15.0 * DEG),
+            axis=(15.0 * DEG, 90.0 * DEG) if not out_of_reach else None,
+            contact=(12.0 * DEG, 44.0 * DEG) if not out_of_reach else None,
+        )
+    }
+    return dict(_making(Making(cutting, Stiffness(mode, soft, cube=10.0), hints)))
 
 
 def test_a_stiff_standard_that_a_cutter_reaches_is_told_by_its_figures():
     rows = made(900.4, {"FF1": 4e-5, "SPH1": 9e-5})
     assert rows["first mode on rigid screws"] == "900 Hz"
-    assert rows["sag from upright to lying on its side"] == "SPH1 0.09 µm at most"
+    assert rows["sag from upright to lying on its side"] == (
+        "SPH1 0.09 µm at most; taken off by evaluations ([sag] of standard.toml)"
+    )
+    assert rows["milling FF1 with 6 mm"] == (
+        "slopes 5 to 31°; step-over 0.13 mm for Ra 0.2 µm, 0.18 mm for Ra 0.4 µm, 0.26 mm for "
+        "Ra 0.8 µm; reached at tilts of 0, 15°; farthest from the tip at 15° towards 90° (contact "
+        "at 12 to 44°)"
+    )
     assert next(iter(rows.values())).endswith("100 % tilted by 45° at most")
     assert "FF1 Ø16" in rows.values()
 
@@ -30,5 +52,8 @@ def test_what_is_beyond_a_limit_is_named():
     rows = made(400.0, {"FF1": 4e-5, "SPH2": 5e-4, "SPH1": 2e-4}, ("FF1 wall",))
     assert rows["first mode on rigid screws"] == "400 Hz; at least 500 Hz are wanted"
     sag = rows["sag from upright to lying on its side"]
-    assert sag == "SPH2 0.50 µm at most; beyond 0.1 µm: SPH1, SPH2"
+    assert sag.startswith("SPH2 0.50 µm at most; beyond 0.1 µm: SPH1, SPH2; taken off")
+    assert rows["milling FF1 with 6 mm"].endswith(
+        "no single tilt of the axis up to 45° reaches all of it"
+    )
     assert next(iter(rows.values())).endswith("not at all: FF1 wall")

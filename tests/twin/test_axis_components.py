@@ -6,11 +6,13 @@ import pytest
 from diagnosis.fit.identification import fit_run
 from diagnosis.geometry.learnt import geometry_rows
 from matstd.cli import main
+from twin.effects import backlash
 from twin.effects.position_table import propose
 from twin.files import read_run
 from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.positioning import read_positioning
 from twin.foreign.sheet import read_sheet
+from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.machine.chain import Axis, make_chain
 from twin.model.model import Model
@@ -66,6 +68,9 @@ def test_what_was_measured_is_what_the_axis_is_found_to_do(
     assert np.ptp(run.deviation - exact) < 1e-3 * np.ptp(run.deviation)
     table_of = {e.name for e in propose(run.touches)}
     assert table_of == {f"position-table({component})", f"position-table({component},directions)"}
+    (turning,) = backlash.propose(run.touches)
+    assert turning == parse_effect(f"backlash({component})", chain)
+    assert "reversal of the " in turning.title.text
 
 
 def test_a_command_makes_the_run_and_tells_the_curve(tmp_path, capsys) -> None:

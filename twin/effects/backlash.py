@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.frames import Array
-from twin.machine import Chain
+from twin.machine import LETTERS, Chain, Family, Symbol
 from twin.model import (
     Kind,
     Parameter,
@@ -15,10 +15,14 @@ from twin.model import (
     Where,
     check_count,
     checked_axis,
+    component_symbol,
     moving_axes,
 )
 from twin.record import Touches
 from twin.units import UM, URAD
+
+UNFELT = 1e-6
+"""Share of what is felt most below which a component is not felt at all."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +35,7 @@ class Backlash:
 
     Attributes:
         axis: Name of the axis.
-        component: Index of the component along or about the axis.
+        component: Index of the component that reverses: along or about the axis, as a rule.
     """
 
     axis: str
@@ -41,13 +45,22 @@ class Backlash:
 
     @property
     def name(self) -> str:
-        """`backlash(X)`."""
-        return f"backlash({self.axis})"
+        """`backlash(X)`; `backlash(EBX)` of another error than its own."""
+        return f"backlash({self.axis if self._is_own else self._symbol.name})"
 
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        return Title(f"reversal of {self.axis}", self.axis)
+        what = self.axis if self._is_own else f"the {self._symbol.title}"
+        return Title(f"reversal of {what}", self.axis)
+
+    @property
+    def _is_own(self) -> bool:
+        return LETTERS[self.component] == self.axis[0]
+
+    @property
+    def _symbol(self) -> Symbol:
+        return Symbol(self.component, self.axis, Family.COMPONENT)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -63,17 +76,37 @@ class Backlash:
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Backlash:
-    """From the axis."""
+    """From the axis, or the component error."""
     check_count(KIND.usage, arguments, 1, 1)
+    if len(arguments[0]) > 2 and arguments[0].startswith("E"):
+        symbol = component_symbol(chain, arguments[0])
+        return Backlash(symbol.link, symbol.component)
     axis = checked_axis(KIND.usage, arguments, arguments[0], chain)
     return Backlash(axis, chain.link(axis).own_component)
 
 
 def propose(touches: Touches) -> Iterable[Backlash]:
-    """Every axis that was reached from both sides."""
+    """Every axis that was reached from both sides; what of it was measured."""
     for axis in moving_axes(touches):
         if _both_sides(touches.last_move(axis)):
-            yield Backlash(axis, touches.chain.link(axis).own_component)
+            yield Backlash(axis, measured_component(touches, axis))
+
+
+def measured_component(touches: Touches, axis: str) -> int:
+    """Component of an axis that an instrument beside it sees: its own, unless that is not felt.
+
+    Of a straightness it is the one across, of an angle of a linear axis that about which it tilts.
+    """
+    chain = touches.chain
+    own = chain.link(axis).own_component
+    felt = [
+        float(np.abs(touches.signature.of(chain.twist_of(Symbol(c, axis, Family.COMPONENT)))).sum())
+        for c in range(6)
+    ]
+    if felt[own] > UNFELT * max(felt):
+        return own
+    kind = slice(3, 6) if touches.instrument.reads_angle else slice(0, 3)
+    return (kind.start or 0) + int(np.argmax(felt[kind]))
 
 
 def _both_sides(last_move: Array) -> bool:
@@ -82,10 +115,11 @@ def _both_sides(last_move: Array) -> bool:
 
 KIND = Kind(
     word="backlash",
-    arguments="axis",
+    arguments="axis or symbol",
     title="backlash / reversal",
     synonyms="reversal error, lost motion, play, hysteresis, dead band, reversal spike",
-    formula="E = (B/2) sgn(last motion), along a linear axis or about a rotary one",
+    formula="E = (B/2) sgn(last motion), along a linear axis or about a rotary one, "
+    "or of a straightness or tilt that was measured (EBX)",
     units="B: µm; µrad of a rotary axis",
     typical="0.5 to 2 µm (direct scale), 3 to 15 µm (motor encoder); rotary 5 to 100 µrad",
     source="ISO 230-2 (forward minus backward)",

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from twin.effects.backlash import measured_component
 from twin.frames import Array
 from twin.machine import Chain, Family, Symbol
 from twin.model import (
@@ -41,9 +42,6 @@ FEWEST_TARGETS = 5
 
 REVISITED = 0.5
 """Share of the rows at readings that were approached before from which they are targets."""
-
-UNFELT = 1e-6
-"""Share of what is felt most below which a component is not felt at all."""
 
 WHOLE_TURN = 2.0 * np.pi - 0.02
 """Travel of a rotary axis, rad, from which its curve closes in itself: a degree less is no gap."""
@@ -170,27 +168,10 @@ def propose(touches: Touches) -> Iterable[PositionTable]:
     beside = not touches.instrument.is_ball_on_standard
     for axis in axes:
         if len(axes) == 1 or (beside and _has_targets(touches.reading(axis))):
-            symbol = Symbol(_measured(touches, axis), axis, Family.COMPONENT)
+            symbol = Symbol(measured_component(touches, axis), axis, Family.COMPONENT)
             yield position_table(touches.chain, symbol)
             if len(np.unique(touches.last_move(axis))) > 1:
                 yield position_table(touches.chain, symbol, by_direction=True)
-
-
-def _measured(touches: Touches, axis: str) -> int:
-    """Component of an axis that an instrument beside it sees: its own, unless that is not felt.
-
-    Of a straightness it is the one across, of an angle of a linear axis that about which it tilts.
-    """
-    chain = touches.chain
-    own = chain.link(axis).own_component
-    felt = [
-        float(np.abs(touches.signature.of(chain.twist_of(Symbol(c, axis, Family.COMPONENT)))).sum())
-        for c in range(6)
-    ]
-    if felt[own] > UNFELT * max(felt):
-        return own
-    kind = slice(3, 6) if touches.instrument.reads_angle else slice(0, 3)
-    return (kind.start or 0) + int(np.argmax(felt[kind]))
 
 
 def _has_targets(q: Array) -> bool:

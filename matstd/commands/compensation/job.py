@@ -63,6 +63,7 @@ def read_job(args: argparse.Namespace) -> Job:
         errors = _errors(args, state)
         for text in args.add:
             errors = _with_added(errors, text)
+        errors = _with_unknowns(errors)
     except UnknownEffect as error:
         expected = "expected --temperature, --rpm or --value for all that the model follows"
         raise DesignError(f"{args.model}: {error}; {expected}") from error
@@ -90,10 +91,19 @@ def _with_added(errors: MachineErrors, text: str) -> MachineErrors:
     if "=" not in text:
         effect = parse_effect(text, errors.chain)
         if isinstance(effect, DriftLaw):
-            effect.replay(errors.touches(np.zeros((1, len(errors.chain.axes))), 0.0))
-            return errors.with_known([(effect, effect.known[0])], effect.known[1])
+            return errors.with_known([(effect, np.ones(1))])
     added = parse_sized_effect(text, errors.chain)
     return errors.with_known([(added.effect, added.theta)])
+
+
+def _with_unknowns(errors: MachineErrors) -> MachineErrors:
+    """Saved laws with what is not known of them; raises UnknownEffect where a drive is missing."""
+    for number, effect in enumerate(errors.effects):
+        if isinstance(effect, DriftLaw):
+            effect.replay(errors.touches(np.zeros((1, len(errors.chain.axes))), 0.0))
+            theta, root = effect.whole.known
+            errors = errors.widened(number, effect.whole, theta[1:], root[1:, 1:])
+    return errors
 
 
 def by_tool(option: str, words: Sequence[str]) -> dict[int, float]:

@@ -28,6 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--model", metavar="MODEL.toml", help="of an earlier run, with which results are corrected"
     )
+    parser.add_argument(
+        "--page", metavar="PAGE.html", help="a page of it as well, with its tables beside it"
+    )
     add_effects(parser)
     add_output(parser, "OUT.json")
 
@@ -41,10 +44,13 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say, say_each
     from matstd.inputs import is_learnt_from
     from matstd.stages.budgets import PLAIN, budgets
+    from report.pages import write_uncertainty_page
     from report.task import task_lines
     from twin.files import read_run, refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
+    if args.page:
+        refuse_to_overwrite(args.page, args.force)
     load_effects(args.effects)
     task = read_task(args.task) if args.task else Task()
     standard = read_standard(args.standard)
@@ -67,11 +73,18 @@ def run(args: argparse.Namespace) -> int:
     found, visits = budgets(runs, standard, Calibration(), task, models)
     write_uncertainty(args.output, task.name, found, task.tolerance)
     first = next(iter(found.values()))
-    say(
-        f"{args.output}: {task.name}: {first.places} places on {first.faces} faces at "
-        f"{first.poses} table poses in {first.visits} visits"
+    measured = (
+        f"{first.places} places on {first.faces} faces at {first.poses} table poses in "
+        f"{first.visits} visits"
     )
-    say_each([*task_lines(found, task.tolerance, visits), *remarks])
+    lines = task_lines(found, task.tolerance, visits)
+    if args.page:
+        names = [(path, len(one)) for path, one in zip(args.run_files, runs, strict=True)]
+        write_uncertainty_page(
+            args.page, task.name, standard.name, measured, found, lines, names, remarks
+        )
+    say(f"{args.output}: {task.name}: {measured}")
+    say_each([*lines, *remarks])
     return 0
 
 

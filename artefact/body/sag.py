@@ -1,0 +1,67 @@
+"""How features of a standard move when its weight pulls another way than it did in calibration.
+
+A standard is calibrated upright. On a table that tilts, its posts bend under their own weight and
+its plate between the screws: ``u = S (g - g0)``, S the displacement of a feature per unit of a
+direction of weight, g the direction at a table pose and g0 = -z that of the calibration, all in
+the artefact frame.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.frames import Array, inverse, turn
+from twin.machine import Chain, table_to_tool
+from twin.record import Labels
+
+DIRECTIONS = {
+    f"{sign}{axis}": (1.0 if sign == "+" else -1.0) * np.eye(3)[i]
+    for i, axis in enumerate("XYZ")
+    for sign in "+-"
+}
+"""In which weight may pull, in machine coordinates."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sag:
+    """Displacements of features under the standard's own weight.
+
+    Attributes:
+        source: What they come from.
+        down: Where weight pulls to in machine coordinates, a key of `DIRECTIONS`.
+        share: Standard uncertainty of every displacement, as a share of it.
+        per_weight: By feature, displacement along x, y, z (rows) for weight along x, y, z
+            (columns), (3, 3), mm.
+    """
+
+    source: str
+    down: str
+    share: float
+    per_weight: Mapping[str, Array]
+
+    def moved(self, chain: Chain, q: Array, T_table_artefact: Array, feature: Labels) -> Array:
+        """Displacements of features from their calibrated places, artefact frame, (N, 3), mm.
+
+        Args:
+            chain: The machine.
+            q: Readings, (N, A), mm and rad.
+            T_table_artefact: Where the standard stands, (4, 4) or (N, 4, 4).
+            feature: What moves, (N,); others than those known stand still.
+        """
+        change = weight_directions(chain, q, T_table_artefact, self.down) - [0.0, 0.0, -1.0]
+        out = np.zeros((len(q), 3))
+        for name, per_weight in self.per_weight.items():
+            rows = feature == name
+            out[rows] = change[rows] @ per_weight.T
+        return out
+
+
+def weight_directions(chain: Chain, q: Array, T_table_artefact: Array, down: str) -> Array:
+    """Unit vectors along which weight pulls on a standard, artefact frame, (N, 3)."""
+    carrying = [k.name for k in chain.links if k.carries_workpiece and k.kind != "fixed"]
+    still = q.copy()
+    still[:, [chain.axis_index(name) for name in carrying]] = 0.0
+    T_machine_table = table_to_tool(chain, still) @ inverse(table_to_tool(chain, q))
+    T_machine_artefact = T_machine_table @ T_table_artefact
+    return turn(inverse(T_machine_artefact), np.tile(DIRECTIONS[down], (len(q), 1)))
