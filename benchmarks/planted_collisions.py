@@ -84,10 +84,23 @@ def solid_points(solid: Solid, pitch: float = PITCH) -> Array:
 
 def standard_points(standard: Standard, T: Array, pitch: float = PITCH) -> dict[str, Array]:
     """Points of every body of the standard by name, table frame."""
-    a, b = standard.base.half_size
-    box = trimesh.creation.box((2 * a, 2 * b, standard.base.thickness))
-    base = points_of(box, pitch) + np.array([0.0, 0.0, 0.5 * standard.base.thickness])
+    base = base_points(standard, pitch)
     return {"BASE": base @ T[:3, :3].T + T[:3, 3]} | features_points(standard, T, pitch)
+
+
+def base_points(standard: Standard, pitch: float) -> Array:
+    """Points of the base, a box with rounded upright edges, artefact frame."""
+    half, r = np.array(standard.base.half_size), standard.base.corner_radius
+    tall = standard.base.thickness
+    box = points_of(trimesh.creation.box((*(2.0 * half), tall)), pitch)
+    over = np.abs(box[:, :2]) - (half - r)
+    is_cut = np.all(over > 0.0, axis=1) & (np.linalg.norm(over, axis=1) > r)
+    angle = np.linspace(0.0, 2.0 * np.pi, int(2.0 * np.pi * r / pitch) + 1)
+    arc = r * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    arc += np.sign(np.round(arc, 9)) * (half - r)  # a quarter of it round each edge
+    z = np.linspace(-0.5 * tall, 0.5 * tall, int(tall / pitch) + 2)
+    wall = np.column_stack([np.tile(arc, (len(z), 1)), np.repeat(z, len(arc))])
+    return np.concatenate([box[~is_cut], wall]) + np.array([0.0, 0.0, 0.5 * tall])
 
 
 def features_points(standard: Standard, T: Array, pitch: float = PITCH) -> dict[str, Array]:
@@ -231,7 +244,7 @@ def pushed(points: Array, ways: list[Way], axis: Array, push: Array, wanted: flo
 class Scene:
     """The golden standard on its table between two clamps.
 
-    `bodies` are points of what stands above the table's face, `hull` corners of all that turns:
+    `bodies` are points of all but the lower side of the table, `hull` corners of all that turns:
     beyond 90 degrees the lower side of the table is above its face.
     """
 
@@ -270,7 +283,8 @@ def scene() -> Scene:
     bodies = standard_points(standard, read[0].heading.setup.T_table_artefact)
     bodies |= {solid.name: solid_points(solid) for solid in workshop.solids}
     hull = trimesh.convex.convex_hull(np.concatenate(list(bodies.values()))).vertices
-    bodies = {name: p[p[:, 2] > -0.5] for name, p in bodies.items()}  # nothing comes from below
+    lowest = workshop.table.low + 0.5  # nothing comes from below
+    bodies = {name: p[p[:, 2] > lowest] for name, p in bodies.items()}
     return Scene(golden, read, standard, bodies, workshop, hull)
 
 
