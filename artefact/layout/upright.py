@@ -48,6 +48,10 @@ on slopes alone, but what the plane takes of the slope is lost to the curvature 
 0.5 to 0.85 the least radii of curvature are 28 to 73 mm instead of 19 to 36 mm, and the proof finds
 82 % instead of 79 % of what is wrong in whatever direction."""
 
+_LEAN_OUT, _OUT = (0.75, 0.95), 0.4
+"""Lean, and scatter of its direction about outwards (rad), where the probe comes from the side: it
+reaches what looks at it, and nothing must stand before that."""
+
 _LOWEST_BALL = 15.0  # mm between the base and a ball, for the probe to come beside it
 _HIGHEST_BALL = 0.7  # of the blank's height, centre of a ball at most
 _LEDGE = 1.0  # mm of the plate that is left outside the blend of a foot
@@ -65,6 +69,7 @@ def freeform_faces(
     rng: np.random.Generator,
     balls: Sequence[DatumSphere] = (),
     holes: Sequence[MountingHole] = (),
+    from_side: bool = False,
 ) -> list[FreeformPatch]:
     """Pillars of which some may be chosen, named by their numbers, evenly over the base.
 
@@ -75,6 +80,7 @@ def freeform_faces(
         rng: Draws places, sizes and shapes.
         balls: On posts, beside which cutter and probe find room.
         holes: Beside which the key does.
+        from_side: Whether the probe comes from the side at every table pose, not from above.
 
     Raises:
         NotBuildable: No pillar stands within the outline.
@@ -89,6 +95,9 @@ def freeform_faces(
         if middle is None:
             continue
         direction, lean = rng.uniform(0.0, 2.0 * np.pi), steepest * rng.uniform(*_LEAN)
+        if from_side:  # heights fall outwards
+            direction = np.arctan2(-middle[1], -middle[0]) + rng.normal(0.0, _OUT)
+            lean = steepest * rng.uniform(*_LEAN_OUT)
         plane = (float(lean * np.cos(direction)), float(lean * np.sin(direction)))
         size = (float(half[0]), float(half[1]))
         heights = np.round(smooth_heights(size, blank.limits, rng, plane=plane), 6)

@@ -23,7 +23,7 @@ from artefact.layout import (
     with_spheres,
 )
 from artefact.place.room import FEWEST_BALLS, Room, check_room, room_among
-from artefact.reach import Requests, joined, spread_poses
+from artefact.reach import ProbeReach, Requests, joined, spread_poses
 from artefact.worth import BallPlaces, Criterion, each_at, face_grid
 from information.selection import best_groups
 from twin.errors import NotBuildable, NotReachable
@@ -68,6 +68,7 @@ class BodyChoice:
         tried: Number of random faces beside each choice of balls.
         rng: Draws them.
         room: Some faces and balls that stand side by side.
+        from_side: Whether the probe comes from the side at every table pose.
     """
 
     criterion: Criterion
@@ -75,6 +76,7 @@ class BodyChoice:
     tried: int
     rng: np.random.Generator
     room: Room
+    from_side: bool
 
     def standard(
         self,
@@ -139,6 +141,8 @@ class BodyChoice:
             blamed = [c.features for c in broken] or self._untouched(made, there.poses)
             if not blamed:
                 return made
+            if not broken and not refused:
+                self._bar_untouched(there, standing)
             what = broken[0] if broken else f"no touch can be made on {blamed[0][0]}"
             refused, binding = f"; {what}", [c.name for c in broken]
             in_order = [int(face.name) for face in faces]
@@ -154,6 +158,13 @@ class BodyChoice:
         tried = tried[reach.is_reachable(tried)]
         there = set(tried[reach.is_clear(made, tried)].feature.tolist())
         return [(patch.name,) for patch in made.patches if patch.name not in there]
+
+    def _bar_untouched(self, there: "_Beside", balls: list[DatumSphere]) -> None:
+        """Keep the faces on which no touch can be made beside the balls from being chosen."""
+        for k, face in enumerate(there.faces):
+            alone = replace(with_spheres(self.blank, []), patches=(face,), spheres=tuple(balls))
+            if self._untouched(alone, there.poses):
+                there.fits[k, :] = there.fits[:, k] = False
 
     def _screwed(
         self, balls: list[DatumSphere]
@@ -176,7 +187,9 @@ class BodyChoice:
     ) -> tuple["_Beside", list[DatumSphere]]:
         """Faces between some balls, and the balls: the last goes until so many faces fit."""
         while True:
-            faces = freeform_faces(self.blank, count, self.tried, self.rng, balls, holes)
+            faces = freeform_faces(
+                self.blank, count, self.tried, self.rng, balls, holes, self.from_side
+            )
             fits = faces_fit(faces, holes, self.blank.limits)
             if (
                 len(balls) <= FEWEST_BALLS
@@ -305,16 +318,27 @@ def body_choice(
         NotReachable: No face can be touched.
     """
     criterion, blank = places.criterion, places.blank
-    all_faces = freeform_faces(blank, faces, tried, rng)
+    few = spread_poses(poses, _POSES)
+    from_side = _is_from_side(criterion.reach, few)
+    all_faces = freeform_faces(blank, faces, tried, rng, from_side=from_side)
     room = room_among(all_faces, places.balls, faces, blank)
     check_room(room)
-    few = spread_poses(poses, _POSES)
     if not criterion.reach.is_reachable(_touches_on(all_faces, few)).any():
         raise NotReachable(
             f"no face at any of {len(all_faces)} places can be touched at a table pose with every "
             "axis within its travel"
         )
-    return BodyChoice(criterion=criterion, blank=blank, tried=tried, rng=rng, room=room)
+    return BodyChoice(
+        criterion=criterion, blank=blank, tried=tried, rng=rng, room=room, from_side=from_side
+    )
+
+
+def _is_from_side(reach: ProbeReach, poses: Array) -> bool:
+    """Whether the tool axis never comes within half a right angle of the standard's z."""
+    up = np.tile([0.0, 0.0, 1.0], (len(poses), 1))
+    at = Requests(np.full(len(poses), "FF1"), np.zeros_like(up), up, poses)
+    axis = table_to_tool(reach.chain, reach.readings(at))[:, :3, 2]
+    return bool((turn(inverse(reach.setup.T_table_artefact), axis)[:, 2] < np.sqrt(0.5)).all())
 
 
 def _touches_on(faces: list[FreeformPatch], poses: Array) -> Requests:
