@@ -1,12 +1,14 @@
 """Touches on one ball, of the standard or beside it, by which the probe is compared with itself."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
-from artefact.body import DatumSphere
-from artefact.reach import Requests
-from probe_paths.plan import TouchPlan, home_readings, plan_touches, readings_at
+from artefact.body import DatumSphere, Standard
+from artefact.reach import ProbeReach, Requests, joined
+from probe_paths.plan import PlanOptions, TouchPlan, home_readings, plan_touches, readings_at
 from twin.errors import NotReachable
 from twin.frames import Array
 from twin.machine import table_to_tool
@@ -17,6 +19,9 @@ _TILTS = (75.0 * DEG, 60.0 * DEG, 45.0 * DEG)
 times as well as 45, and leave a stem the room of its own thickness."""
 
 _RING = 6
+
+_DEEP = -3.0
+"""Room of a probe that certainly hits, mm: the quick look is from below by less."""
 
 
 def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
@@ -43,25 +48,46 @@ def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
         assert ball is not None
         standard = ball.beside(standard, plan.setup.T_table_artefact)
         balls, general = standard.spheres[-1:], replace(general, workshop=room, ball=ball)
-    why = "it has no ball"
-    for tilt in _TILTS:
-        for rotary in poses:
-            for sphere in balls:
-                # the first touch of every visit is that of an anchor: on the same ball
-                options = replace(
-                    general, anchor=sphere.name, tolerated=0, shortest_visit=2 * _RING
-                )
-                wanted = _ring(plan, sphere, rotary, tilt)
-                try:
-                    made = plan_touches(
-                        standard, plan.chain, plan.probe, plan.setup, wanted, options
-                    )
-                except NotReachable as error:
-                    why = str(error)
-                    continue
-                if set(made.feature.tolist()) == {sphere.name}:
-                    return made
+    why = "the probe would run into something" if balls else "it has no ball"
+    for sphere, wanted in _without_deep_collisions(plan, standard, general, poses, balls):
+        # the first touch of every visit is that of an anchor: on the same ball
+        options = replace(general, anchor=sphere.name, tolerated=0, shortest_visit=2 * _RING)
+        try:
+            made = plan_touches(standard, plan.chain, plan.probe, plan.setup, wanted, options)
+        except NotReachable as error:
+            why = str(error)
+            continue
+        if set(made.feature.tolist()) == {sphere.name}:
+            return made
     raise NotReachable(f"no ball of {plan.standard.name} can be touched all round; the last: {why}")
+
+
+def _without_deep_collisions(
+    plan: TouchPlan,
+    standard: Standard,
+    options: PlanOptions,
+    poses: Array,
+    balls: Sequence[DatumSphere],
+) -> Iterator[tuple[DatumSphere, Requests]]:
+    """Rings that may be touched, pose by pose: exact gaps take half a second a ring."""
+    reach = ProbeReach(
+        chain=plan.chain,
+        setup=plan.setup,
+        shape=plan.probe.shape,
+        length=plan.probe.length,
+        steepest=options.steepest,
+        room=_DEEP,
+        standoff=options.standoff,
+        search=options.search,
+        workshop=options.workshop,
+    )
+    for tilt, rotary in product(_TILTS, poses if balls else []):
+        rings = [_ring(plan, ball, rotary, tilt) for ball in balls]
+        every = joined(rings)
+        good = np.asarray(reach.is_reachable(every))
+        good[good] = reach.is_clear(standard, every[good])
+        for k in np.flatnonzero(good.reshape(len(balls), -1).all(axis=1)).tolist():
+            yield balls[k], rings[k]
 
 
 def _ring(plan: TouchPlan, ball: DatumSphere, rotary: Array, tilt: float) -> Requests:
