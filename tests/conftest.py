@@ -3,6 +3,8 @@
 import os
 import sys
 from base64 import b64decode
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -75,9 +77,9 @@ def unrendered(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("matplotlib.figure.Figure.savefig", dot)
 
 
-@pytest.fixture(autouse=True)
-def _library_as_it_was():
-    """Kinds that a test registers are forgotten after it: the next may have another machine."""
+@contextmanager
+def _library_kept() -> Iterator[None]:
+    """Kinds that are registered meanwhile are forgotten: the next may have another machine."""
     from twin.library import catalogue
 
     kinds, files = dict(catalogue._REGISTER), dict(catalogue._FILES)
@@ -85,3 +87,17 @@ def _library_as_it_was():
     for register, before in ((catalogue._REGISTER, kinds), (catalogue._FILES, files)):
         register.clear()
         register.update(before)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _library_as_before_the_file():
+    """What the fixtures of a file register, commands that they run for one."""
+    with _library_kept():
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _library_as_it_was():
+    """What a test registers."""
+    with _library_kept():
+        yield
