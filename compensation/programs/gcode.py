@@ -53,7 +53,8 @@ def read(text: str, reading: Reading) -> None:
     """
     modes = _Modes()
     for number, raw in enumerate(text.splitlines(), start=1):
-        bare = _REMARK.sub("", raw).strip().upper()
+        remarks = _REMARK.findall(raw) if "(" in raw or ";" in raw else []
+        bare = (_REMARK.sub("", raw) if remarks else raw).strip().upper()
         if not bare or bare == "%":
             reading.keep(number, raw.strip())
             continue
@@ -64,7 +65,7 @@ def read(text: str, reading: Reading) -> None:
             words = numbers(bare)
         except ValueError as error:
             raise reading.refusal(number, repr(str(error)), "words of G-code") from None
-        comment = "".join(_REMARK.findall(raw)).strip()
+        comment = "".join(remarks).strip()
         _line(number, [(k, float(v)) for k, v in words if k != "N"], comment, reading, modes)
 
 
@@ -73,8 +74,8 @@ def _line(
 ) -> None:
     """One line: modes first, then its motion."""
     kept = [comment] if comment else []
-    is_machine = False
-    for g in (v for k, v in words if k == "G"):
+    is_machine, functions = False, [v for k, v in words if k == "G"]
+    for g in functions:
         is_machine |= g == 53.0
         if not _mode(g, reading, modes):
             _refuse(number, g, reading, modes)
@@ -85,13 +86,13 @@ def _line(
         if m not in _KEPT_M:
             raise reading.refusal(number, f"M{m:g}", "M0 to M9, M30, M48 or M49")
         kept.append(f"M{m:g}")
-    _tool(number, {v for k, v in words if k == "G"}, other, reading)
+    _tool(number, functions, other, reading)
     reading.feed = other.get("F", reading.feed / reading.unit) * reading.unit
-    is_dwell = ("G", 4.0) in words
+    is_dwell = 4.0 in functions
     axes = {k: v for k, v in other.items() if k in "XYZABCUVW"}
     spent = set(axes) | (set("IJKRP") if axes or set("IJK") & set(other) else set())
     spent |= {"D"}
-    spent -= {"P"} if is_dwell or ("G", 64.0) in words else set()
+    spent -= {"P"} if is_dwell or 64.0 in functions else set()
     kept += [f"{k}{v:.10g}" for k, v in other.items() if k not in spent]
     if not axes and not (set("IJK") & set(other) and modes.motion in (2.0, 3.0)):
         if kept:
@@ -102,7 +103,7 @@ def _line(
     _motion(number, axes, other, " ".join(kept), is_machine, reading, modes)
 
 
-def _tool(number: int, modes: set[float], other: dict[str, float], reading: Reading) -> None:
+def _tool(number: int, modes: list[float], other: dict[str, float], reading: Reading) -> None:
     """Tool of a T word, and that whose radius a D word means."""
     if "T" in other:
         if reading.side:
@@ -111,7 +112,7 @@ def _tool(number: int, modes: set[float], other: dict[str, float], reading: Read
         called = reading.lengths.get(reading.tool, reading.frame.datum.length)
         reading.switch(False, called)
     if "D" in other:
-        if not {41.0, 42.0} & modes:
+        if not {41.0, 42.0}.intersection(modes):
             raise reading.refusal(number, f"D{other['D']:g}", "it with G41 or G42")
         reading.tool = int(other["D"])
 
