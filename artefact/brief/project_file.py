@@ -104,8 +104,6 @@ class Project:
         machine_path: The machine file.
         seed: Of all random numbers.
         control: For which programs are written: a name, or a dialect file of the user's own.
-        probe_radius: mm.
-        probe_length: Gauge point to ball centre, mm.
         probe: The same, and what stands above the ball, as `stack_mm`.
         workshop: What stands beside the standard, and the control.
         table_radius: Of the table's face, or of the largest disc on it, mm.
@@ -135,8 +133,6 @@ class Project:
     chain: Chain
     seed: int
     control: str
-    probe_radius: float
-    probe_length: float
     probe: ProbeTable
     workshop: WorkshopTable
     table_radius: float
@@ -158,6 +154,18 @@ class Project:
     remarks: tuple[str, ...] = ()
     further_setups: tuple[Setup, ...] = ()
     further_probes: tuple[FurtherProbeTable, ...] = ()
+
+    @property
+    def probe_radius(self) -> float:
+        """Of the ball, mm."""
+        assert self.probe.radius_mm is not None
+        return self.probe.radius_mm
+
+    @property
+    def probe_length(self) -> float:
+        """Gauge point to ball centre, mm."""
+        assert self.probe.length_mm is not None
+        return self.probe.length_mm
 
     @property
     def population(self) -> Population:
@@ -205,8 +213,6 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         chain=chain,
         seed=table.seed,
         control=table.control,
-        probe_radius=probe.radius_mm,
-        probe_length=probe.length_mm,
         probe=probe,
         workshop=table.workshop,
         table_radius=room,

@@ -21,9 +21,8 @@ def test_a_ball_of_any_size_has_room(diameter: float) -> None:
     read = read_project(PROJECT)
     stated = read.probe
     stack = [(stated.stack_mm[0][0], diameter * 2.0 / 3.0), *stated.stack_mm[1:]]
-    radius = 0.5 * diameter
-    stated = stated.model_copy(update={"stack_mm": stack, "radius_mm": radius})
-    project = replace(read, probe_radius=radius, probe=stated)
+    stated = stated.model_copy(update={"stack_mm": stack, "radius_mm": 0.5 * diameter})
+    project = replace(read, probe=stated)
     made, wanted = blank(project), probe_reach(project)
     sphere = DatumSphere("SPH1", np.array([0.0, 0.0, 100.0]), 12.5, 6.0, 9.0, 30.0)
     bare = Standard("bare", "", made.material, made.base, None, (), (sphere,), (), 220.0)

@@ -113,9 +113,8 @@ def test_the_place_is_found_within_its_uncertainty(log, small, chain, golden):
 
 
 def test_a_place_outside_the_spread_is_not_found_and_few_touches_are_refused(
-    log, small, chain, golden, monkeypatch
+    log, small, chain, golden
 ):
-    monkeypatch.setattr("probe_paths.locate.find._SHAKES", 1)
     (part,) = read_log(log, chain.rotary_axes)
     balls, rng = ball_centres(part, chain), np.random.default_rng(0)
     with pytest.raises(NotEnoughData, match="8 touches of a search, expected at least 9"):

@@ -71,7 +71,11 @@ def test_spaces_do_not_matter() -> None:
 REFUSED = {
     "no such kind": ("wobble(X)", UnknownEffect, "unknown effect 'wobble.X.'; available: geom"),
     "not a name": ("backlash(X", UnknownEffect, "unknown effect"),
-    "no argument": ("backlash", UnknownEffect, r"expected backlash\(axis or symbol\), 1 arg"),
+    "no argument": (
+        "backlash",
+        UnknownEffect,
+        r"'backlash': expected backlash\(axis or symbol\), 1 arg",
+    ),
     "too many": ("backlash(X,Y)", UnknownEffect, r"'backlash\(X,Y\)': expected .* 1 argument"),
     "no brackets wanted": ("probe-radius(3)", UnknownEffect, "expected probe-radius, no arg"),
     "unknown axis": ("backlash(Q)", UnknownEffect, "an axis of C, B, X, Y, Z"),
