@@ -20,6 +20,7 @@ _WORDS = {
     "peak_to_valley": "peak to valley",
     "length": "correlation length",
     "tau": "time constant",
+    "cycles": "time constant in cycles",
     "step": "per step of",
     "reversal_on_average": "reversal on average",
     "reversal_at_most": "reversal at most",
