@@ -16,12 +16,12 @@ from twin.files.run_writer import run_text
 from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.positioning import PositioningTest, read_positioning
-from twin.foreign.sheet import read_sheet
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.machine.chain import Axis, make_chain
 from twin.model.model import Model
 from twin.record.instrument import Instrument
+from twin.sheets.sheet import read_sheet
 from twin.units import DEG, UM, URAD
 from twin.words import deviations_in
 

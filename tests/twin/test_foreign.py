@@ -18,10 +18,10 @@ from twin.foreign.circle import read_circle
 from twin.foreign.points import linear_machine, points_run, read_points
 from twin.foreign.positioning import read_positioning
 from twin.foreign.serial_arm import arm_from_dh
-from twin.foreign.sheet import bare, read_sheet, unit_of_column
 from twin.library.ordinary import ordinary_model
 from twin.record.copies import without_copies
 from twin.record.touches import at_poses
+from twin.sheets.sheet import bare, read_sheet, unit_of_column
 from twin.units import DEG, UM, URAD
 
 BAD = 2
