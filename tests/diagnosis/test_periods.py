@@ -201,6 +201,8 @@ def test_periods_are_scanned_down_to_what_readings_resolve() -> None:
     fine = scanned_periods(np.arange(0.0, 100.0, 0.01))
     assert fine[0] == pytest.approx(0.02)
     assert fine[-1] == pytest.approx(50.0, rel=1e-3)
+    uneven = scanned_periods(np.sort(np.random.default_rng(0).uniform(0.0, 60.0, 1000)))
+    assert uneven[0] == pytest.approx(60.0 / 4000.0, rel=1e-2)
     coarse = scanned_periods(np.arange(0.0, 300.0, 6.0))
     assert coarse[0] == pytest.approx(1.0)
     # repeated targets stand no closer for their scatter
