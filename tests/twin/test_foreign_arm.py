@@ -6,6 +6,7 @@ import pytest
 from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from twin.errors import BadFile, DesignError
+from twin.files.machine_file import read_machine
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
@@ -230,3 +231,19 @@ def test_a_coupling_of_joints_that_are_not_there_is_refused(tmp_path, capsys):
     arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
     assert main([*arguments, "--coupled", "J7+J2"]) == BAD
     assert "--coupled J7+J2: expected two of 6 joints such as J3+J2" in capsys.readouterr().err
+
+
+def test_the_order_of_the_rows_gives_times_where_the_user_says_so(tmp_path, capsys):
+    several(tmp_path, poses())
+    log, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
+    arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out, "--in-order"]
+    assert main([*arguments, "30"]) == 0
+    run = read_run(tmp_path / "run.csv", read_machine(tmp_path / "run.machine.toml"))
+    np.testing.assert_array_equal(np.unique(run.touches.time), 30.0 * np.arange(POSES))
+    t = run.touches
+    np.testing.assert_array_equal(np.diff(t.time) > 0.0, np.diff(t.pose) != 0)
+    assert main([*arguments, "0", "--force"]) == BAD
+    assert "--in-order 0: expected seconds" in capsys.readouterr().err
+    kind = ["import", log, "--positioning", "X", "--u-um", "5", "-o", out, "--in-order", "30"]
+    assert main([*kind, "--target", "x1", "--actual", "x2", "--force"]) == BAD
+    assert "--in-order: expected with --arm" in capsys.readouterr().err

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from twin.machine import Chain
+    from twin.record import Run
     from twin.sheets import Sheet
 
 _SIGN = {
@@ -43,6 +44,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
     parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
+    parser.add_argument(
+        "--in-order",
+        metavar="SECONDS",
+        type=float,
+        help="rows stand in the order in which they were taken, so far apart: for slips and drifts",
+    )
     parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
     parser.add_argument(
         "--columns", metavar="NAME,...", help="names of the columns of a table without a header"
@@ -150,6 +157,8 @@ def run(args: argparse.Namespace) -> int:
     refuse_to_overwrite(output, args.force)
     names = [n.strip() for n in args.columns.split(",")] if args.columns else ()
     sheets = [read_sheet(path, args.sheet, names) for path in args.files]
+    if args.in_order is not None and not (args.arm or args.part or args.standard):
+        raise DesignError("--in-order: expected with --arm, --part or --standard alone")
     if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:
@@ -225,6 +234,8 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
         measured, chain = arm(args, sheets[0])
     else:
         measured, chain = points(args, sheets, meaning)
+    if args.in_order is not None:
+        measured = _in_order(args, measured)
     for sheet in sheets:
         if sheet.unused:
             say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
@@ -240,3 +251,24 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     say(f"- sign: {_SIGN[meaning]}")
     if not args.machine:
         say(f"- {machine}: made from the data; check what is marked PLACEHOLDER")
+
+
+def _in_order(args: argparse.Namespace, run: Run) -> Run:
+    """The run with times by the order of the rows of its table; those of one row are one moment."""
+    from dataclasses import replace
+
+    import numpy as np
+
+    from twin.errors import DesignError
+    from twin.units import DAY
+
+    if not 0.0 < args.in_order <= DAY:
+        raise DesignError(f"--in-order {args.in_order:g}: expected seconds from 0 to {DAY:g}")
+    t = run.touches
+    if np.ptp(t.time) > 0.0:
+        raise DesignError(f"--in-order: {args.files[0]} has times; expected a table without")
+    time = np.zeros(len(run))
+    for k in np.unique(t.run):
+        rows = t.run == k
+        time[rows] = args.in_order * np.unique(run.line[rows], return_inverse=True)[1]
+    return replace(run, touches=replace(t, time=time))
