@@ -30,9 +30,8 @@ from twin.effects import (
     position_table,
     probe,
     servo_lag,
-    stiffness,
 )
-from twin.elastic import body, tool_point
+from twin.elastic import body, stiffness, tool_point
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.library.trial import users_fault
 from twin.machine import Chain
