@@ -24,6 +24,9 @@ from twin.units import UM, URAD
 SHORTEST, LONGEST = 1.0, 50.0
 """Periods that are scanned on a linear axis, mm, if nothing else is known; closer readings are
 scanned down to what they resolve."""
+TURNS, WIDEST = 6.0, 250.0
+"""A pinion on a rack turns once in up to `WIDEST` mm: periods beyond `LONGEST` are scanned where
+the travel holds `TURNS` of them; fewer are hard to tell from a curve of the geometry."""
 FRACTIONS = 4
 """Whole fractions of a stated pitch that are scanned: starts of the thread, balls of the nut, lines
 of the encoder on the screw."""
@@ -205,9 +208,9 @@ class Harmonic(_Repeating):
 def scanned_periods(q: Array, pitch: float | None = None) -> Array:
     """Periods that some readings can show, ascending, (G,), mm.
 
-    From half the travel (and `LONGEST`) down to `SHORTEST`, or to twice the distance of the
-    readings where they stand closer, of uneven ones farther (`PER_READING`); and around whole
-    fractions of a stated pitch beyond that. Frequencies 1/p are evenly spaced.
+    From half the travel (and `LONGEST`, or `WIDEST` on a long axis) down to `SHORTEST`, or to twice
+    the distance of the readings where they stand closer, of uneven ones farther (`PER_READING`);
+    and around whole fractions of a stated pitch beyond that. Frequencies 1/p are evenly spaced.
 
     Args:
         q: Readings of the axis, (N,), mm.
@@ -215,7 +218,7 @@ def scanned_periods(q: Array, pitch: float | None = None) -> Array:
     """
     travel = float(np.ptp(q))
     shortest = min(SHORTEST, _resolved(q)) if travel > 0.0 else SHORTEST
-    longest = max(min(LONGEST, 0.5 * travel), 2.0 * shortest)
+    longest = max(min(LONGEST, 0.5 * travel), min(WIDEST, travel / TURNS), 2.0 * shortest)
     low, high = 1.0 / longest, 1.0 / shortest
     step = 1.0 / (OVERSAMPLING * max(travel, longest))
     frequencies = np.linspace(low, high, int(np.ceil((high - low) / step)) + 1)
