@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from compensation.field import MachineErrors, State, correction, datum_of, workspace
-from compensation.programs import Frame, compensated, read_part_program
+from compensation.part_programs import Frame, read_part_program
+from compensation.programs import compensated
 from compensation.service import PointCorrection
 from compensation.tables import header_of
 from twin import ordinary_model, read_machine

@@ -25,10 +25,11 @@ from compensation.field import (
     result_of,
     workspace,
 )
-from compensation.programs import Compensated, Frame, compensated, read_part_program
+from compensation.part_programs import Frame, read_part_program
+from compensation.programs import Compensated, compensated
 from compensation.tables import FORMATS, Played, play_tables, write_tables
 
-PARTS = ("field", "tables", "programs", "service", "linuxcnc")
+PARTS = ("field", "tables", "part_programs", "programs", "service", "linuxcnc")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

@@ -41,6 +41,7 @@ PARTS = (
     "effects",
     "library",
     "files",
+    "sheets",
     "foreign",
 )
 """From bottom to top: each imports only from those before it."""

@@ -8,9 +8,9 @@ import numpy as np
 
 from artefact.body import Standard
 from twin.errors import BadFile
-from twin.foreign import MM, Sheet, read_sheet, unit_of_column
 from twin.frames import Array
 from twin.record import Labels
+from twin.sheets import MM, Sheet, read_sheet, unit_of_column
 
 STAMP = "MATSTD"
 """Word before the fingerprint of the standard, in the programs we write and in their results."""

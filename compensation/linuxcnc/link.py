@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from compensation.service import DRIVEN_EVERY, Service
+from compensation.service import DRIVEN_EVERY, Service, prompt
 from twin.errors import DesignError
 
 
@@ -37,8 +37,9 @@ async def serve_linuxcnc(
     except OSError as error:
         raise DesignError(f"{path}: {error.strerror or error}") from error
     try:
-        ready()
-        await asked.follow(until)
+        with prompt():
+            ready()
+            await asked.follow(until)
     finally:
         server.close()
         asked.cut()

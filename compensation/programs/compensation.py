@@ -6,9 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from compensation.field import MachineErrors, actual_tip, aligned, correction, shifted
-from compensation.programs.loads import forces
-from compensation.programs.motion import Keep, Motion, places
-from compensation.programs.program import Program
+from compensation.part_programs import Keep, Paths, Program, forces
 from compensation.tables import Header, point_spacing
 from twin.errors import OutsideTravel
 from twin.frames import Array
@@ -68,9 +66,12 @@ class _Path:
     def __init__(self, program: Program, errors: MachineErrors) -> None:
         self.program, self.errors = program, errors
         self.motions, self.frame = program.motions, program.frame
-        speed = np.array([RAPID if m.is_rapid else m.feed for m in self.motions])
-        self.travel = np.array([m.travel for m in self.motions])
-        self.seconds = self.travel / speed * MINUTE
+        self.paths = Paths(self.motions, self.frame.linear)
+        self.is_whole = np.array([m.is_rapid or m.cycle is not None for m in self.motions])
+        self.offset = np.array([m.offset for m in self.motions])
+        speed = np.array([RAPID if m.is_rapid else m.feed or np.inf for m in self.motions])
+        stated = np.array([m.minutes for m in self.motions])
+        self.seconds = (self.paths.travel / speed + stated) * MINUTE
         self.begins = np.cumsum(self.seconds) - self.seconds
         kinds = [(m.tcpm, m.length) for m in self.motions]
         self.kinds = sorted(set(kinds))
@@ -101,7 +102,7 @@ class _Path:
 
     def touches(self, which: IntArray, share: Array) -> Touches:
         """Poses on some motions, with their time and the side that each axis comes from."""
-        q = self.readings(which, places(self.motions, which, share))
+        q = self.readings(which, self.paths.at(which, share))
         length = np.array([length for _, length in self.kinds])[self.kind[which]]
         approach = None if self.last is None else self._approach(which, share)
         elapsed = self.begins[which] + share * self.seconds[which]
@@ -117,7 +118,7 @@ class _Path:
     def _moving(self, which: IntArray, share: Array) -> Array:
         """Sign of every axis's motion, (N, A); 0 where it stands."""
         ends = [np.clip(share + step, 0.0, 1.0) for step in (-_STEP, _STEP)]
-        before, after = (self.readings(which, places(self.motions, which, s)) for s in ends)
+        before, after = (self.readings(which, self.paths.at(which, s)) for s in ends)
         return np.where(np.abs(after - before) > 1e-9, np.sign(after - before), 0.0)
 
     def _last_moves(self) -> Array:
@@ -164,6 +165,7 @@ def compensated(
     """
     path = _Path(program, errors)
     which, share, at = _divided(path, _begun(path, tolerance), tolerance)
+    _shift_cycles(path, which, at)
     written = _rounded(path, which, at)
     touches = path.touches(which, share)
     q = path.readings(which, written)
@@ -174,7 +176,7 @@ def compensated(
     spread = aligned(nominal[some], errors.columns(touches[some])) @ errors.root
     return Compensated(
         program=program,
-        text=_text(path, head, which, written),
+        text=_text(path, head, which, share, written),
         motion=which,
         elapsed=touches.time - errors.state.time,
         q=touches.q,
@@ -202,24 +204,21 @@ MOST_U = 200
 def _begun(path: _Path, tolerance: float) -> IntArray:
     """Lines that every motion is divided into at first, (M,)."""
     spacing = point_spacing(path.errors, path.frame.datum)
-    far = np.array([np.abs(m.end - m.start) for m in path.motions])
-    pieces = np.ones(len(path.motions))
+    far = np.abs(path.paths.end - path.paths.start)
+    pieces = np.ones(len(far))
     for axis, step in spacing.items():
         k = path.errors.chain.axis_index(axis)
         if path.errors.chain.link(axis).kind == "linear":
             step = min(step, COARSEST)
         pieces = np.maximum(pieces, np.ceil(far[:, k] / step - 1e-9))
     straight = min(spacing[a] for a in path.errors.chain.linear_axes)
-    for k, motion in enumerate(path.motions):
-        if motion.is_rapid:
-            pieces[k] = 1
-        elif motion.arc is not None:
-            i, j = motion.arc.plane
-            radius = np.hypot(*(motion.start[[i, j]] - motion.arc.centre))
-            # the height of a chord of angle a above its arc is r (1 - cos(a/2))
-            step = 2.0 * np.arccos(1.0 - min(0.8 * tolerance / max(radius, tolerance), 1.0))
-            step = min(step, min(straight, COARSEST) / max(radius, 1e-9))
-            pieces[k] = max(pieces[k], np.ceil(abs(motion.arc.angle) / step))
+    for k, arc in path.paths.arcs:
+        radius = path.paths.radius(k, arc)
+        # the height of a chord of angle a above its arc is r (1 - cos(a/2))
+        step = 2.0 * np.arccos(1.0 - min(0.8 * tolerance / max(radius, tolerance), 1.0))
+        step = min(step, min(straight, COARSEST) / max(radius, 1e-9))
+        pieces[k] = max(pieces[k], np.ceil(abs(arc.angle) / step))
+    pieces[path.is_whole] = 1
     return pieces.astype(np.int64)
 
 
@@ -228,10 +227,9 @@ def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray,
     which, share = _shares(pieces)
     at = path.needed(which, share)
     # a short line of its own is within the spacing over which the field is straight
-    is_checked = np.array(
-        [p > 1 or m.arc is not None for p, m in zip(pieces, path.motions, strict=True)]
-    )
-    todo = np.flatnonzero(is_checked[which] & ~np.isin(which, _rapids(path)))
+    is_checked = pieces > 1
+    is_checked[[k for k, _ in path.paths.arcs]] = True
+    todo = np.flatnonzero((is_checked & ~path.is_whole)[which])
     low, low_at = (share - 1.0 / pieces[which])[todo], np.empty((len(todo), at.shape[1]))
     is_first = np.append(True, which[1:] != which[:-1])[todo]
     low_at[~is_first] = at[todo[~is_first] - 1]
@@ -244,7 +242,7 @@ def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray,
         middle = 0.5 * (a + b)
         at_m = path.needed(motion, middle)
         off = np.linalg.norm((at_m - 0.5 * (at_a + at_b))[:, linear], axis=1)
-        rows = (off > tolerance) & ((b - a) * path.travel[motion] > SHORTEST)
+        rows = (off > tolerance) & ((b - a) * path.paths.travel[motion] > SHORTEST)
         motion, a, at_a, b, at_b, middle, at_m = (
             v[rows] for v in (motion, a, at_a, b, at_b, middle, at_m)
         )
@@ -258,6 +256,15 @@ def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray,
     return which[order], share[order], at[order]
 
 
+def _shift_cycles(path: _Path, which: IntArray, at: Array) -> None:
+    """Give the motions of a canned cycle what its bottom needs, in place: each is one line."""
+    ahead = np.array([m.cycle.ahead if m.cycle else 0 for m in path.motions])
+    own = np.flatnonzero(ahead)
+    bottom = own + ahead[own]
+    rows, bottoms = np.searchsorted(which, own), np.searchsorted(which, bottom)
+    at[rows] = at[bottoms] + path.paths.end[own] - path.paths.end[bottom]
+
+
 def _shares(pieces: IntArray) -> tuple[IntArray, Array]:
     """Motion and share at the end of every line, for motions in so many lines, (N,) each."""
     which = np.repeat(np.arange(len(pieces)), pieces)
@@ -265,15 +272,11 @@ def _shares(pieces: IntArray) -> tuple[IntArray, Array]:
     return which, (number + 1.0) / pieces[which]
 
 
-def _rapids(path: _Path) -> IntArray:
-    return np.array([k for k, m in enumerate(path.motions) if m.is_rapid], dtype=np.int64)
-
-
 def _rounded(path: _Path, which: IntArray, at: Array) -> Array:
     """Coordinates as they are written; axes that a motion does not turn stay as they were."""
     chain = path.errors.chain
     out = at.copy()
-    offset = np.array([m.offset for m in path.motions])[which]
+    offset = path.offset[which]
     unit = np.array([m.unit for m in path.motions])[which]
     for axis in chain.programmed_axes:
         k = chain.axis_index(axis)
@@ -297,37 +300,39 @@ def _check_travel(path: _Path, which: IntArray, q: Array) -> None:
         raise OutsideTravel(f"{message}; move the datum")
 
 
-def _axes(motion: Motion, rotary: list[str]) -> tuple[str, ...]:
-    """Axes that the lines of a motion name."""
-    return ("X", "Y", "Z", *(a for a in rotary if a in motion.turned))
-
-
-def _named(path: _Path, rotary: list[str]) -> set[tuple[str, ...]]:
-    return {_axes(motion, rotary) for motion in path.motions}
-
-
-def _text(path: _Path, head: Header, which: IntArray, written: Array) -> str:
+def _text(path: _Path, head: Header, which: IntArray, share: Array, written: Array) -> str:
     """The compensated program: its blocks in their order, every motion as its lines."""
-    chain, language = path.errors.chain, path.program.language
+    language = path.program.language
     begins = np.searchsorted(which, np.arange(len(path.motions) + 1)).tolist()
-    offset = np.array([m.offset for m in path.motions])[which]
-    shown = dict(zip(chain.axes, (written - offset).T, strict=True))
-    rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]
-    shown |= {a: shown[a] / DEG for a in rotary}
-    whole = {
-        axes: np.column_stack([shown[a] for a in axes]).tolist() for axes in _named(path, rotary)
-    }
+    shown = _shown(path, written - path.offset[which])
+    parts = np.diff(share, prepend=0.0)
+    parts = np.where(parts > 0.0, parts, share).tolist()
     blocks: list[str] = []
     number = 0
     for item in path.program.items:
         if isinstance(item, Keep):
             blocks.append(item.text)
         else:
-            axes = _axes(item, rotary)
-            rows = whole[axes][begins[number] : begins[number + 1]]
-            blocks += language.lines(item, axes, rows)
+            axes, rows = shown[item.turned]
+            own = slice(begins[number], begins[number + 1])
+            blocks += language.lines(item, axes, rows[own], parts[own])
             number += 1
     told = [language.COMMENT.format(text) for text in head.lines()]
     start = 1 if blocks and blocks[0].upper().startswith(("BEGIN", "%")) else 0
     blocks[start:start] = [*told, *language.begin()]
     return str(language.listed(blocks, path.program.path))
+
+
+def _shown(
+    path: _Path, at: Array
+) -> dict[tuple[str, ...], tuple[tuple[str, ...], list[list[float]]]]:
+    """Axes that lines name, with their coordinates, mm and degrees, by the axes that are turned."""
+    chain = path.errors.chain
+    rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]
+    value = dict(zip(chain.axes, at.T, strict=True))
+    value |= {a: value[a] / DEG for a in rotary}
+    out = {}
+    for turned in {m.turned for m in path.motions}:
+        axes = ("X", "Y", "Z", *(a for a in rotary if a in turned))
+        out[turned] = axes, np.column_stack([value[a] for a in axes]).tolist()
+    return out

@@ -6,6 +6,7 @@ server.
 """
 
 from compensation.service.history import History
+from compensation.service.latency import prompt
 from compensation.service.opcua_server import NAMESPACE, serve
 from compensation.service.output import Output, OutputLimits, Quality, Sent
 from compensation.service.point_correction import PointCorrection
@@ -26,5 +27,6 @@ __all__ = [
     "Sent",
     "Service",
     "error_tables",
+    "prompt",
     "serve",
 ]

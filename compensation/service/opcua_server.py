@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from socket import create_server
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
+from compensation.service.latency import prompt
 from compensation.service.service import DRIVEN_EVERY, Answer, Service
 from twin.errors import BadValue, DesignError, MissingLibrary, OutsideTravel
 
@@ -21,8 +22,10 @@ NAMESPACE = "urn:material-standard:compensation"
 """Of the nodes."""
 
 PERIOD = 0.005
-"""Between two looks at the inputs, s: a step of 20 µm at 1 mm/s is settled after 20 ms and one of
-these."""
+"""Between two outputs where nobody writes, s."""
+
+MOVING = 0.002
+"""The same while a correction is on its way."""
 
 _KNOWN_EVERY = 1.0  # s, uncertainty: it changes slowly and takes longer than a correction
 
@@ -47,6 +50,7 @@ async def serve(
         DesignError: The endpoint cannot be opened.
     """
     try:
+        from asyncua.common.callback import CallbackType
         from asyncua.server.server import Server
     except ImportError as error:
         raise MissingLibrary(
@@ -58,17 +62,24 @@ async def serve(
     server.set_endpoint(endpoint)
     server.set_server_name(f"Compensation of {service.errors.chain.name}")
     nodes = await _Nodes.add(server, service)
+    written = asyncio.Event()
+    server.subscribe_server_callback(
+        CallbackType.PostWrite, lambda done, _: written.set() if done.is_external else None
+    )
     try:
         await server.start()
     except OSError as error:
         raise DesignError(f"{endpoint}: {error.strerror or error}") from error
     try:
-        ready()
-        slow = asyncio.create_task(_follow(service, nodes, until))
-        while not until.is_set():
-            await nodes.exchange(service)
-            await asyncio.sleep(PERIOD)
-        await slow
+        with prompt():
+            ready()
+            slow = asyncio.create_task(_follow(service, nodes, until))
+            while not until.is_set():
+                written.clear()
+                lag = await nodes.exchange(service)
+                with suppress(TimeoutError):
+                    await asyncio.wait_for(written.wait(), MOVING if lag else PERIOD)
+            await slow
     finally:
         await server.stop()
 
@@ -158,15 +169,17 @@ class _Nodes:
             await node.set_writable()
         return cls(inputs, outputs)
 
-    async def exchange(self, service: Service) -> None:
-        """A new request, if there is one, and what is answered now."""
+    async def exchange(self, service: Service) -> float:
+        """A new request, if there is one, and what is answered now; the way still to go, mm."""
         sequence = await self.inputs["Sequence"].read_value()
         if sequence != self._answered:
             readings = await self.inputs["Readings"].read_value()
             directions = await self.inputs["Directions"].read_value()
             service.move(sequence, readings or [], time.monotonic(), directions or [])
             self._answered = sequence
-        await self._show(service.tick(time.monotonic()))
+        answer = service.tick(time.monotonic())
+        await self._show(answer)
+        return answer.sent.lag
 
     async def _show(self, answer: Answer) -> None:
         sent = answer.sent

@@ -2,7 +2,8 @@
 
 At targets every s mm a sine of period p reads as one of period p' wherever ``1/p' = k/s ± 1/p``.
 Nothing is assumed of the targets here: the evidence is scanned over all periods, and whatever else
-explains the run as well is told. Which one is named says nothing, unless a pitch was stated.
+explains the run as well is told. Which one is named says nothing, unless a pitch was stated. Waves
+of a turn likewise: their period is told as a harmonic.
 """
 
 from collections.abc import Sequence
@@ -51,7 +52,8 @@ class Alike:
     Attributes:
         axis: Over whose reading it repeats.
         others: The effect at other periods, longest first, with their sizes.
-        step: Distance of the targets, mm, where they stand evenly; None where they do not.
+        step: Distance of the targets, mm, where they stand evenly; None where they do not, and of
+            harmonics: those that even targets confuse are not scanned.
         pitch: Stated pitch of the axis, where the named period is a whole fraction of it; None
             where nothing speaks for the named one.
     """
@@ -60,10 +62,11 @@ class Alike:
     others: tuple[ScaledEffect, ...]
     step: float | None
     pitch: float | None
+    is_harmonic: bool = False
 
     @property
     def periods(self) -> tuple[float, ...]:
-        """The other periods, longest first, mm."""
+        """The other periods, longest first, mm, or numbers of waves a turn."""
         return tuple(period_value(o.effect) for o in self.others)
 
     def beside(self, told: ScaledEffect, named: ScaledEffect) -> "Alike":
@@ -110,7 +113,9 @@ def periods_alike(
     q = complement.touches.reading(inner.over)[complement.used]
     rest = tuple(b for i, b in enumerate(best) if i != named)
     pitch = link.pitch if is_stated else None
-    return best[named], Alike(inner.over, rest, even_step(q), pitch)
+    step = None if inner.is_harmonic else even_step(q)
+    alike = Alike(inner.over, rest, step, pitch, is_harmonic=inner.is_harmonic)
+    return best[named], alike
 
 
 def _best(
@@ -131,15 +136,16 @@ def _best(
     scores = score_all(base, signatures(complement, [Grid(effect, variants, len(variants))], 1))
     drop = scores.free_drop[:scanned]
     padded = np.concatenate([[-np.inf], drop, [-np.inf]])
-    is_peak = (drop >= padded[:-2]) & (drop >= padded[2:]) & (drop > (1.0 - WINDOW) * drop.max())
-    peaks = np.flatnonzero(is_peak)
+    # nothing lies between two harmonics
+    is_peak = inner.is_harmonic | ((drop >= padded[:-2]) & (drop >= padded[2:]))
+    peaks = np.flatnonzero(is_peak & (drop > (1.0 - WINDOW) * drop.max()))
     peaks = peaks[np.argsort(-drop[peaks], kind="stable")][:REFINED]
     looked_at = [*peaks, *range(scanned, len(periods))]
     sized = [refined(base, variants[i], LEVELS) for i in looked_at]
     top = max((e for _, e in sized), default=-np.inf)
     close = [s for s, e in sized if top - e < ALIKE]
     out: list[ScaledEffect] = []
-    for s in sorted(close, key=lambda s: -period_value(s.effect)):
+    for s in sorted(close, key=lambda s: period_value(s.effect), reverse=not inner.is_harmonic):
         # two peaks of a scan may climb to one and the same period
         if not out or _apart(out[-1].effect, s.effect, inner):
             out.append(s)
@@ -148,13 +154,13 @@ def _best(
 
 def _apart(first: Effect, second: Effect, inner: Inner) -> bool:
     """Whether two periods are farther apart than half of what the travel tells apart."""
-    difference = 1.0 / period_value(first) - 1.0 / period_value(second)
-    return abs(difference) > 0.5 * _frequency_step(inner)
+    both = inner.frequency(np.array([period_value(first), period_value(second)]))
+    return float(np.ptp(both)) > 0.5 * _frequency_step(inner)
 
 
 def _frequency_step(inner: Inner) -> float:
-    """Distance of the scanned frequencies, 1/mm."""
-    return float(np.median(np.diff(1.0 / np.asarray(inner.grid)[::-1])))
+    """Distance of the scanned frequencies, 1/mm, or 1/rad."""
+    return float(np.median(np.abs(np.diff(inner.frequency(np.asarray(inner.grid))))))
 
 
 def _fraction(period: float, pitch: float | None, inner: Inner) -> float:
@@ -167,7 +173,7 @@ def _fraction(period: float, pitch: float | None, inner: Inner) -> float:
 
 
 def period_value(effect: Effect) -> float:
-    """Period of an effect that has no other inner parameter, mm."""
+    """Period (mm) or harmonic of an effect that has no other inner parameter."""
     assert isinstance(effect, Tunable)
     return float(next(iter(effect.tuning.values())))
 

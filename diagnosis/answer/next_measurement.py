@@ -26,7 +26,7 @@ LEAST = 1.0
 """A plan that separates by fewer standard deviations than this is none."""
 
 TARGET_DIGITS = 2
-"""Targets are offered to a hundredth of a millimetre."""
+"""Targets are offered to a hundredth of a millimetre, or of a degree."""
 
 DRAWN = 8
 """Combinations drawn for every touch offered; most are out of reach."""
@@ -139,7 +139,8 @@ def candidate_targets(run: Run, axis: str, rng: np.random.Generator) -> Touches:
     q = picked.q.copy()
     reading = t.reading(axis)
     drawn = rng.uniform(reading.min(), reading.max(), len(q))
-    q[:, t.chain.axis_index(axis)] = np.round(drawn, TARGET_DIGITS)
+    unit = DEG if t.chain.link(axis).kind == "rotary" else 1.0
+    q[:, t.chain.axis_index(axis)] = np.round(drawn / unit, TARGET_DIGITS) * unit
     moved = replace(picked, q=q)
     return replace(moved, point=picked.point + moved.ball_artefact - picked.ball_artefact)
 

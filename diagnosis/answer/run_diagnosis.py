@@ -191,7 +191,7 @@ def _result(
             steps[0].fit if len(steps) > 1 else None,
         ),
         faults=description_faults(steps[0].fit, progress),
-        remarks=(*not_significant(steps), *_remarks(steps[-1].fit, final)),
+        remarks=(*not_significant(steps), *_remarks(steps, final)),
     )
 
 
@@ -223,9 +223,9 @@ def _told(
         final = without(tested.state, weak)
 
 
-def _remarks(fit: Fit, final: SearchState) -> tuple[Remark, ...]:
+def _remarks(steps: Sequence[Step], final: SearchState) -> tuple[Remark, ...]:
     """What else a user should know, the search's own limit included."""
-    out = remarks(fit)
+    out = remarks(steps[-1].fit, steps[0].fit)
     if not final.is_ended:
         return out
     return (*out, SearchEnded(MOST_SETS))

@@ -31,9 +31,6 @@ BRIDGED = 5.0 * MINUTE
 SHORTEST = 20
 """Steps of the shortest stretch between two gaps that is used."""
 
-COLDEST, HOTTEST = -40.0, 200.0
-"""Temperatures beyond are those of a broken sensor, degC."""
-
 TYPES = "T_name_degC or name_degC, name_rpm, V_name_unit; name_um, _mm, _urad, _mrad, _arcsec"
 
 
@@ -144,10 +141,11 @@ def _drive_name(column: str) -> str:
 
 def _values(table: CsvTable, name: str, remarks: list[str]) -> Array:
     """A column; what is missing or absurd is NaN, and told."""
-    values = table.numbers(name, empty=np.nan, finite=False, largest=np.inf)
-    bad = ~np.isfinite(values)
     if name.endswith("_degC"):
-        bad |= (values < COLDEST) | (values > HOTTEST)
+        values, bad = table.temperatures(name)
+    else:
+        values = table.numbers(name, empty=np.nan, finite=False, largest=np.inf)
+        bad = ~np.isfinite(values)
     if bad.all():
         raise BadFile(table.path, f"column {name}", "no reading", "numbers")
     if bad.any():

@@ -34,7 +34,7 @@ NEIGHBOURS = 101
 """Scanned periods whose median is the background of a line of the spectrum."""
 
 ENDLESS = 1e9
-"""A period in mm over which a cosine stays 1."""
+"""A period in mm over which a cosine stays 1, as that of no wave a turn does."""
 
 
 def period_of(effect: Effect, complement: ResidualSpace) -> Inner | None:
@@ -65,7 +65,9 @@ def scanned_grids(candidates: Sequence[Effect], complement: ResidualSpace) -> li
 
 
 def strongest(effect: Tunable, inner: Inner, complement: ResidualSpace, residual: Array) -> Array:
-    """Periods at which a residual over an axis is strongest, ascending; of few touches all; mm.
+    """Periods (mm) or harmonics at which a residual over an axis is strongest; of few touches all.
+
+    Ascending.
 
     Half are the strongest of all, half those that stand out most from their neighbours: a slow
     residual hides a small wave in the power that it spreads.
@@ -81,9 +83,10 @@ def strongest(effect: Tunable, inner: Inner, complement: ResidualSpace, residual
         return grid
     q = complement.touches.reading(inner.over)[complement.used]
     # at an endless period the cosine is what the effect does to every touch per unit
-    C = columns([effect.tuned(ENDLESS)], complement.touches)[complement.used]
+    still = effect.tuned(0.0 if inner.is_harmonic else ENDLESS)
+    C = columns([still], complement.touches)[complement.used]
     weight = C[:, int(np.argmax((C**2).sum(axis=0)))] / complement.u
-    power = spectrum(q, weight * residual[: len(q)], 1.0 / grid)
+    power = spectrum(q, weight * residual[: len(q)], inner.frequency(grid))
     background = median_filter(power, NEIGHBOURS, mode="nearest")
     outstanding = power / np.maximum(background, 1e-12 * power.max() + 1e-300)
     best = {*np.argsort(-power)[: KEPT // 2], *np.argsort(-outstanding)[: KEPT // 2]}
@@ -94,9 +97,9 @@ def spectrum(q: Array, values: Array, frequencies: Array) -> Array:
     """Power ``|sum_i v_i exp(-2 pi i f q_i)|^2`` at some frequencies, (F,), to a few per cent.
 
     Args:
-        q: Readings in any order, (N,), mm.
+        q: Readings in any order, (N,), mm or rad.
         values: At every reading, (N,).
-        frequencies: 1/mm, (F,).
+        frequencies: Waves per mm or rad, (F,).
     """
     width = 1.0 / (FINE * float(frequencies.max()))
     bins = np.round((q - q.min()) / width).astype(np.int64)

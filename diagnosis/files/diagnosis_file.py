@@ -171,6 +171,8 @@ def _alike(step: Step) -> dict[str, Any]:
     alike = step.confusion.alike if step.confusion else None
     if alike is None:
         return {}
+    if alike.is_harmonic:
+        return {"harmonics_alike": [_digits(h) for h in alike.periods]}
     return {
         "periods_alike_mm": [_digits(p) for p in alike.periods],
         "step_mm": alike.step,

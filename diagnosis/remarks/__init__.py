@@ -4,6 +4,7 @@ In: a `Fit`. Out: `Remark`s, which carry numbers; `report.words` makes the sente
 to notice is a record here, and a function that makes it.
 """
 
+from diagnosis.remarks.order import JumpInOrder
 from diagnosis.remarks.run_remarks import (
     ChosenByPrediction,
     FewDegreesOfFreedom,
@@ -38,6 +39,7 @@ __all__ = [
     "HarmonicsAlike",
     "HeldOutInDoubt",
     "JointsStood",
+    "JumpInOrder",
     "LoadTooSmall",
     "ManyStoodOut",
     "NoiseMisstated",

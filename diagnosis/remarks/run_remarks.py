@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
+from diagnosis.remarks.order import JumpInOrder, jump_in_order
 from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from twin.elastic import short_beams
 
@@ -246,18 +247,27 @@ Remark = (
     | SearchEnded
     | NotSignificant
     | HarmonicsAlike
+    | JumpInOrder
     | ShortBeam
     | LoadTooSmall
 )
 
 
-def remarks(fit: Fit) -> tuple[Remark, ...]:
-    """Everything noteworthy in a fit: units, what the reader of the file noticed, the rest."""
+def remarks(fit: Fit, start: Fit | None = None) -> tuple[Remark, ...]:
+    """Everything noteworthy in a fit: units, what the reader of the file noticed, the rest.
+
+    Args:
+        fit: Of the model that is told.
+        start: Of the model before effects were put in, which may stand in for a jump; None for
+            that one itself.
+    """
     units = unit_mistake(fit)
     out: list[Remark] = [] if units is None else [units]
     out += [ReaderRemark(text) for text in fit.run.remarks]
     out += _memory(fit)
     out += _touches(fit)
+    jump = jump_in_order(start or fit)
+    out += [] if jump is None else [jump]
     out += harmonics_alike(fit)
     out += _elastic(fit)
     out += ([] if units else _noise(fit)) + _outliers(fit)

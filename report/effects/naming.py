@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from diagnosis.answer import Plan, Step
 from twin.library import parse_effect, title_of
 from twin.machine import Chain
-from twin.model import Effect, Title
+from twin.model import Effect, Title, is_tunable
 from twin.words import listed
 
 TOLD = 4
@@ -78,7 +78,10 @@ def plan_words(plan: Plan) -> str:
     one, other = plan.tells_apart
     if plan.periods_of:
         periods = ", ".join((one.rpartition("@")[2], *other.rpartition("@")[2].split(",")))
-        return f"the periods {periods} mm of {words_of_name(plan.periods_of, chain)} apart"
+        effect = parse_effect(plan.periods_of, chain)
+        is_turn = is_tunable(effect) and effect.inner(plan.touches)[0].is_harmonic
+        what = f"the harmonics {periods}" if is_turn else f"the periods {periods} mm"
+        return f"{what} of {effect_words(effect)} apart"
     return f"{words_of_name(one, chain)} from {words_of_name(other, chain)}"
 
 

@@ -12,7 +12,7 @@ from report.effects import class_words, words_of_name
 from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
 from report.words.remark_words import memory_words
 from twin.record import Run
-from twin.units import UM
+from twin.units import DEG, UM
 from twin.words import listed
 
 _WORDS = {
@@ -20,6 +20,7 @@ _WORDS = {
     "peak_to_valley": "peak to valley",
     "length": "correlation length",
     "tau": "time constant",
+    "cycles": "time constant in cycles",
     "step": "per step of",
     "reversal_on_average": "reversal on average",
     "reversal_at_most": "reversal at most",
@@ -213,24 +214,32 @@ def _alike(step: Step, places: Sequence[float]) -> str:
     alike = step.confusion.alike if step.confusion else None
     if alike is None:
         return ""
-    longest = [f"{p:.4g}" for p in alike.periods[:PERIODS_TOLD]]
+    told_of = PERIODS_TOLD if len(alike.periods) > PERIODS_TOLD + 1 else None
+    longest = [f"{p:.4g}" for p in alike.periods[:told_of]]
     more = len(alike.periods) - len(longest)
-    shorter = f" or one of {more} shorter ones" if more > 0 else ""
-    told = f"{', '.join(longest)} mm{shorter}" if more > 0 else f"{listed(longest, 'or')} mm"
+    unit, finer = ("", "higher") if alike.is_harmonic else (" mm", "shorter")
+    told = (
+        f"{', '.join(longest)}{unit} or one of {more} {finer} ones"
+        if more > 0
+        else f"{listed(longest, 'or')}{unit}"
+    )
+    what_else = f"{'harmonic ' if alike.is_harmonic else ''}{told}"
     at = f"with steps of {alike.step:g} mm" if alike.step else "with targets that stand so"
     why = f" (named for the stated pitch of {alike.pitch:g} mm)" if alike.pitch else ""
     where = listed([f"{p:g}" for p in places])
-    what = f": measure at {alike.axis} {where} mm" if places else ""
-    return f"{at} it could as well be {told}{why}{what}"
+    reading = "°" if alike.is_harmonic else " mm"
+    what = f": measure at {alike.axis} {where}{reading}" if places else ""
+    return f"{at} it could as well be {what_else}{why}{what}"
 
 
 def _places(diagnosis: Diagnosis, step: Step) -> list[float]:
-    """Three readings, far from one another, of the plan that tells the periods of an effect."""
+    """Three readings, far apart, of the plan that tells the periods of an effect; mm or degrees."""
     alike = step.confusion.alike if step.confusion else None
     name = step.effect.name if step.effect is not None else ""
     for plan in diagnosis.plans if alike is not None else ():
         if plan.periods_of == name and alike is not None:
-            readings = sorted({float(q) for q in plan.touches.reading(alike.axis)})
+            unit = DEG if alike.is_harmonic else 1.0
+            readings = sorted({round(q / unit, 2) for q in plan.touches.reading(alike.axis)})
             return sorted({readings[0], readings[len(readings) // 2], readings[-1]})
     return []
 

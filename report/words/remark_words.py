@@ -61,6 +61,15 @@ def _joints_stood(r: noticed.JointsStood) -> str:
     )
 
 
+def _jump_in_order(r: noticed.JumpInOrder) -> str:
+    size = with_uncertainty(r.size / UM, r.u / UM)
+    return (
+        f"between lines {r.before} and {r.after} everything is displaced by {size} µm: if rows "
+        "stand in the order in which they were taken, something slipped there; with times (column "
+        "time_s, or --in-order of matstd import) the diagnosis can tell"
+    )
+
+
 def _few_poses(r: noticed.FewPoses) -> str:
     several = r.poses > 1
     if not r.has_rotary:
@@ -179,6 +188,7 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     "noise, with too few touches to say whether anything is missing: probe more",
     noticed.FewPoses: _few_poses,
     noticed.JointsStood: _joints_stood,
+    noticed.JumpInOrder: _jump_in_order,
     noticed.WorseThanReplicates: "residuals are {r.ratio:.2f} times as large as the scatter of "
     "{r.dof} replicates: the model lacks something",
     noticed.NoiseMisstated: _noise_misstated,

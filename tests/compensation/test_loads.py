@@ -8,10 +8,10 @@ import pytest
 from compensation.field.inverse import datum_of
 from compensation.field.machine_errors import MachineErrors, deviation
 from compensation.field.state import State
+from compensation.part_programs.frame import Frame
+from compensation.part_programs.loads import Load, read_loads
+from compensation.part_programs.program import read_part_program
 from compensation.programs.compensation import compensated, passed
-from compensation.programs.frame import Frame
-from compensation.programs.loads import Load, read_loads
-from compensation.programs.program import read_part_program
 from compensation.tables.header import header_of
 from matstd.cli import main
 from twin.errors import BadFile

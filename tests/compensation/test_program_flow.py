@@ -10,9 +10,9 @@ import pytest
 from bench import LENGTH
 
 from compensation.field.inverse import datum_of
-from compensation.programs.frame import Frame
-from compensation.programs.motion import Motion, places
-from compensation.programs.program import read_part_program
+from compensation.part_programs.frame import Frame
+from compensation.part_programs.motion import Motion, Paths
+from compensation.part_programs.program import read_part_program
 from twin.errors import BadFile
 
 is_there = pytest.mark.skipif(
@@ -110,7 +110,7 @@ def test_formulas(frame, tmp_path, formula, value):
     ],
 )
 def test_what_does_not_run_is_named_with_its_line(frame, tmp_path, blocks, said, monkeypatch):
-    monkeypatch.setattr("compensation.programs.klartext_flow.MOST", 1000)
+    monkeypatch.setattr("compensation.part_programs.klartext_flow.MOST", 1000)
     with pytest.raises(BadFile) as refused:
         program(f"{START}{blocks}\nEND PGM A MM\n", frame, tmp_path)
     assert said in str(refused.value)
@@ -147,7 +147,7 @@ def along(motions, chain, count=400):
     k = [chain.axis_index(a) for a in "XY"]
     which = np.repeat(np.arange(len(motions)), count)
     share = np.tile(np.linspace(0.0, 1.0, count), len(motions))
-    return places(motions, which, share)[:, k]
+    return Paths(motions, [chain.axis_index(a) for a in "XYZ"]).at(which, share)[:, k]
 
 
 def klartext(side, contour=CONTOUR):

@@ -10,10 +10,10 @@ from bench import LENGTH, oracle_tip
 
 from compensation.field.machine_errors import MachineErrors
 from compensation.field.state import State
+from compensation.part_programs.frame import Frame
+from compensation.part_programs.motion import Keep
+from compensation.part_programs.program import read_part_program
 from compensation.programs.compensation import compensated
-from compensation.programs.frame import Frame
-from compensation.programs.motion import Keep
-from compensation.programs.program import read_part_program
 from compensation.tables.header import header_of
 from matstd.cli import main
 from twin.errors import BadFile, OutsideTravel
@@ -177,13 +177,15 @@ def test_klartext_is_the_same_geometry(frame, tmp_path):
     ("name", "block", "said"),
     [
         ("a.ngc", "G41 D1 X5", "tool 1, whose radius nobody has stated, expected --tool-radius"),
-        ("a.ngc", "G81 X1 Y1 Z-3 R2", "G81, expected G0 to G4"),
+        ("a.ngc", "G87 X1 Y1 Z-3 R2", "G87, expected G0 to G4"),
         ("a.ngc", "#1 = 5", "no parameters, expressions"),
         ("a.ngc", "G1 X[1+2]", "no parameters, expressions"),
         ("a.ngc", "O100 CALL", "no parameters, expressions"),
         ("a.ngc", "G55", "G54 alone: a compensated program holds for one datum"),
         ("a.ngc", "G10 L2 P1 X0", "one datum for the whole program"),
         ("a.ngc", "M98 P3", "M98, expected M0 to M9"),
+        ("a.ngc", "M88", "--pass-m 88 where it moves nothing"),
+        ("a.ngc", "G68.2 X0 Y0 Z0 I0 J30 K0", "plain coordinates of the datum"),
         ("a.ngc", "G1 U5", "axis of the machine: C, B, X, Y, Z"),
         ("a.ngc", "G2 X9 Y0 I2 J0", "mm off the circle"),
         ("a.ngc", "G2 X90 Y0 R5", "R5 for ends 89.0000 mm apart"),
@@ -192,8 +194,8 @@ def test_klartext_is_the_same_geometry(frame, tmp_path):
         ("a.H", "L X+Q1", "Q1 without a value, expected a parameter that the program has set"),
         ("a.H", "FN 18: SYSREAD Q1 = ID1", "expected FN 0 to FN 8 and FN 13 with"),
         ("a.H", "CALL LBL 3", "LBL 3, expected a label of this file: none"),
-        ("a.H", "CYCL DEF 200 DRILLING", "cycles 7, 9, 32 and 247"),
-        ("a.H", "RND R5", "L, CC, C and CR: others are resolved"),
+        ("a.H", "CYCL DEF 252 CIRCULAR POCKET ~\nQ215=0", "and holes (200, 201, 202"),
+        ("a.H", "APPR LCT X+1 Y+1 R5 RL F9", "L, LP, CC, C, CP, CR, RND, CHF: others are"),
         ("a.H", "C X+1 Y+1 DR+ F9", "CC with two of X, Y and Z before it"),
         ("a.H", "PLANE SPATIAL SPA+10 SPB+0 SPC+0 STAY", "PLANE RESET STAY"),
         ("a.H", "L X+1 M97", "M97, expected M0 to M9"),

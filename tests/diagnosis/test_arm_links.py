@@ -9,9 +9,9 @@ from diagnosis.geometry.learnt import geometry_rows
 from diagnosis.remarks.run_remarks import JointsStood, remarks
 from report.geometry.geometry_words import quantity_name
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
-from twin.foreign.sheet import read_sheet
 from twin.library.ordinary import ordinary_model
 from twin.model.model import Model
+from twin.sheets.sheet import read_sheet
 from twin.units import DEG, UM, URAD
 
 A = np.array([350.0, 1150.0, 41.0, 0.0, 0.0, 0.0])

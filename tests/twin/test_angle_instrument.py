@@ -10,18 +10,19 @@ from diagnosis.fit.identification import fit_run
 from diagnosis.geometry.learnt import geometry_rows
 from diagnosis.remarks import HarmonicsAlike, remarks
 from matstd.console import say
-from report.words import remark_sentence
+from report.words import remark_sentence, verdict_sentence
+from twin.effects.periodic import Harmonic
 from twin.files.run_file import read_run
 from twin.files.run_writer import run_text
 from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.positioning import PositioningTest, read_positioning
-from twin.foreign.sheet import read_sheet
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.machine.chain import Axis, make_chain
 from twin.model.model import Model
 from twin.record.instrument import Instrument
+from twin.sheets.sheet import read_sheet
 from twin.units import DEG, UM, URAD
 from twin.words import deviations_in
 
@@ -129,14 +130,18 @@ def test_angles_are_told_in_their_own_unit(tilting, capsys):
 
 def turned(targets: int, harmonic: int, seed: int = 2):
     """Three turns to and fro over even targets of a table with one wave of 30 µrad."""
-    rng = np.random.default_rng(seed)
-    at = np.arange(targets) * 2.0 * np.pi / targets
+    return turned_at(np.arange(targets) * 2.0 * np.pi / targets, harmonic, seed)
+
+
+def turned_at(at, harmonic: int, seed: int = 2):
+    """The same over any targets, rad, ascending."""
+    rng, targets = np.random.default_rng(seed), len(at)
     angle = np.tile(np.concatenate([at, at[::-1]]), 3)
     way = np.tile(np.repeat([1, -1], targets), 3)
     cycle = np.repeat([1, 2, 3], 2 * targets)
     error = 30.0 * URAD * np.sin(harmonic * angle + 0.3) + rng.normal(0.0, 2.0 * URAD, len(angle))
     test = PositioningTest("C", angle, error, cycle, way, np.arange(len(angle)))
-    return positioning_run(test, one_axis_machine("C", angle), 2.0 * UM)
+    return positioning_run(test, one_axis_machine("C", angle), 2.0 * URAD)
 
 
 def test_a_worm_is_found_where_targets_resolve_it():
@@ -163,3 +168,31 @@ def told(run, name, *inner):
     effect = effect.tuned(*inner) if inner else effect
     fit = fit_run(run, Model(start.chain, (*start.effects, effect)))
     return [r for r in remarks(fit) if isinstance(r, HarmonicsAlike)]
+
+
+def test_a_worm_is_found_at_uneven_targets_and_its_look_alikes_are_told():
+    """Eight uneven targets tell 72 waves a turn from 2 to 400; six leave dozens that may be it."""
+    (effect,) = diagnose(turned_at(uneven(8), 72)).found
+    assert (effect.name, effect.tuning["harmonic"]) == ("periodic(ECC)", 72.0)
+    few = diagnose(turned_at(uneven(6), 72), rng=np.random.default_rng(1))
+    (step,) = few.steps[1:]
+    assert 72.0 in step.confusion.alike.periods
+    told = verdict_sentence(few)
+    assert "it could as well be harmonic 69, 71, 72, 73 or one of " in told
+    assert "higher ones: measure at C " in told
+    assert "°)" in told
+
+
+def uneven(targets: int):
+    """Targets anywhere in a turn, rad, ascending."""
+    return np.sort(np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, targets))
+
+
+def test_gears_are_looked_for_where_many_poses_tell_them():
+    """Waves of 12 a turn at most, felt as displacements, until 40 readings are there."""
+    rng = np.random.default_rng(3)
+    for readings, highest in ((30, 12.0), (60, 400.0)):
+        touches = turned_at(np.sort(rng.uniform(0.0, 6.2, readings)), 50).touches
+        touches = replace(touches, instrument=Instrument.TRACKER)
+        (inner,) = Harmonic(touches.chain.symbol("ECC")).inner(touches)
+        assert inner.grid[-1] == highest

@@ -11,11 +11,11 @@ from twin.effects.position_table import propose
 from twin.files import read_run
 from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.positioning import read_positioning
-from twin.foreign.sheet import read_sheet
 from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.machine.chain import Axis, make_chain
 from twin.model.model import Model
+from twin.sheets.sheet import read_sheet
 from twin.units import UM, URAD
 
 POSITIONS = np.arange(0.0, 601.0, 50.0)

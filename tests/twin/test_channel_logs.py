@@ -1,9 +1,11 @@
 """Logs with a line a value: channels in turn, arrays, alarms between them."""
 
+import json
+
 import numpy as np
 import pytest
 
-from twin.foreign.sheet import read_sheet
+from twin.sheets.sheet import read_sheet
 
 
 def stamp(t: float) -> str:
@@ -38,3 +40,21 @@ def test_arrays_behind_their_count_follow_one_another(tmp_path) -> None:
     assert sheet.columns == ("IOC:Act", "IOC:Ref")
     np.testing.assert_allclose(sheet.numbers(0), np.arange(6) * 0.1, atol=1e-9)
     np.testing.assert_allclose(sheet.numbers(1), np.arange(6) * 0.1 + 0.01, atol=1e-9)
+
+
+def test_objects_a_line_are_channels_of_one_clock(tmp_path) -> None:
+    """A probing every 2 s, a temperature every 20 s with a list in it; alarms say nothing."""
+    lines = []
+    for k in range(60):
+        if k % 10 == 0:
+            lines.append({"ts": 1e9 + 2.0 * k, "bed": 20.0 + k, "air": [{"temp": 18.5, "id": "C"}]})
+        lines.append({"ts": 1e9 + 2.0 * k + 1.0, "z": 0.001 * k, "ok": True})
+    lines.append({"ts": 1e9 + 130.0, "bed": 85.0, "air": [{"temp": 18.5}]})
+    (tmp_path / "probe.json").write_text("\n".join(json.dumps(line) for line in lines))
+    sheet = read_sheet(tmp_path / "probe.json")
+    assert sheet.columns == ("time [s]", "bed", "air.0.temp", "z")
+    time, bed, air, z = (sheet.numbers(i) for i in range(4))
+    np.testing.assert_allclose(time[:2], [1.0, 3.0])
+    np.testing.assert_allclose(bed, 20.0 + 0.5 * time, atol=1e-9)
+    np.testing.assert_allclose(z, 0.0005 * (time - 1.0), atol=1e-9)
+    assert np.all(air == 18.5)

@@ -9,9 +9,9 @@ from twin.errors import BadFile, DesignError
 from twin.files.machine_file import read_machine
 from twin.files.run_file import read_run
 from twin.foreign.circle import circle_machine, circle_run, read_circle
-from twin.foreign.sheet import read_sheet
 from twin.library.catalogue import parse_effect
 from twin.model.model import columns
+from twin.sheets.sheet import read_sheet
 from twin.units import DEG, UM, URAD
 
 RADIUS, FEED = 100.0, 2000.0

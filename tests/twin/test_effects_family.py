@@ -53,13 +53,14 @@ def carried_by_rotary(chain, axis):
 
 
 RUNS = {label: made_up(label) for label in MACHINES} | {"arm": arm_poses()}
+WITHOUT_A_BALL = ["position-table", "axis-warming"]
 ALL = [
     (label, e)
     for label, touches in RUNS.items()
     if label in MACHINES
     for e in (
         *proposals(touches),
-        *proposals(replace(touches, instrument=Instrument.LASER), ["position-table"]),
+        *proposals(replace(touches, instrument=Instrument.LASER), WITHOUT_A_BALL),
         *proposals(on_a_path(touches), ["servo-lag"]),
         field(touches),  # weighed against what is proposed
         *elastic(touches),  # sections are the user's

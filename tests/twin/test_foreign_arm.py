@@ -6,13 +6,14 @@ import pytest
 from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from twin.errors import BadFile, DesignError
+from twin.files.machine_file import read_machine
 from twin.files.run_file import read_run
 from twin.files.run_writer import write_run
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
-from twin.foreign.sheet import read_sheet
 from twin.frames import apply
 from twin.library.ordinary import ordinary_model
 from twin.machine.kinematics import table_to_tool
+from twin.sheets.sheet import read_sheet
 from twin.units import DEG, NM, UM
 
 BAD = 2
@@ -166,3 +167,83 @@ def test_what_is_no_arm_is_refused(tmp_path):
     sheet = read_sheet(table)
     with pytest.raises(DesignError, match="4 poses, expected 6"):
         tracker_run(sheet, chain, joint_readings(sheet)[0], 5.0 * UM)
+
+
+def several(tmp_path, q, coupling=0.0):
+    """A log with two reflectors, one of them hidden once, torques and a load on the tool."""
+    link = q.copy()
+    link[:, 2] += coupling * q[:, 1]
+    lines = ["j1,j2,j3,j4,j5,j6,x1,y1,z1,x2,y2,z2,tau2 [Nm],Fz [N],motor [°C],state"]
+    for k, (row, of_link) in enumerate(zip(q / DEG, link, strict=True)):
+        T = by_hand(of_link)
+        first, second = ((T @ [*v, 1.0])[:3] for v in (REFLECTOR, -REFLECTOR))
+        places = [*(f"{v:.9f}" for v in first), *("" if k == 4 else f"{v:.9f}" for v in second)]
+        lines.append(
+            ",".join([*(f"{v:.9f}" for v in row), *places, str(10.5 + k), "-30", "35", "ok"])
+        )
+    (tmp_path / "log.csv").write_text("\n".join(lines) + "\n")
+    (tmp_path / "ur5.csv").write_text(UR5)
+    return read_sheet(tmp_path / "log.csv")
+
+
+def test_several_reflectors_with_torques_and_loads_are_one_run(tmp_path):
+    sheet = several(tmp_path, poses())
+    q, _ = joint_readings(sheet)
+    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
+    run = tracker_run(sheet, chain, q, 5.0 * UM)
+    t = run.touches
+    assert len(run) == 6 * POSES - 3
+    assert np.abs(run.deviation).max() < 1e-6
+    targets = dict(zip(t.feature, t.target, strict=True))
+    np.testing.assert_allclose(targets["reflector 1"], turned @ REFLECTOR, atol=1e-6)
+    np.testing.assert_allclose(targets["reflector 2"], -(turned @ REFLECTOR), atol=1e-6)
+    assert len(np.unique(t.pose)) == POSES
+    np.testing.assert_allclose(t.value["tau2_Nm"][:6], 10.5)
+    np.testing.assert_allclose(t.force[0], [0.0, 0.0, -30.0])
+    assert t.temperature["motor"][0] == 35.0
+    assert sheet.unused == ("state",)
+    write_run(tmp_path / "run.csv", run, "none.toml")
+    again = read_run(tmp_path / "run.csv", chain)
+    np.testing.assert_allclose(again.touches.target, t.target, atol=1e-6)
+    assert again.touches.value.keys() == {"tau2_Nm"}
+
+
+@pytest.mark.parametrize(
+    ("coupling", "told"), [(1.0, "--coupled J3+J2"), (-1.0, "--coupled J3-J2")]
+)
+def test_a_joint_that_counts_from_another_link_is_named(tmp_path, capsys, coupling, told):
+    """As the controls of Fanuc count joint 3; nothing is applied until the user says so."""
+    several(tmp_path, poses(), coupling)
+    log, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
+    arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
+    assert main(arguments) == 0
+    said = capsys.readouterr().out
+    assert told in said
+    assert main([*arguments, "--force", "--coupled", told.split()[1]]) == 0
+    said = capsys.readouterr().out
+    assert "do not agree" not in said
+    assert "deviations 0.000 µm" in said
+
+
+def test_a_coupling_of_joints_that_are_not_there_is_refused(tmp_path, capsys):
+    several(tmp_path, poses())
+    log, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
+    arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
+    assert main([*arguments, "--coupled", "J7+J2"]) == BAD
+    assert "--coupled J7+J2: expected two of 6 joints such as J3+J2" in capsys.readouterr().err
+
+
+def test_the_order_of_the_rows_gives_times_where_the_user_says_so(tmp_path, capsys):
+    several(tmp_path, poses())
+    log, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
+    arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out, "--in-order"]
+    assert main([*arguments, "30"]) == 0
+    run = read_run(tmp_path / "run.csv", read_machine(tmp_path / "run.machine.toml"))
+    np.testing.assert_array_equal(np.unique(run.touches.time), 30.0 * np.arange(POSES))
+    t = run.touches
+    np.testing.assert_array_equal(np.diff(t.time) > 0.0, np.diff(t.pose) != 0)
+    assert main([*arguments, "0", "--force"]) == BAD
+    assert "--in-order 0: expected seconds" in capsys.readouterr().err
+    kind = ["import", log, "--positioning", "X", "--u-um", "5", "-o", out, "--in-order", "30"]
+    assert main([*kind, "--target", "x1", "--actual", "x2", "--force"]) == BAD
+    assert "--in-order: expected with --arm" in capsys.readouterr().err

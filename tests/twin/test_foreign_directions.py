@@ -8,7 +8,7 @@ from twin.errors import BadFile
 from twin.foreign.acceptance import positioning_figures
 from twin.foreign.axis_log import approaches
 from twin.foreign.positioning import read_positioning
-from twin.foreign.sheet import read_sheet
+from twin.sheets.sheet import read_sheet
 from twin.units import UM
 
 PARTS = """# test of X
@@ -29,6 +29,21 @@ i |target [mm]|ref_pos(i,1) [mm]|ref_pos(i,2) [mm]|
 """
 
 
+REPORT = f"""# Gear Ratios
+From | To | Ratio []| Count []
+--- |--- |--- |--- |
+1 | 2 | 0.5 | 50
+
+{PARTS}
+## Deviations computed from them
+
+i |x(i,1) [mm]|x(i,2) [mm]|x_avg(i) [mm]|
+--- |--- |--- |--- |
+1|0.1|0.2|0.3|
+2|0.4|0.5|0.6|
+"""
+
+
 def positioning(tmp_path, text):
     path = tmp_path / "table.csv"
     path.write_text(text, encoding="utf-8")
@@ -44,6 +59,16 @@ def test_words_of_directions(tmp_path, up, down):
     test = positioning(tmp_path, text)
     assert test.deviation[test.direction > 0] / UM == pytest.approx([1.0, 3.0])
     assert test.deviation[test.direction < 0] / UM == pytest.approx([2.0, 4.0])
+
+
+def test_of_a_report_with_several_tables_the_fullest_is_read(tmp_path):
+    """Its readings stand in two parts with one header; what is computed of them is below."""
+    alone, among = positioning(tmp_path, PARTS), positioning(tmp_path, REPORT)
+    np.testing.assert_array_equal(among.deviation, alone.deviation)
+    np.testing.assert_array_equal(among.direction, alone.direction)
+    sheet = read_sheet(tmp_path / "table.csv")
+    assert sheet.left_out[:2] == (2, 4)
+    assert len(sheet) == 4
 
 
 def test_a_word_that_tells_no_direction_beside_others_is_refused(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from twin.errors import BadFile
 from twin.foreign.positioning import read_positioning
 from twin.foreign.serial_arm import arm_from_dh
-from twin.foreign.sheet import read_sheet
+from twin.sheets.sheet import read_sheet
 
 
 def sheet(folder: Path, text: str):

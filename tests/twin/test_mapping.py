@@ -6,9 +6,9 @@ import pytest
 from matstd.cli import main
 from twin.errors import BadFile
 from twin.files.run_file import read_run
-from twin.foreign.clock import seconds
 from twin.foreign.mapping_file import mapped_run
-from twin.foreign.sheet import read_sheet
+from twin.sheets.clock import seconds
+from twin.sheets.sheet import read_sheet
 from twin.units import UM
 
 MACHINE = """format = "machine/1"

@@ -7,7 +7,7 @@ from matstd.cli import main
 from twin.errors import BadFile
 from twin.files.run_file import read_run
 from twin.foreign.points import read_points
-from twin.foreign.sheet import read_sheet
+from twin.sheets.sheet import read_sheet
 from twin.units import UM
 
 CHARACTERISTICS = """planid\tpartnb\tid\ttype\tidsymbol\tactual\tnominal\tuppertol\tdeviation

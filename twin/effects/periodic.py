@@ -35,6 +35,14 @@ FINEST_HARMONIC = 400
 """Of what an instrument of angles reads of an axis: worms have up to 180 teeth, gears more."""
 HIGHEST_HARMONIC = 12
 """A period of 30 degrees, which 26 distinct readings of the axis can tell from its neighbours."""
+ENOUGH_READINGS = 40
+"""Distinct readings of an axis, felt as displacements, from which teeth and gears are looked for:
+fewer poses have more of their own than two numbers of one wave in 400."""
+COHERENT = 0.999
+"""Mean resultant of readings times n from which n waves a turn look like none: readings are 2.6
+degrees of a wave off an even grid."""
+READINGS = 4000
+"""Readings of which it is taken; more make no difference."""
 
 
 @dataclass(frozen=True)
@@ -165,12 +173,19 @@ class Harmonic(_Repeating):
         return self._wave(touches, self.harmonic)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The harmonic, as far as the distinct readings of the axis can tell one from another."""
-        readings = np.unique(np.round(touches.reading(self.symbol.link), 4))
-        is_own = self.symbol.component == touches.chain.link(self.symbol.link).own_component
-        most = FINEST_HARMONIC if is_own and touches.instrument.reads_angle else HIGHEST_HARMONIC
-        highest = int(np.clip(len(readings) // 2 - 1, 2, most))
-        return (Inner("harmonic", "1", np.arange(2.0, highest + 1.0), continuous=False),)
+        """The harmonic, as far as the distinct readings of the axis can tell one from another.
+
+        Of the positioning of an axis that is as fine as the uneven readings resolve: worms and
+        gears turn many times in a turn of their axis.
+        """
+        link = self.symbol.link
+        readings = np.unique(np.round(touches.reading(link), 4))
+        highest = int(np.clip(len(readings) // 2 - 1, 2, HIGHEST_HARMONIC))
+        is_own = self.symbol.component == touches.chain.link(link).own_component
+        if is_own and (touches.instrument.reads_angle or len(readings) >= ENOUGH_READINGS):
+            highest = max(highest, finest_harmonic(readings))
+        grid = np.arange(2.0, highest + 1.0)
+        return (Inner("harmonic", "1", grid, continuous=False, over=link if is_own else ""),)
 
     def tuned(self, *values: float) -> "Harmonic":
         """With this harmonic."""
@@ -205,6 +220,28 @@ def scanned_periods(q: Array, pitch: float | None = None) -> Array:
         if beyond.all() and around[0] > 0.5 / max(travel, longest):
             frequencies = np.concatenate([frequencies, around])
     return np.asarray(1.0 / np.unique(frequencies)[::-1])
+
+
+def finest_harmonic(q: Array) -> int:
+    """Highest harmonic of a turn that readings do not take for a lower one, `FINEST_HARMONIC` at
+    most.
+
+    Readings that stand on a grid of n to the turn show harmonic n as a constant, and n - k as k.
+
+    Args:
+        q: Distinct readings of a rotary axis, (N,), rad.
+
+    Example:
+        >>> finest_harmonic(np.radians(np.arange(0.0, 360.0, 15.0)))
+        11
+        >>> finest_harmonic(np.radians([0.0, 13.7, 31.2, 43.5, 62.9, 70.1, 91.3, 104.6]))
+        400
+    """  # noqa: D205
+    if len(q) > READINGS:
+        q = np.random.default_rng(0).choice(q, READINGS, replace=False)
+    counts = np.arange(len(q) // 2, 2 * FINEST_HARMONIC + 1)
+    alike = (n for n in counts if abs(np.exp(1j * n * q).mean()) > COHERENT)
+    return (int(next(alike, 2 * FINEST_HARMONIC + 1)) - 1) // 2
 
 
 def usual_distance(q: Array) -> float:

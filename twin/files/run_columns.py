@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from twin.errors import BadFile
 from twin.files.pose_file import FARTHEST
-from twin.files.table import CsvTable
+from twin.files.table import KELVIN, CsvTable
 from twin.frames import Array
 from twin.machine import Chain
 from twin.record import IntArray, Labels, Moved, Touches, implied_approach
@@ -25,9 +25,6 @@ NORMAL = ("nx", "ny", "nz")
 TARGET = ("tx_mm", "ty_mm", "tz_mm")
 RADIUS = "radius_mm"
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
-
-COLDEST, HOTTEST = -60.0, 200.0
-"""Temperatures (degC) of a machine lie between; a logger writes -9999 for none."""
 
 MOST_GAPS = 0.5
 """A sensor with gaps in a larger share of its rows is left out."""
@@ -155,8 +152,7 @@ def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Ar
         match = SENSOR.match(column)
         if match is None:
             continue
-        values = table.numbers(column, empty=np.nan, finite=False, largest=np.inf)
-        gaps = ~((values >= COLDEST) & (values <= HOTTEST))
+        values, gaps = table.temperatures(column)
         filled = _mended(table, column, values, gaps, at, remarks)
         if filled is not None:
             out[match.group(1)] = filled
@@ -227,7 +223,8 @@ def _record_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) 
     if not np.isfinite(values[gaps]).any():
         return f"line {table.lines[first]}: {column} has no number in {rows}"
     first = int(np.argmax(gaps & np.isfinite(values)))
-    why = ": kelvin?" if np.all((values > HOTTEST) & (values < 400.0)) else ""
+    known = values[np.isfinite(values)]
+    why = ": kelvin?" if np.all((known > KELVIN[0]) & (known < KELVIN[1])) else ""
     return (
         f"line {table.lines[first]}: {column} reads {values[first]:g} degC, as no machine does"
         f"{why} ({rows})"

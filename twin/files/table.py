@@ -16,6 +16,16 @@ from twin.words import did_you_mean
 LARGEST = 1e12
 """Whatever a column holds, a number beyond this is a slip."""
 
+COLDEST, HOTTEST, NOZZLE = -60.0, 200.0, 500.0
+"""Temperatures (degC) of a machine lie between the first two; a logger writes -9999 for none. A
+sensor of what is heated, such as the nozzle of a printer, may go up to the third."""
+
+HEATED = 0.1
+"""Share of the readings above `HOTTEST` from which it is hot there, unless the sensor is stuck."""
+
+KELVIN = (240.0, 350.0)
+"""Readings that all lie between are those of a room in kelvin."""
+
 _OTHERS = {"semicolons": ";", "tabs": "\t"}
 _EXPECTED = "a cell a column, commas between them, and a point in decimal numbers"
 
@@ -139,6 +149,16 @@ class CsvTable:
             if out[i] < smallest:
                 raise self.bad(i, name, cell, f"{smallest:g} or more")
         return out
+
+    def temperatures(self, name: str) -> tuple[Array, NDArray[np.bool_]]:
+        """A column of temperatures, (N,), degC, and where no sensor of a machine gives it, (N,)."""
+        values = self.numbers(name, empty=math.nan, finite=False, largest=math.inf)
+        known = values[np.isfinite(values)]
+        hot = known[(known > HOTTEST) & (known <= NOZZLE)]
+        is_kelvin = bool(np.all((known > KELVIN[0]) & (known < KELVIN[1])))
+        is_heated = len(hot) > HEATED * len(known) and len(np.unique(hot)) > 2 and not is_kelvin
+        top = NOZZLE if is_heated else HOTTEST
+        return values, ~((values >= COLDEST) & (values <= top))
 
     def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:
         """The exception for a cell."""

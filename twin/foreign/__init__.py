@@ -7,43 +7,39 @@ and said to the user: what a machine did wrong is the negative of what its contr
 """
 
 from twin.foreign.acceptance import positioning_figures
+from twin.foreign.arm_mistakes import coupled, likely_mistake
 from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.circle import circle_machine, circle_run, read_circle
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
-from twin.foreign.points import (
-    joined_points,
-    linear_machine,
-    misplaced,
-    points_run,
-    read_points,
-)
+from twin.foreign.other_frame import in_measured_frame, in_nominal_frame, other_frames
+from twin.foreign.point_list import joined_points, misplaced
+from twin.foreign.points import linear_machine, points_run, read_points
 from twin.foreign.positioning import PositioningTest, read_positioning
 from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
-from twin.foreign.sheet import ANGLES, MM, Sheet, read_sheet, unit_of_column
 
 __all__ = [
-    "ANGLES",
-    "MM",
     "PositioningTest",
-    "Sheet",
     "arm_from_dh",
     "circle_machine",
     "circle_run",
+    "coupled",
+    "in_measured_frame",
+    "in_nominal_frame",
     "joined_points",
     "joint_readings",
+    "likely_mistake",
     "linear_machine",
     "machine_text",
     "mapped_run",
     "misplaced",
     "one_axis_machine",
+    "other_frames",
     "points_run",
     "positioning_figures",
     "positioning_run",
     "read_circle",
     "read_points",
     "read_positioning",
-    "read_sheet",
     "tracker_run",
-    "unit_of_column",
 ]

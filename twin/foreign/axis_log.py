@@ -4,10 +4,12 @@ import re
 
 import numpy as np
 
-from twin.foreign.sheet import Sheet
 from twin.frames import Array
 from twin.record import IntArray
+from twin.sheets import SECONDS, Sheet, unit_of_column
 
+_LOAD = re.compile(r"\AF_?([xyz])[\s_]*[\[(_]\s*N[\])]?\s*\Z", re.IGNORECASE)
+_OWN = re.compile(r"(.+?)[\s_]*[\[(]\s*([^\])]+?)\s*[\])]\s*\Z")
 _DEGREES = re.compile(r"[\[(_\s]*(°C|degC|deg C)[\])]?\s*\Z")
 
 
@@ -68,4 +70,33 @@ def temperatures(sheet: Sheet) -> dict[str, Array]:
         if match:
             name = re.sub(r"\W+", "_", column[: match.start()]).strip("_") or f"column{i + 1}"
             out[name.removeprefix("T_")] = sheet.numbers(i)
+    return out
+
+
+def loads(sheet: Sheet) -> Array | None:
+    """Load on the tool, (N, 3), N, of columns `Fx [N]`; None where there are none."""
+    found = {m[1].lower(): i for i, c in enumerate(sheet.columns) if (m := _LOAD.match(c))}
+    if not found:
+        return None
+    zero = np.zeros(len(sheet))
+    return np.stack([sheet.numbers(found[c]) if c in found else zero for c in "xyz"], axis=1)
+
+
+def own_columns(sheet: Sheet) -> dict[str, Array]:
+    """Whole columns with another unit than a length's, an angle's or a time's, `tau2 [Nm]`, (N,).
+
+    By name and unit as a run has them (`tau2_Nm`); they may drive any effect.
+    """
+    out = {}
+    for i, column in enumerate(sheet.columns):
+        match = _OWN.match(column)
+        if i in sheet.used or match is None or unit_of_column(column) or match[2] in SECONDS:
+            continue
+        if _DEGREES.search(column) or _LOAD.match(column):
+            continue
+        cells = [row[i] for row in sheet.cells]
+        if all(isinstance(cell, float) for cell in cells):
+            name, unit = (re.sub(r"\W+", "_", part).strip("_") for part in match.groups())
+            if name and unit:
+                out[f"{name}_{unit}"] = sheet.numbers(i)
     return out

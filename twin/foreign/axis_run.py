@@ -6,6 +6,7 @@ from twin.foreign.positioning import PositioningTest
 from twin.frames import Array, pose
 from twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
 from twin.record import Instrument, Run, Setup, Touches
+from twin.thermal import CYCLE, PROGRESS
 
 ARM = 1000.0
 """Arm (mm) by which the angle is told as a length: 1 µrad is 1 µm."""
@@ -72,13 +73,28 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         temperature=test.temperature,
         feature=np.array([f"cycle{c}" for c in test.cycle]),
         pose=held_out.astype(np.int64),
-        # a test without times, and yet what warms up moves from cycle to cycle
-        value={"cycle_1": test.cycle.astype(float)} if not is_log and cycles.max() > 1 else {},
+        value=_progress(test) if not is_log and cycles.max() > 1 else {},
         instrument=_instrument(test, is_log),
     )
     # one line of the file may hold many readings: the rows of the run are what messages name
     u_of_row = np.full(n, u * per_unit)
     return Run(touches, -test.deviation * per_unit, u_of_row, repeat=test.cycle)
+
+
+def _progress(test: PositioningTest) -> dict[str, Array]:
+    """What stands in the place of times: a test has none, and yet what warms up moves.
+
+    The cycle, and how much of the test was done: a cycle goes up over all targets and down again,
+    whatever the order in which a table lists them.
+    """
+    done = np.zeros(len(test.target))
+    numbers = np.unique(test.cycle)
+    for k, number in enumerate(numbers):
+        rows = np.flatnonzero(test.cycle == number)
+        way = np.where(test.direction[rows] < 0, -1, 1)
+        order = np.lexsort((way * test.target[rows], -way))
+        done[rows[order]] = k + (np.arange(len(rows)) + 0.5) / len(rows)
+    return {CYCLE: test.cycle.astype(float), PROGRESS: done}
 
 
 def _seen(test: PositioningTest, chain: Chain, q: Array) -> tuple[Array, Array, Array]:

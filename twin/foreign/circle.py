@@ -16,10 +16,10 @@ import numpy as np
 
 from twin.errors import BadFile, DesignError
 from twin.foreign.axis_log import strokes
-from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
 from twin.frames import Array, apply
 from twin.machine import Axis, Chain, linear_directions, make_chain, table_to_tool
 from twin.record import Instrument, IntArray, Labels, Run, Setup, Touches
+from twin.sheets import ANGLES, MM, Sheet, bare, unit_of_column
 from twin.units import MINUTE
 
 BETWEEN = 10.0

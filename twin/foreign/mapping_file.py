@@ -11,9 +11,8 @@ from pydantic import Field
 
 from twin.errors import BadFile
 from twin.files import Table, check_format, checked, parse_toml, read_text
-from twin.foreign.clock import clock_times, has_clock
-from twin.foreign.sheet import ANGLES, Sheet, unit_of_column
 from twin.frames import Array
+from twin.sheets import ANGLES, Sheet, clock_times, has_clock, unit_of_column
 
 
 class ColumnTable(Table):

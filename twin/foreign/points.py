@@ -11,7 +11,6 @@ Both compare where a point is with where it should be, and mean opposite things:
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -19,10 +18,12 @@ import numpy as np
 from twin.errors import BadFile
 from twin.foreign.coordinate_rows import letters_of_rows, nominal_and_measured, points_of_rows
 from twin.foreign.directions import signs
-from twin.foreign.sheet import MM, Sheet, bare, unit_of_column
+from twin.foreign.other_frame import OtherFrame, places
+from twin.foreign.point_list import PointList
 from twin.frames import Array
 from twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
-from twin.record import Instrument, IntArray, Labels, Run, Setup, Touches
+from twin.record import Instrument, Run, Setup, Touches
+from twin.sheets import MM, Sheet, bare, unit_of_column
 
 Meaning = Literal["part", "standard"]
 """Who made a list: see the module."""
@@ -38,35 +39,6 @@ _NAME = re.compile(
 )
 _APPROACH = re.compile(r"dir|richtung|approach|anfahr|revers|umkehr", re.IGNORECASE)
 _SETUP = re.compile(r"set-?up|part|session|date|day|aufspannung|werkst", re.IGNORECASE)
-
-NEARER = 2.0
-"""So many times nearer to the place of another than to its own a point is called misplaced."""
-
-FEWEST = 4
-"""Points from which a list has a common displacement."""
-
-
-@dataclass(frozen=True, eq=False)
-class PointList:
-    """Points with their nominal place and what was found of each coordinate.
-
-    Attributes:
-        nominal: (N, 3), mm.
-        deviation: Measured minus nominal, (N, 3), mm; not a number where it was not measured.
-        feature: Names of the points, (N,).
-        setup: Which part or set-up a point belongs to, (N,).
-        approach: Sign of the last motion of X, Y and Z towards the point, (N, 3); 0 unknown.
-        run: Which list it stands in where there are several, (N,); "" of one.
-        line: Line of the file, (N,).
-    """
-
-    nominal: Array
-    deviation: Array
-    feature: Labels
-    setup: Labels
-    line: IntArray
-    approach: IntArray
-    run: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
 
 
 def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
@@ -142,54 +114,6 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
     )
 
 
-def misplaced(points: PointList) -> list[tuple[str, str]]:
-    """Points that were found nearer to where another one belongs: (its name, the other's).
-
-    What all coordinates have in common is taken off first, for lists in another frame. Names mixed
-    up, or a list in another order, look so.
-    """
-    out = []
-    for one in np.unique(points.setup):
-        of = points.setup == one
-        nominal, seen = points.nominal[of], np.isfinite(points.deviation[of])
-        if len(nominal) < FEWEST or not seen.any():
-            continue
-        off = points.deviation[of]
-        common = [np.median(v[s]) if s.any() else 0.0 for v, s in zip(off.T, seen.T, strict=True)]
-        off = np.nan_to_num(off - common)
-        place, name = nominal + off, points.feature[of]
-        order = np.argsort(nominal[:, 0])
-        along = nominal[order, 0]
-        reach = np.linalg.norm(off, axis=1) / NEARER
-        first = np.searchsorted(along, place[:, 0] - reach)
-        last = np.searchsorted(along, place[:, 0] + reach)
-        for k in range(len(nominal)):
-            near = order[first[k] : last[k]]
-            near = near[near != k]
-            distance = np.linalg.norm(nominal[near] - place[k], axis=1)
-            if len(near) and distance.min() < reach[k]:
-                out.append((str(name[k]), str(name[near[np.argmin(distance)]])))
-    return out
-
-
-def joined_points(lists: Sequence[PointList], names: Sequence[str] = ()) -> PointList:
-    """Several lists as one; each is a run of its own, with set-ups that bear its name."""
-    if len(lists) == 1:
-        return lists[0]
-    if len(set(names)) < len(names):
-        names = [f"{name}-{i + 1}" for i, name in enumerate(names)]
-    of = list(zip(lists, names, strict=True))
-    return PointList(
-        nominal=np.concatenate([p.nominal for p in lists]),
-        deviation=np.concatenate([p.deviation for p in lists]),
-        feature=np.concatenate([p.feature for p in lists]),
-        setup=np.concatenate([[f"{name}_{s}" for s in p.setup] for p, name in of]),
-        line=np.concatenate([p.line for p in lists]),
-        approach=np.concatenate([p.approach for p in lists]),
-        run=np.concatenate([np.full(len(p.line), name) for p, name in of]),
-    )
-
-
 def _roles(sheet: Sheet) -> dict[tuple[str, str], int]:
     """Column of every role and letter."""
     found: dict[tuple[str, str], int] = {}
@@ -236,12 +160,16 @@ def _texts(sheet: Sheet, names: list[str], pattern: re.Pattern[str], empty: str)
     return [empty] * len(sheet)
 
 
-def linear_machine(points: PointList) -> Chain:
+def linear_machine(points: PointList, frames: Sequence[OtherFrame] = ()) -> Chain:
     """A machine of the linear axes along which the points extend, for a list without a machine.
 
     An axis along which points were measured but do not extend gets a travel of 2 mm.
+
+    Args:
+        frames: In which the machine measured them where it is not the nominal frame.
     """
-    low, high = points.nominal.min(axis=0), points.nominal.max(axis=0)
+    at = places(points, frames)
+    low, high = at.min(axis=0), at.max(axis=0)
     moves = (high > low) | ((high == low) & np.isfinite(points.deviation).any(axis=0))
     travels = {
         letter: Axis(range=(float(low[i]), float(high[i])))
@@ -253,7 +181,13 @@ def linear_machine(points: PointList) -> Chain:
     return make_chain("linear machine", f"[w f {' '.join(travels)} t]", travels, (0.0, 0.0, 0.0))
 
 
-def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> Run:
+def points_run(
+    points: PointList,
+    meaning: Meaning,
+    chain: Chain,
+    u: float,
+    frames: Sequence[OtherFrame] = (),
+) -> Run:
     """Run of a list of points: a row a measured coordinate, with the direction of that coordinate.
 
     Readings are those that bring the tool point of the nominal machine to the nominal place, with
@@ -263,16 +197,18 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
         points: The list.
         meaning: `part` or `standard`; it decides the sign.
         u: Standard uncertainty of one coordinate, mm.
+        frames: Where the set-ups of a standard stand that are not where the list says; deviations
+            are those in these frames.
 
     Raises:
         OutsideTravel: A point that the machine does not reach.
     """
     rows, axis = np.nonzero(np.isfinite(points.deviation))
-    place = points.nominal[rows]
     length = np.zeros(len(rows))
-    q = _readings(chain, place, length)
-    normal = np.eye(3)[axis]
+    q = _readings(chain, places(points, frames)[rows], length)
     labels = list(dict.fromkeys(points.setup.tolist()))  # in the order of the lists
+    stands = {label: np.eye(4) for label in labels} | {f.setup: f.T for f in frames}
+    turned = np.array([stands[label][:3, :3] for label in points.setup])[rows]
     setup = np.array([labels.index(label) for label in points.setup], dtype=np.int64)
     of = (
         dict(zip(points.setup.tolist(), points.run.tolist(), strict=True))
@@ -285,9 +221,9 @@ def points_run(points: PointList, meaning: Meaning, chain: Chain, u: float) -> R
         q=q,
         length=length,
         radius=np.zeros(len(rows)),
-        point=place,
-        normal=normal,
-        setups=tuple(Setup(_key(label), run=of.get(label, "")) for label in labels),
+        point=points.nominal[rows],
+        normal=turned[np.arange(len(rows)), axis],  # of the machine, as the standard sees it
+        setups=tuple(Setup(_key(k), stands[k], run=of.get(k, "")) for k in labels),
         setup=setup[rows],
         time=np.zeros(len(rows)),
         approach=_approach(points, chain)[rows],

@@ -17,11 +17,10 @@ import numpy as np
 
 from twin.errors import BadFile
 from twin.foreign.axis_log import approaches, strokes, temperatures
-from twin.foreign.clock import seconds
 from twin.foreign.directions import DOWN, UP, signs
-from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
 from twin.frames import Array
 from twin.record import IntArray
+from twin.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
 
 ALL_BUT = 0.1
 """Slope over the targets, off from 1 by less, of positions: no axis is wrong by a tenth."""

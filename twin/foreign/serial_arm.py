@@ -1,4 +1,4 @@
-"""Serial arms under a tracker: joint readings with the place at which a reflector really was.
+"""Serial arms under a tracker: joint readings with the places at which reflectors really were.
 
 The tracker says where the reflector is, the readings where a controller that believes in the
 nominal arm takes it to be; the run has the difference along x, y and z of the tracker. Where the
@@ -10,12 +10,12 @@ import re
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.errors import BadFile, DesignError
-from twin.foreign.axis_log import temperatures
-from twin.foreign.clock import seconds
-from twin.foreign.sheet import ANGLES, MM, Sheet, bare, unit_of_column
-from twin.frames import Array, apply, inverse, pose, rotation
+from twin.foreign.axis_log import loads, own_columns, temperatures
+from twin.foreign.reflectors import placed, reflector_places
+from twin.frames import Array, pose, rotation
 from twin.machine import Axis, Chain, make_chain, table_to_tool
 from twin.record import (
     Instrument,
@@ -23,22 +23,14 @@ from twin.record import (
     Setup,
     Touches,
     computed_deviation,
-    rigid_motion,
 )
+from twin.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
 
 _JOINT = re.compile(
     r"(?:\A|[^a-z])(?:j|joint|axis|achse|gelenk|q|theta|a)[\s_.]*(\d)", re.IGNORECASE
 )
-_LETTER = re.compile(r"(?<![a-z])([xyz])(?![a-z])", re.IGNORECASE)
-_MEASURED = re.compile(r"meas|act|ist\b|track|refl|laser", re.IGNORECASE)
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 _DH = {"a": r"\Aa\b", "alpha": r"alpha|α", "d": r"\Ad\b", "theta": r"theta|offset|θ"}
-
-ROUNDS = 50
-"""Most steps of Gauss and Newton towards tracker and reflector; five are usual."""
-
-SETTLED = 1e-9
-"""Step (mm, rad) below which they have arrived."""
 
 FEWEST = 6
 """Poses for the nine unknown numbers of tracker and reflector, three equations each, with some
@@ -168,37 +160,14 @@ def joint_readings(sheet: Sheet, axes: Sequence[str] = ()) -> tuple[Array, tuple
     return np.stack(q, axis=1), tuple(sheet.columns[i] for i in columns)
 
 
-def reflector_places(sheet: Sheet) -> Array:
-    """Where a reflector was measured, (N, 3), mm; mm where the name of a column has no unit.
-
-    Raises:
-        BadFile: No columns x, y, z, or several of one letter of which none says that it was
-            measured.
-    """
-    columns = []
-    for letter in "xyz":
-        named = [
-            i
-            for i, c in enumerate(sheet.columns)
-            if (m := _LETTER.search(bare(c).replace("_", " "))) and m.group(1).lower() == letter
-        ]
-        measured = [i for i in named if _MEASURED.search(sheet.columns[i])]
-        chosen = measured if len(named) > 1 else named
-        if len(chosen) != 1:
-            found = ", ".join(repr(sheet.columns[i]) for i in named) or "no such column"
-            raise BadFile(sheet.path, "header", found, f"one column of measured {letter}")
-        columns.append(chosen[0])
-    units = [MM.get(unit_of_column(sheet.columns[i]) or "mm", 1.0) for i in columns]
-    return np.stack([sheet.numbers(i) * u for i, u in zip(columns, units, strict=True)], axis=1)
-
-
 def tracker_run(
     sheet: Sheet, chain: Chain, q: Array, u: float, reflector: Array | None = None
 ) -> Run:
-    """Run of an arm under a tracker: three rows a pose, along x, y and z of the tracker.
+    """Run of an arm under a tracker: three rows a reflector and pose, along x, y, z of the tracker.
 
     Args:
-        sheet: With columns x, y, z, and times and temperatures if it has them.
+        sheet: With columns x, y, z of one reflector or several; times, temperatures, loads and
+            columns of other units (torques, currents) if it has them.
         chain: The arm.
         q: Readings in the order of its axes, (N, A), mm and rad.
         u: Standard uncertainty of one coordinate, mm.
@@ -215,61 +184,42 @@ def tracker_run(
             f"{sheet.path}: {q.shape[1]} columns of joints, expected "
             f"{len(chain.programmed_axes)}: {', '.join(chain.programmed_axes)}"
         )
-    place = reflector_places(sheet)
+    place, names = reflector_places(sheet)
+    if reflector is not None and len(names) > 1:
+        raise DesignError(f"{sheet.path}: {len(names)} reflectors, expected one where it is stated")
     clock = next((i for i, c in enumerate(sheet.columns) if _TIME.search(c)), None)
     time = np.zeros(len(q))
     if clock is not None:
         time = seconds(sheet, clock)
-    there = np.isfinite(place).all(axis=1) & np.isfinite(q).all(axis=1)
-    if there.sum() < FEWEST:
-        raise DesignError(f"{sheet.path}: {int(there.sum())} poses, expected {FEWEST} at least")
-    T_table_tool = table_to_tool(chain, q[there])
-    T_table_tracker, target = _placed(T_table_tool, place[there], reflector)
-    rows = np.repeat(np.flatnonzero(there), 3)
-    n = len(rows)
+    force, own = loads(sheet), own_columns(sheet)
+    moved: NDArray[np.bool_] = np.all(np.isfinite(q), axis=1)
+    there = np.all(np.isfinite(place), axis=2) & moved[:, None]
+    shots = there.any(axis=1)
+    if shots.sum() < FEWEST:
+        raise DesignError(f"{sheet.path}: {int(shots.sum())} poses, expected {FEWEST} at least")
+    T_table_tool = table_to_tool(chain, q[shots])
+    stated = None if reflector is None else reflector[None]
+    T_table_tracker, target = placed(T_table_tool, place[shots], stated)
+    which, of = (np.repeat(k, 3) for k in np.nonzero(there))
+    n = len(which)
     touches = Touches(
         chain=chain,
-        q=q[rows],
-        length=np.full(n, -target[2]),
-        offset=np.tile(target[:2], (n, 1)),
+        q=q[which],
+        length=-target[of, 2],
+        offset=target[of, :2],
         radius=np.zeros(n),
-        point=place[rows],
+        point=place[which, of],
         normal=np.tile(np.eye(3), (n // 3, 1)),
         setups=(Setup("tracker", T_table_tracker),),
         setup=np.zeros(n, dtype=np.int64),
-        time=time[rows],
+        time=time[which],
         approach=np.zeros((n, len(chain.axes))),
-        temperature={name: values[rows] for name, values in temperatures(sheet).items()},
-        feature=np.full(n, "reflector"),
-        pose=np.repeat(np.arange(n // 3), 3),
+        temperature={name: values[which] for name, values in temperatures(sheet).items()},
+        force=None if force is None else force[which],
+        value={name: values[which] for name, values in own.items()},
+        feature=np.array(names)[of],
+        pose=np.unique(which, return_inverse=True)[1],
         instrument=Instrument.TRACKER,
     )
-    lines = np.array(sheet.lines)[rows]
+    lines = np.array(sheet.lines)[which]
     return Run(touches, computed_deviation(touches), np.full(n, u), line=lines)
-
-
-def _placed(T_table_tool: Array, place: Array, reflector: Array | None) -> tuple[Array, Array]:
-    """Pose of the tracker's frame in the table, (4, 4), and the reflector in the tool frame, (3,).
-
-    ``R (p + R_i v) + t = x`` with (R, t) what takes the table to the tracker and v the reflector,
-    by Gauss and Newton from the tracker that fits the flange.
-    """
-    v = np.zeros(3) if reflector is None else reflector
-    T = rigid_motion(apply(T_table_tool, np.broadcast_to(v, place.shape)), place, np.eye(4))
-    for _ in range(ROUNDS):
-        at = apply(T, apply(T_table_tool, np.broadcast_to(v, place.shape)))
-        left = (place - at).reshape(-1)
-        arm = at - T[:3, 3]
-        J = np.zeros((len(place), 3, 9))
-        J[:, :, :3] = np.cross(np.eye(3), arm[:, None, :]).transpose(0, 2, 1)
-        J[:, :, 3:6] = np.eye(3)
-        J[:, :, 6:] = T[:3, :3] @ T_table_tool[:, :3, :3]
-        free = 9 if reflector is None else 6
-        step = np.zeros(9)
-        step[:free] = np.linalg.lstsq(J.reshape(-1, 9)[:, :free], left, rcond=None)[0]
-        R = rotation(step[:3]) @ T[:3, :3]
-        T = pose(R, T[:3, 3] + step[3:6])
-        v = v + step[6:]
-        if np.abs(step).max() < SETTLED:
-            break
-    return inverse(T), v

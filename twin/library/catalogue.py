@@ -38,6 +38,7 @@ from twin.machine import Chain
 from twin.model import Effect, Kind, Title, Titled, columns, is_tunable
 from twin.record import Touches
 from twin.thermal import (
+    axis_warming,
     column_bending,
     follows,
     thermal_expansion,
@@ -308,6 +309,7 @@ for _kind in (
     periodic.KIND,
     position_table.KIND,
     thermal_expansion.KIND,
+    axis_warming.KIND,
     thermal_lag.KIND,
     follows.STATIC,
     thermal_field.KIND,

@@ -53,8 +53,12 @@ class Contribution(NamedTuple):
 
     @classmethod
     def zeros(cls, n: int, links: int) -> "Contribution":
-        """Nothing disturbed at n touches of a machine with that many links."""
-        return cls(np.zeros((n, links, 6)), np.zeros((n, links, 6)), np.zeros((n, 3)), np.zeros(n))
+        """Nothing disturbed at n touches of a machine with that many links.
+
+        In memory the touches of one entry lie side by side, since entries are what is added to.
+        """
+        twist, place = (np.moveaxis(np.zeros((links, 6, n)), -1, 0) for _ in range(2))
+        return cls(twist, place, np.zeros((n, 3)), np.zeros(n))
 
     def add(self, where: Where, amount: Array) -> None:
         """Add an amount (N,) to one entry, in place."""

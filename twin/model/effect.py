@@ -105,8 +105,8 @@ class Inner(NamedTuple):
         acts: "smoothly", such as a time constant or a width; "with a period", the reading in which
             the effect repeats; "at an instant", a time at which something jumps, so that every
             instant between two touches is as good as another.
-        over: Of a period the axis over whose reading it repeats; empty where it repeats over
-            something else.
+        over: Of a period, or of the waves of a turn, whose unit is "1", the axis over whose
+            reading it repeats; empty where it repeats over something else.
     """
 
     name: str
@@ -115,6 +115,15 @@ class Inner(NamedTuple):
     continuous: bool = True
     acts: Acts = "smoothly"
     over: str = ""
+
+    @property
+    def is_harmonic(self) -> bool:
+        """Whether it counts the waves of a turn; else it is a length."""
+        return bool(self.over) and self.unit == "1"
+
+    def frequency(self, value: Array) -> Array:
+        """Of what repeats over an axis the waves per mm, or per rad, at values of it."""
+        return value / (2.0 * np.pi) if self.is_harmonic else 1.0 / value
 
 
 @runtime_checkable

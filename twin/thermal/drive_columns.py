@@ -22,6 +22,8 @@ SPEED_UNIT = 1.0e4
 """Amplitudes after the spindle speed are those at 10 000 rpm, 1/min."""
 CYCLE = "cycle_1"
 """Own column that counts the cycles of a positioning test, as import writes it."""
+PROGRESS = "cycles_done_1"
+"""Own column beside it: cycles that were done when a reading was taken, parts of them included."""
 OWN = "V_"
 """Begins a drive that is a column of the user's own, as in the run file."""
 

@@ -17,7 +17,16 @@ from twin.model import (
     sensors,
 )
 from twin.record import Touches
-from twin.thermal.drive_columns import CYCLE, OWN, driven, drives, is_own, step_inner, step_of
+from twin.thermal.drive_columns import (
+    CYCLE,
+    OWN,
+    PROGRESS,
+    driven,
+    drives,
+    is_own,
+    step_inner,
+    step_of,
+)
 from twin.units import UM, URAD
 
 
@@ -89,8 +98,9 @@ class Follows:
     @property
     def title(self) -> Title:
         """In the words of those who run machines."""
-        if self.column == CYCLE:
-            return Title(f"{self.symbol.title} that grows with every cycle", self.symbol.link)
+        if self.column in (CYCLE, PROGRESS):
+            how = "with every cycle" if self.column == CYCLE else "steadily over the cycles"
+            return Title(f"{self.symbol.title} that grows {how}", self.symbol.link)
         column = self.column.removesuffix("_1").replace("_", " ")
         return Title(f"{self.symbol.title} that follows {column}", self.symbol.link)
 

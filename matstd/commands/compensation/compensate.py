@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.commands.compensation.options import add_state, add_tool_radius
+from matstd.commands.compensation.options import add_program, add_state
 from twin.errors import DesignError
 
 if TYPE_CHECKING:
@@ -30,14 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         help="between a path and the lines it becomes, µm (1)",
     )
-    parser.add_argument(
-        "--tool",
-        metavar="NUMBER=MM",
-        nargs="+",
-        default=[],
-        help="lengths of tools of the program; others have that of the datum",
-    )
-    add_tool_radius(parser)
+    add_program(parser)
     parser.add_argument(
         "--loads",
         metavar="LOADS.csv",
@@ -79,14 +72,8 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     """A compensated program, its points as a table, its picture."""
     from dataclasses import replace
 
-    from compensation.programs import (
-        TOLERANCE,
-        Frame,
-        compensated,
-        read_loads,
-        read_part_program,
-        write_trajectory,
-    )
+    from compensation.part_programs import Frame, read_loads, read_part_program
+    from compensation.programs import TOLERANCE, compensated, write_trajectory
     from matstd.commands.compensation.job import by_tool
     from matstd.console import say
     from report.compensation import draw_program, program_lines
@@ -103,6 +90,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
         frame,
         by_tool("--tool", args.tool),
         by_tool("--tool-radius", args.tool_radius),
+        args.pass_m,
     )
     if args.loads:
         program = replace(program, loads=read_loads(args.loads))

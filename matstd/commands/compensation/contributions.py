@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.commands.compensation.options import add_state, add_tool_radius
+from matstd.commands.compensation.options import add_program, add_state
 from twin.errors import DesignError
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
     parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
     parser.add_argument("--program", metavar="IN", help="a part program (.H, .ngc)")
-    add_tool_radius(parser)
+    add_program(parser)
     parser.add_argument(
         "--loads", metavar="LOADS.csv", help="process forces by the lines of the program"
     )
@@ -60,14 +60,15 @@ def _poses(args: argparse.Namespace, job: Job) -> Touches:
     """Poses that the program passes, or those of the file."""
     from dataclasses import replace
 
-    from compensation.programs import Frame, passed, read_loads, read_part_program
+    from compensation.part_programs import Frame, read_loads, read_part_program
+    from compensation.programs import passed
     from matstd.commands.compensation.job import by_tool
     from twin.files import read_poses
 
     if args.program is not None:
         frame = Frame(job.errors.chain, job.datum)
-        radii = by_tool("--tool-radius", args.tool_radius)
-        program = read_part_program(Path(args.program), frame, radii=radii)
+        tools = by_tool("--tool", args.tool), by_tool("--tool-radius", args.tool_radius)
+        program = read_part_program(Path(args.program), frame, *tools, args.pass_m)
         loads = read_loads(args.loads) if args.loads else ()
         return passed(replace(program, loads=loads), job.errors)
     q, length = read_poses(args.poses, job.errors.chain)

@@ -106,14 +106,12 @@ def _with_unknowns(errors: MachineErrors) -> MachineErrors:
     return errors
 
 
-def by_tool(option: str, words: Sequence[str]) -> dict[int, float]:
-    """Lengths or radii of tools by number, mm; raises DesignError."""
-    out = {}
-    for number, size in _numbers(option, words):
-        if not number.isdigit():
-            raise DesignError(f"{option} {number}={size:g}: expected a number, such as 3=120")
-        out[int(number)] = size
-    return out
+def by_tool(option: str, words: Sequence[str]) -> dict[int | str, float]:
+    """Lengths or radii of tools by number, or by name in capitals, mm; raises DesignError."""
+    return {
+        int(name) if name.isdigit() else name.upper(): size
+        for name, size in _numbers(option, words)
+    }
 
 
 def _errors(args: argparse.Namespace, state: State) -> MachineErrors:

@@ -79,11 +79,26 @@ def _add_driven(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_tool_radius(parser: argparse.ArgumentParser) -> None:
-    """The option `--tool-radius`."""
+def add_program(parser: argparse.ArgumentParser) -> None:
+    """What a part program leaves open: its tools, M functions of the machine."""
+    _several(
+        parser,
+        "--tool",
+        "TOOL=MM",
+        "lengths of tools of the program by number or name; others have that of the datum",
+    )
     _several(
         parser,
         "--tool-radius",
-        "NUMBER=MM",
-        "radii of tools, where the program goes beside a contour (RL, RR, G41, G42)",
+        "TOOL=MM",
+        "radii of tools by number or name, where the program goes beside a contour "
+        "(RL, RR, G41, G42)",
+    )
+    parser.add_argument(
+        "--pass-m",
+        metavar="NUMBER",
+        nargs="+",
+        type=int,
+        default=[],
+        help="M functions of this machine that move nothing and change no coordinates",
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 from typing import TYPE_CHECKING, Any
 
 from matstd.options import add_output, seen_from
@@ -11,9 +10,9 @@ from matstd.options import add_output, seen_from
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from twin.foreign import PositioningTest, Sheet
     from twin.machine import Chain
     from twin.record import Run
+    from twin.sheets import Sheet
 
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
@@ -45,6 +44,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
     parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
+    parser.add_argument(
+        "--in-order",
+        metavar="SECONDS",
+        type=float,
+        help="rows stand in the order in which they were taken, so far apart: for slips and drifts",
+    )
     parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
     parser.add_argument(
         "--columns", metavar="NAME,...", help="names of the columns of a table without a header"
@@ -81,7 +86,7 @@ def _add_kinds(parser: argparse.ArgumentParser) -> None:
     kind.add_argument(
         "--arm",
         action="store_true",
-        help="serial arm under a tracker: columns j1, j2 ... of joints and x, y, z of a reflector",
+        help="serial arm under a tracker: columns j1, j2 ... of joints and x, y, z of reflectors",
     )
     kind.add_argument("--map", metavar="MAP.toml", help="any other table, by a mapping file")
 
@@ -125,6 +130,13 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
         "--modified", action="store_true", help="the parameters of --dh are modified ones (Craig)"
     )
     arm.add_argument(
+        "--coupled",
+        metavar="J3+J2",
+        action="append",
+        default=[],
+        help="a joint whose readings count from the link before another joint (Fanuc: J3+J2)",
+    )
+    arm.add_argument(
         "--reflector",
         help="place of the reflector, mm, in the tool frame, or with --dh in the frame of the "
         "flange; found from the data where it is not stated",
@@ -139,12 +151,14 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say
     from twin.errors import DesignError
     from twin.files import refuse_to_overwrite
-    from twin.foreign import read_sheet
+    from twin.sheets import read_sheet
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
     names = [n.strip() for n in args.columns.split(",")] if args.columns else ()
     sheets = [read_sheet(path, args.sheet, names) for path in args.files]
+    if args.in_order is not None and not (args.arm or args.part or args.standard):
+        raise DesignError("--in-order: expected with --arm, --part or --standard alone")
     if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:
@@ -205,6 +219,7 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
     import numpy as np
 
+    from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
     from twin.files import refuse_to_overwrite, write_run, write_whole
     from twin.foreign import machine_text
@@ -212,13 +227,15 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
     meaning = next(m for m in _SIGN if getattr(args, m))
     if args.positioning or args.component:
-        measured, chain = _positioning(args, sheets[0])
+        measured, chain = positioning(args, sheets[0])
     elif args.circle:
-        measured, chain = _circle(args, sheets[0])
+        measured, chain = circle(args, sheets[0])
     elif args.arm:
-        measured, chain = _arm(args, sheets[0])
+        measured, chain = arm(args, sheets[0])
     else:
-        measured, chain = _points(args, sheets, meaning)
+        measured, chain = points(args, sheets, meaning)
+    if args.in_order is not None:
+        measured = _in_order(args, measured)
     for sheet in sheets:
         if sheet.unused:
             say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
@@ -236,164 +253,22 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
         say(f"- {machine}: made from the data; check what is marked PLACEHOLDER")
 
 
-def _positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
-    """A positioning test as a run."""
-    from twin.errors import DesignError
-    from twin.files import read_machine
-    from twin.foreign import one_axis_machine, positioning_run, read_positioning
-    from twin.units import UM, URAD
+def _in_order(args: argparse.Namespace, run: Run) -> Run:
+    """The run with times by the order of the rows of its table; those of one row are one moment."""
+    from dataclasses import replace
 
-    name = args.component or ""
-    axis = name[-1:] if name else args.positioning
-    if name and not re.fullmatch("E[XYZABC][XYZ]", name):
-        raise DesignError(f"--component {name}: expected a component error of X, Y or Z, as EYX")
-    if axis not in tuple("XYZABC"):
-        raise DesignError(f"--positioning {axis}: expected one of X Y Z A B C")
-    test = read_positioning(sheet, axis, args.unit, (args.target, args.actual), name)
-    u = _uncertainty(args, "u_urad", URAD) if test.is_angle else _uncertainty(args, "u_um", UM)
-    _say_positioning(test)
-    chain = read_machine(args.machine) if args.machine else one_axis_machine(axis, test.target)
-    return positioning_run(test, chain, u), chain
-
-
-def _say_positioning(test: PositioningTest) -> None:
-    """Targets, directions, and the figures of the standard, which no model makes."""
     import numpy as np
 
-    from matstd.console import say
-    from twin.foreign import positioning_figures
-    from twin.units import DEG, UM, URAD
-
-    turns = test.axis in "ABC"
-    low, high = (v / (DEG if turns else 1.0) for v in (test.target.min(), test.target.max()))
-    up, down = (int((test.direction == s).sum()) for s in (1, -1))
-    say(
-        f"- {len(np.unique(test.target))} targets from {low:g} to {high:g}, "
-        f"{len(np.unique(test.cycle))} cycles or strokes; {up} readings with {test.axis} growing, "
-        f"{down} with it falling{', by the order of the rows' if test.is_by_order else ''}"
-    )
-    if not up and not down:
-        say("- no direction of approach is stated (columns up and down): no reversal can be found")
-    if not test.is_own:
-        _say_component(test)
-        return
-    found = None if np.any(test.time) else positioning_figures(test)
-    if found is not None:
-        unit, name = (URAD, "µrad") if turns else (UM, "µm")
-        say(
-            f"- ISO 230-2: reversal B {found.reversal / unit:.3g} {name} "
-            f"(mean {found.mean_reversal / unit:.3g}), M {found.mean_range / unit:.3g}, "
-            f"E {found.systematic / unit:.3g}, R {found.repeatability / unit:.3g}, "
-            f"A {found.accuracy / unit:.3g} {name}"
-        )
-
-
-def _say_component(test: PositioningTest) -> None:
-    """Peak to valley of the mean curve, of a straightness about its line of least squares."""
-    import numpy as np
-
-    from matstd.console import say
-    from twin.units import UM, URAD
-
-    targets, of = np.unique(np.round(test.target, 6), return_inverse=True)
-    mean = np.bincount(of.ravel(), test.deviation) / np.bincount(of.ravel())
-    if test.is_angle:
-        say(f"- angular error {test.component}: {np.ptp(mean) / URAD:.3g} µrad peak to valley")
-        return
-    left = mean - np.polyval(np.polyfit(targets, mean, 1), targets)
-    say(
-        f"- straightness {test.component}: {np.ptp(left) / UM:.3g} µm peak to valley about the "
-        "line of least squares"
-    )
-
-
-def _circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
-    """A circular test as a run."""
-    from matstd.console import say
     from twin.errors import DesignError
-    from twin.files import read_machine
-    from twin.foreign import circle_machine, circle_run, read_circle
-    from twin.units import UM
+    from twin.units import DAY
 
-    plane = args.circle.upper()
-    if plane not in ("XY", "YZ", "ZX", "YX", "ZY", "XZ"):
-        raise DesignError(f"--circle {args.circle}: expected two axes such as XY, YZ or ZX")
-    for option, value in (("--radius", args.radius), ("--feed", args.feed)):
-        if value is None and option == "--feed":
-            continue
-        if value is None or not 0.0 < value < 1e6:
-            found = "not given" if value is None else f"{value:g}"
-            raise DesignError(f"{option}: {found}; expected a number above 0")
-    test = read_circle(sheet, plane, args.radius, args.unit)
-    for run in dict.fromkeys(test.run):
-        rows = test.run == run
-        way = "from the first axis to the second" if test.sense[rows][0] > 0 else "the other way"
-        say(f"- {run}: {int(rows.sum())} readings, {way}")
-    if args.feed is None:
-        say("- without --feed nothing is known of speeds: a servo lag cannot be told")
-    chain = read_machine(args.machine) if args.machine else circle_machine(plane, args.radius)
-    u = _uncertainty(args, "u_um", UM)
-    if args.bar_force is not None and not abs(args.bar_force) <= 1e5:
-        raise DesignError(f"--bar-force {args.bar_force:g}: expected at most 100000 N")
-    return circle_run(test, chain, u, args.centre, args.feed, args.bar_force), chain
-
-
-def _arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
-    """An arm under a tracker as a run."""
-    import numpy as np
-
-    from matstd.console import say
-    from twin.errors import DesignError
-    from twin.files import read_machine
-    from twin.foreign import arm_from_dh, joint_readings, read_sheet, tracker_run
-    from twin.units import UM
-
-    if bool(args.machine) == bool(args.dh):
-        given = "both given" if args.dh else "neither given"
-        raise DesignError(f"--machine, --dh: {given}; expected the arm by one of them")
-    chain, turned = read_machine(args.machine) if args.machine else None, np.eye(3)
-    q, columns = joint_readings(sheet, chain.programmed_axes if chain else ())
-    if chain is None:
-        chain, turned = arm_from_dh(read_sheet(args.dh), q, is_modified=args.modified)
-    stated = None if args.reflector is None else turned @ np.array(args.reflector)
-    measured = tracker_run(sheet, chain, q, _uncertainty(args, "u_um", UM), stated)
-    pairs = zip(columns, chain.programmed_axes, strict=True)
-    say(f"- axes: {', '.join(f'{column} is {axis}' for column, axis in pairs)}")
-    at = ", ".join(f"{v:.3f}" for v in measured.touches.target[0])
-    how = "found" if stated is None else "stated"
-    say(f"- reflector at ({at}) mm of the tool frame, as {how}; the tracker's frame is the set-up")
-    return measured, chain
-
-
-def _points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple[Run, Chain]:
-    """A list of points as a run."""
-    from matstd.console import say
-    from twin.files import read_machine
-    from twin.foreign import joined_points, linear_machine, misplaced, points_run, read_points
-    from twin.units import UM
-
-    lists = [read_points(sheet, args.unit) for sheet in sheets]
-    points = joined_points(lists, [sheet.path.stem for sheet in sheets])
-    wrong = misplaced(points)
-    if wrong:
-        some = ", ".join(f"{own!r} at {other!r}" for own, other in wrong[:3])
-        say(
-            f"- {len(wrong)} of {len(points.line)} points were found nearer to the nominal place "
-            f"of another point than to their own ({some}): names or their order are mixed up?"
-        )
-    chain = read_machine(args.machine) if args.machine else linear_machine(points)
-    u = _uncertainty(args, "u_um", UM)
-    return points_run(points, "part" if meaning == "part" else "standard", chain, u), chain
-
-
-def _uncertainty(args: argparse.Namespace, name: str, unit: float) -> float:
-    """The stated uncertainty of one reading; raises DesignError where none is stated."""
-    from twin.errors import DesignError
-
-    stated = getattr(args, name)
-    option = f"--{name.replace('_', '-')}"
-    if stated is None:
-        raise DesignError(f"{option}: not given; expected the standard uncertainty of one reading")
-    if not 1e-6 <= stated <= 1e5:
-        raise DesignError(f"{option} {stated:g}: expected a number from 0.000001 to 100000")
-    return float(stated * unit)
+    if not 0.0 < args.in_order <= DAY:
+        raise DesignError(f"--in-order {args.in_order:g}: expected seconds from 0 to {DAY:g}")
+    t = run.touches
+    if np.ptp(t.time) > 0.0:
+        raise DesignError(f"--in-order: {args.files[0]} has times; expected a table without")
+    time = np.zeros(len(run))
+    for k in np.unique(t.run):
+        rows = t.run == k
+        time[rows] = args.in_order * np.unique(run.line[rows], return_inverse=True)[1]
+    return replace(run, touches=replace(t, time=time))

@@ -16,9 +16,11 @@ import numpy as np
 
 from twin.errors import BadFile
 from twin.files import read_any_text
-from twin.foreign.blanks import by_blanks
-from twin.foreign.channel_log import by_channels
 from twin.frames import Array
+from twin.sheets.blanks import by_blanks
+from twin.sheets.channel_log import by_channels
+from twin.sheets.height_map import by_heights
+from twin.sheets.several_tables import fullest_table
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 """Endings of files that are read as workbooks."""
@@ -220,7 +222,7 @@ def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
     text = read_any_text(path)
     counts = {s: _typical(text, s) for s in _SEPARATORS}
     separator = next((s for s in _SEPARATORS if counts[s] >= 1), "")
-    rows = by_channels(text)
+    rows = by_heights(path, text) or by_channels(text)
     if not rows and separator in ("", ","):
         rows = by_blanks(text)
     if not rows:
@@ -263,6 +265,7 @@ def _table(
 ) -> Sheet | None:
     """Header and rows of numbers, None where there are none."""
     rows = [(line, row) for line, row in rows if any(c != "" for c in row)]
+    rows, passed_over = fullest_table(rows, _is_data)
     first = next((i for i in range(len(rows)) if _begins_table(rows, i)), None)
     if first is None:
         return None
@@ -286,7 +289,7 @@ def _table(
         cells=tuple((*row, *[""] * (width - len(row))) for _, row in data),
         lines=tuple(line for line, _ in data),
         title=tuple(title),
-        left_out=tuple(others),
+        left_out=tuple(sorted([*others, *passed_over])),
         above=tuple(blocks[line] for line, _ in data),
     )
 

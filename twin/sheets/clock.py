@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.errors import BadFile
-from twin.foreign.sheet import Sheet, unit_of_time
 from twin.frames import Array
+from twin.sheets.sheet import Sheet, unit_of_time
 from twin.units import DAY, HOUR, MINUTE
 
 _CLOCK = re.compile(

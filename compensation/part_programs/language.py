@@ -7,8 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.programs.frame import Frame
-from compensation.programs.motion import Arc, Item, Keep, Motion, angle_between, centre_of
+from compensation.part_programs.frame import Frame
+from compensation.part_programs.motion import (
+    Arc,
+    Corner,
+    Cycle,
+    Item,
+    Keep,
+    Motion,
+    angle_between,
+    centre_of,
+)
 from twin.errors import BadFile
 from twin.frames import Array
 from twin.machine import Chain
@@ -24,27 +33,29 @@ class Reading:
     Attributes:
         path: Of the program, for messages.
         frame: Where the program's zero stands on the machine.
-        lengths: Of tools by number, mm; of the others that of the datum.
+        lengths: Of tools by number or name, mm; of the others that of the datum.
         radii: Of tools by number, mm.
+        passed: Numbers of M functions of the machine of which the user says that they move nothing.
         at: Program coordinates with the shift, (A,), mm and rad; nan where unknown.
         offset: Shift of the program's zero, (A,), mm.
-        tool: Number of that in the spindle.
+        tool: Number, or name, of that in the spindle.
         more_radius: What the program adds to its radius, mm.
         side: Of the contour on which the tool goes: 1 left, -1 right, 0 on it.
     """
 
     path: Path
     frame: Frame
-    lengths: dict[int, float]
-    radii: dict[int, float] = field(default_factory=dict)
+    lengths: dict[int | str, float]
+    radii: dict[int | str, float] = field(default_factory=dict)
+    passed: frozenset[int] = frozenset()
     at: Array = field(init=False)
     offset: Array = field(init=False)
-    items: list[Item] = field(default_factory=list)
+    items: list[Item | Corner] = field(default_factory=list)
     length: float = field(init=False)
     feed: float = 0.0
     tcpm: bool = False
     unit: float = 1.0
-    tool: int | None = None
+    tool: int | str | None = None
     more_radius: float = 0.0
     side: float = 0.0
 
@@ -53,6 +64,7 @@ class Reading:
         self.at[self.linear] = np.nan
         self.offset = np.zeros(len(self.at))
         self.length = self.frame.datum.length
+        self._columns = {a: self.chain.axis_index(a) for a in self.chain.programmed_axes}
 
     @property
     def chain(self) -> Chain:
@@ -72,10 +84,10 @@ class Reading:
 
     def column(self, line: int, letter: str) -> int:
         """Column of an axis of the program; raises BadFile."""
-        if letter not in self.chain.programmed_axes:
-            available = ", ".join(self.chain.programmed_axes)
+        if letter not in self._columns:
+            available = ", ".join(self._columns)
             raise self.refusal(line, f"axis {letter}", f"an axis of the machine: {available}")
-        return self.chain.axis_index(letter)
+        return self._columns[letter]
 
     def is_linear(self, letter: str) -> bool:
         """Whether a word is a length."""
@@ -95,14 +107,11 @@ class Reading:
         return self.frame.linear
 
     def is_known(self, end: Array, is_arc: bool) -> bool:
-        """Whether all linear axes have a place after a motion, and an arc's before it."""
-        ends = (end, self.at) if is_arc else (end,)
-        return all(math.isfinite(e[k]) for e in ends for k in self.linear)
+        """Whether all axes have a place after a motion, and before it if it is an arc."""
+        return _is_finite(end) and (not is_arc or _is_finite(self.at))
 
     def beside(self, line: int) -> float:
         """Way of the tool's centre to the left of the contour, mm; raises BadFile."""
-        if not self.side:
-            return 0.0
         if self.tool not in self.radii:
             named = "the tool" if self.tool is None else f"tool {self.tool}"
             number = "NUMBER" if self.tool is None else self.tool
@@ -113,18 +122,86 @@ class Reading:
             raise self.refusal(line, f"a tool of radius {radius:g} mm", "one above zero")
         return self.side * radius
 
-    def needed_feed(self, line: int, is_rapid: bool) -> float:
+    def needed_feed(self, line: int) -> float:
         """Feed of a motion; raises BadFile where none is in force."""
-        if is_rapid:
-            return 0.0
         if self.feed <= 0.0:
             raise self.refusal(line, "a motion without feed", "F above zero in it or before it")
         return self.feed
 
-    def move(self, motion: Motion) -> None:
-        """A motion, after which the axes stand at its end."""
+    def move(
+        self,
+        line: int,
+        end: Array,
+        is_rapid: bool,
+        words: str = "",
+        turned: tuple[str, ...] = (),
+        arc: Arc | None = None,
+        minutes: float = 0.0,
+        cycle: Cycle | None = None,
+    ) -> None:
+        """A motion, after which the axes stand at its end; arguments as of `Motion`.
+
+        Raises:
+            BadFile: No feed, or a contour beside a tool whose radius nobody has stated.
+        """
+        at = self.at if _is_finite(self.at) else np.where(np.isnan(self.at), end, self.at)
+        feed = 0.0 if is_rapid or minutes else self.needed_feed(line)
+        beside = self.beside(line) if self.side else 0.0
+        motion = Motion(
+            line=line,
+            start=at,
+            end=end,
+            is_rapid=is_rapid,
+            feed=feed,
+            tcpm=self.tcpm,
+            length=self.length,
+            offset=self.offset,
+            unit=self.unit,
+            words=words,
+            turned=turned,
+            arc=arc,
+            beside=beside,
+            minutes=minutes,
+            cycle=cycle,
+        )
         self.items.append(motion)
-        self.at = motion.end
+        self.at = end
+
+    def hole(
+        self,
+        line: int,
+        levels: tuple[Array, Array, Array],
+        words: str,
+        cycle: Cycle,
+        turned: tuple[str, ...] = (),
+        minutes: float = 0.0,
+    ) -> None:
+        """The three motions of a cycle.
+
+        Args:
+            line: Of the file.
+            levels: Places above the hole, at its bottom and after it, (A,) each.
+            words: What else stands in the block.
+            cycle: Of the second motion.
+            turned: Rotary axes that the block names.
+            minutes: That it takes to the bottom where the feed in force is not its own.
+
+        Raises:
+            BadFile: A place that is not known, a contour or a turning table.
+        """
+        if self.side or self.tcpm:
+            where = "beside a contour" if self.side else "with tool-point control"
+            raise self.refusal(line, f"a cycle {where}", "it before or after")
+        if not all(self.is_known(at, True) for at in levels):
+            raise self.refusal(line, "a cycle from where no axis is known to stand", "X, Y and Z")
+        above, bottom, after = levels
+        self.move(line, above, True, cycle=cycle._replace(block="", ahead=1))
+        self.move(line, bottom, False, words, turned, minutes=minutes, cycle=cycle)
+        self.move(line, after, True, cycle=cycle._replace(block="", ahead=-1))
+
+
+def _is_finite(at: Array) -> bool:
+    return math.isfinite(sum(at.tolist()))
 
 
 ROUND = 0.02
@@ -175,17 +252,16 @@ def checked_arc(
 
 
 _WORD = re.compile(rf"([A-Z])({NUMBER})")
+_WORDS = re.compile(rf"(?:[A-Z]{NUMBER})*")
 
 
-def numbers(text: str) -> list[tuple[str, str]]:
+def numbers(text: str) -> list[tuple[str, float]]:
     """Words of a block: letters with their numbers.
 
     Raises:
         ValueError: Something that is no word, which is the message.
     """
-    bare = text.replace(" ", "")
-    found = _WORD.findall(bare)
-    left = _WORD.sub("", bare)
-    if left:
-        raise ValueError(left)
-    return found
+    bare = "".join(text.split())
+    if not _WORDS.fullmatch(bare):
+        raise ValueError(_WORD.sub("", bare))
+    return [(letter, float(number)) for letter, number in _WORD.findall(bare)]

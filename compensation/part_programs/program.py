@@ -1,18 +1,20 @@
 """A part program as a file: its language by its ending, its blocks and motions."""
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 
-from compensation.programs import gcode, klartext
-from compensation.programs.frame import Frame
-from compensation.programs.language import Reading
-from compensation.programs.loads import Load
-from compensation.programs.motion import Item, Motion
-from compensation.programs.radius import resolved
+from compensation.part_programs import gcode, klartext
+from compensation.part_programs.corners import without_corners
+from compensation.part_programs.frame import Frame
+from compensation.part_programs.language import Reading
+from compensation.part_programs.loads import Load
+from compensation.part_programs.motion import Item, Motion
+from compensation.part_programs.radius import resolved
 from twin.errors import BadFile
 from twin.files import read_any_text
 from twin.units import DEG
@@ -52,15 +54,17 @@ class Program:
 def read_part_program(
     path: str | Path,
     frame: Frame,
-    lengths: dict[int, float] | None = None,
-    radii: dict[int, float] | None = None,
+    lengths: dict[int | str, float] | None = None,
+    radii: dict[int | str, float] | None = None,
+    passed: Iterable[int] = (),
 ) -> Program:
     """Read a Klartext (`.H`) or G-code (`.ngc`, `.nc`) program.
 
     Args:
         frame: Where its zero stands; the datum's tool is that of tools without a length.
-        lengths: Of tools by number, mm.
+        lengths: Of tools by number or name, mm.
         radii: Likewise; where the program goes beside a contour.
+        passed: Numbers of M functions of the machine that move nothing.
 
     Raises:
         BadFile: Another ending, a block that is not understood, a program that was compensated.
@@ -78,9 +82,16 @@ def read_part_program(
         line = text[: absurd.start()].count("\n") + 1
         raise BadFile(path, f"line {line}", f"a number of {len(absurd[0])} digits", "30 at most")
     frame.linear  # noqa: B018  (a machine without them is refused before anything is read)
-    reading = Reading(path, frame, lengths or {}, radii or {})
+    reading = Reading(
+        path=path,
+        frame=frame,
+        lengths=lengths or {},
+        radii=radii or {},
+        passed=frozenset(passed),
+    )
     language.read(text, reading)
-    items = resolved(reading.items, reading, is_square=language is klartext)
+    items = without_corners(reading.items, reading)
+    items = resolved(items, reading, is_square=language is klartext)
     program = Program(path, frame, tuple(items), language)
     if not program.motions:
         raise BadFile(path, "file", "no motion from a known place", "one at least")

@@ -1,11 +1,14 @@
 """What a part program does, whatever its language: blocks that are kept, and motions."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from twin.frames import Array
 from twin.record import IntArray
+from twin.units import DEG
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +27,21 @@ class Keep:
     moves: bool = False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Arc:
+class Corner(NamedTuple):
+    """A corner between the motions before and behind it.
+
+    Attributes:
+        line: Of the file.
+        size: Radius, or the length that a chamfer cuts off both, mm.
+        is_round: Whether it is rounded.
+    """
+
+    line: int
+    size: float
+    is_round: bool
+
+
+class Arc(NamedTuple):
     """A circular arc, or a helix, in a plane of two linear axes.
 
     Attributes:
@@ -39,8 +55,25 @@ class Arc:
     angle: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class Cycle(NamedTuple):
+    """What the control does by itself at a place that the program names: a hole along Z.
+
+    A cycle is three motions: above the hole, to its bottom, back. It is shifted as a whole, by what
+    its bottom needs.
+
+    Attributes:
+        block: That calls it, with `{place}` and `{top}`; nothing but for the second of the three.
+        depth: Of the bottom below what the block states as its top, mm: R of G-code, the surface of
+            Klartext.
+        ahead: Motions from here to the second of the three.
+    """
+
+    block: str
+    depth: float
+    ahead: int
+
+
+class Motion(NamedTuple):
     """A block that moves axes, from where the one before has ended.
 
     Attributes:
@@ -58,6 +91,8 @@ class Motion:
         arc: None for a straight line.
         beside: Way by which the tool's centre goes to the left of the path that is programmed, mm;
             to the right below zero. Zero once it is resolved.
+        minutes: That it takes where the program states a time instead of a feed; else 0.
+        cycle: None where the program itself says how the axes move.
     """
 
     line: int
@@ -73,17 +108,8 @@ class Motion:
     turned: tuple[str, ...]
     arc: Arc | None = None
     beside: float = 0.0
-
-    @property
-    def travel(self) -> float:
-        """Length of the path, mm; of axes that turn alone degrees."""
-        moved = np.abs(self.end - self.start)
-        if self.arc is None:
-            return float(np.linalg.norm(moved))
-        i, j = self.arc.plane
-        radius = np.hypot(*(self.start[[i, j]] - self.arc.centre))
-        moved[[i, j]] = 0.0
-        return float(np.hypot(radius * self.arc.angle, np.linalg.norm(moved)))
+    minutes: float = 0.0
+    cycle: Cycle | None = None
 
 
 Item = Keep | Motion
@@ -124,23 +150,45 @@ def centre_of(start: Array, end: Array, radius: float, positive: bool) -> Array 
     return 0.5 * (start + end) + side * np.sqrt(max(height, 0.0)) * across
 
 
-def places(motions: list[Motion], which: IntArray, share: Array) -> Array:
-    """Program coordinates on some motions, (N, A).
+class Paths:
+    """Where motions lead.
 
-    Args:
-        which: Index of the motion, (N,).
-        share: Of it that is done, 0 to 1, (N,).
+    Attributes:
+        start: Of every motion, (M, A), mm and rad.
+        end: The same.
+        arcs: Numbers of the motions that are arcs, with these.
+        travel: What their feed refers to, (M,): length in mm, degrees where axes turn alone.
     """
-    starts, ends = (np.array([getattr(m, end) for m in motions]) for end in ("start", "end"))
-    out = starts[which] + share[:, None] * (ends - starts)[which]
-    for k, motion in enumerate(motions):
-        if motion.arc is None:
-            continue
-        rows = slice(*np.searchsorted(which, [k, k + 1]))
-        plane, centre = list(motion.arc.plane), motion.arc.centre
-        a, b = motion.start[plane] - centre, motion.end[plane] - centre
-        radius = np.hypot(*a) + share[rows] * (np.hypot(*b) - np.hypot(*a))
-        angle = np.arctan2(a[1], a[0]) + share[rows] * motion.arc.angle
-        out[rows, plane[0]] = centre[0] + radius * np.cos(angle)
-        out[rows, plane[1]] = centre[1] + radius * np.sin(angle)
-    return out
+
+    def __init__(self, motions: Sequence[Motion], linear: list[int]) -> None:
+        self.start = np.array([m.start for m in motions])
+        self.end = np.array([m.end for m in motions])
+        self.arcs = [(k, m.arc) for k, m in enumerate(motions) if m.arc is not None]
+        moved = self.end - self.start
+        for k, arc in self.arcs:
+            moved[k, list(arc.plane)] = self.radius(k, arc) * arc.angle, 0.0
+        far = np.linalg.norm(moved[:, linear], axis=1)
+        turned = np.linalg.norm(np.delete(moved, linear, axis=1), axis=1) / DEG
+        self.travel = np.where(far > 0.0, far, turned)
+
+    def radius(self, k: int, arc: Arc) -> float:
+        """Of a motion that is an arc, mm."""
+        return float(np.hypot(*(self.start[k, list(arc.plane)] - arc.centre)))
+
+    def at(self, which: IntArray, share: Array) -> Array:
+        """Program coordinates on some motions, (N, A).
+
+        Args:
+            which: Number of the motion, ascending, (N,).
+            share: Of it that is done, 0 to 1, (N,).
+        """
+        out = self.start[which] + share[:, None] * (self.end - self.start)[which]
+        for k, arc in self.arcs:
+            rows = slice(*np.searchsorted(which, [k, k + 1]))
+            plane, centre = list(arc.plane), arc.centre
+            a, b = self.start[k, plane] - centre, self.end[k, plane] - centre
+            radius = np.hypot(*a) + share[rows] * (np.hypot(*b) - np.hypot(*a))
+            angle = np.arctan2(a[1], a[0]) + share[rows] * arc.angle
+            out[rows, plane[0]] = centre[0] + radius * np.cos(angle)
+            out[rows, plane[1]] = centre[1] + radius * np.sin(angle)
+        return out

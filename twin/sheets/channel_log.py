@@ -1,10 +1,13 @@
-"""Logs of control systems with a line a value: name of the channel, date, time, number.
+"""Logs of control systems with a line a value or a line an event, made a table of channels.
 
-EPICS (`camonitor`, `pvmonitor`) writes such: channels come in turn, each when it changed, or whole
-arrays of samples behind their count. Out comes a table with a column a channel.
+EPICS (`camonitor`, `pvmonitor`) writes a name, a date, a time and a number: channels come in turn,
+each when it changed, or whole arrays of samples behind their count. Programs that log JSON write an
+object a line, with a time and what was read then. Out comes a table with a column a channel.
 """
 
+import json
 import re
+from collections.abc import Iterator
 from datetime import datetime
 
 import numpy as np
@@ -13,6 +16,9 @@ _LINE = re.compile(r"(\S+)\s+(\d{4}-\d{2}-\d{2})[T\s]+(\d{2}:\d{2}:\d{2}(?:\.\d+
 
 MOSTLY = 0.8
 """Share of the lines from which a text is such a log; others are remarks and alarms."""
+
+_CLOCK = re.compile(r"ts|t|time|timestamp|eventtime|zeit", re.IGNORECASE)
+"""Keys under which an object has its time."""
 
 FEWEST = 3
 """Values from which a channel is more than the setting of something."""
@@ -31,20 +37,67 @@ def by_channels(text: str) -> list[tuple[int, list[str]]]:
         [(1, ['time [s]', 'a', 'b']), (1, ['0.0', '1.0', '5.0'])]
     """
     lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
-    found = [(i, m) for i, line in lines if (m := _LINE.match(line))]
-    if not found or len(found) < MOSTLY * len(lines):
-        return []
-    first = _seconds(found[0][1])
-    at: dict[str, list[tuple[int, float, list[float]]]] = {}
-    for i, match in found:
-        values = _values(match[4])
-        if values:
-            at.setdefault(match[1], []).append((i, _seconds(match) - first, values))
+    at = _of_lines(lines) or _of_objects(lines)
     is_array = any(len(v) > 1 for rows in at.values() for _, _, v in rows)
     kept = {n: r for n, r in at.items() if (len(r) >= FEWEST) != is_array or len(r[0][2]) > 1}
     if len(kept) < 2:
         return []
     return _arrays(kept) if is_array else _scalars(kept)
+
+
+def _of_lines(lines: list[tuple[int, str]]) -> dict[str, list[tuple[int, float, list[float]]]]:
+    """Values of every channel of a log with a line a value, each with its line and time."""
+    found = [(i, m) for i, line in lines if (m := _LINE.match(line))]
+    at: dict[str, list[tuple[int, float, list[float]]]] = {}
+    if not found or len(found) < MOSTLY * len(lines):
+        return at
+    first = _seconds(found[0][1])
+    for i, match in found:
+        values = _values(match[4])
+        if values:
+            at.setdefault(match[1], []).append((i, _seconds(match) - first, values))
+    return at
+
+
+def _of_objects(lines: list[tuple[int, str]]) -> dict[str, list[tuple[int, float, list[float]]]]:
+    """The same of a log with a JSON object a line; what lies deeper is named `above.below`."""
+    at: dict[str, list[tuple[int, float, list[float]]]] = {}
+    if not lines or not lines[0][1].startswith("{"):
+        return at
+    first: float | None = None
+    for i, line in lines:
+        try:
+            read = dict(_leaves(json.loads(line)))
+        except ValueError:
+            return {}
+        clock = next((k for k in read if _CLOCK.fullmatch(k)), None)
+        time = _instant(read.pop(clock)) if clock else None
+        if time is None:
+            continue
+        first = time if first is None else first
+        for name, value in read.items():
+            if isinstance(value, int | float) and not isinstance(value, bool):
+                at.setdefault(name, []).append((i, time - first, [float(value)]))
+    return at
+
+
+def _leaves(value: object, above: str = "") -> Iterator[tuple[str, object]]:
+    """What an object holds, by its keys and those of what it lies in."""
+    if isinstance(value, dict | list):
+        for key, below in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _leaves(below, f"{above}.{key}" if above else str(key))
+    else:
+        yield above, value
+
+
+def _instant(value: object) -> float | None:
+    """A time in seconds: a number of them, or a date with its time."""
+    if isinstance(value, int | float):
+        return float(value)
+    try:
+        return datetime.fromisoformat(str(value)).timestamp()
+    except ValueError:
+        return None
 
 
 def _seconds(match: re.Match[str]) -> float:

@@ -6,13 +6,13 @@ to the contour and leaves it on a straight line, square to the contour at its fi
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
 
-from compensation.programs.language import Reading
-from compensation.programs.motion import Arc, Item, Keep, Motion, angle_between
+from compensation.part_programs.language import Reading
+from compensation.part_programs.motion import Arc, Item, Keep, Motion, angle_between
 from twin.frames import Array
 
 SMOOTH = 1e-4
@@ -23,7 +23,7 @@ NEAR = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class _Element:
+class Element:
     """A line or an arc of the contour in its plane, and its path shifted to the left by `d`, mm."""
 
     motion: Motion
@@ -33,6 +33,7 @@ class _Element:
 
     @property
     def arc(self) -> Arc | None:
+        """None for a line."""
         return self.motion.arc
 
     def direction(self, at: Array) -> Array:
@@ -46,6 +47,24 @@ class _Element:
     def shifted(self, at: Array) -> Array:
         """The centre of the tool beside one of its points, (2,)."""
         return np.asarray(at + self.d * _left(self.direction(at)))
+
+    def nearest(self, to: Array) -> Array:
+        """The point of its line or circle, carried on, that is nearest to another, (2,)."""
+        if self.arc is None:
+            way = self.direction(self.start)
+            return np.asarray(self.start + way * ((to - self.start) @ way))
+        out = to - self.arc.centre
+        own = np.linalg.norm(self.start - self.arc.centre)
+        return np.asarray(self.arc.centre + out * own / np.linalg.norm(out))
+
+    def share(self, at: Array) -> float:
+        """Way from its start to one of its points, mm on a line, rad on an arc."""
+        if self.arc is None:
+            return float((at - self.start) @ self.direction(self.start))
+        if np.allclose(at, self.start, rtol=0.0, atol=1e-9):
+            return 0.0
+        angle = angle_between(self.start, at, self.arc.centre, self.arc.angle > 0.0)
+        return abs(angle)
 
     @property
     def radius(self) -> float:
@@ -110,7 +129,7 @@ def _from(items: list[Item], moved: Motion, reading: Reading) -> list[Item]:
                 raise reading.refusal(item.line, found, "a straight line away from it")
             start = item.start.copy()
             start[reading.linear] = moved.end[reading.linear]
-            return [*items[:i], replace(item, start=start), *items[i + 1 :]]
+            return [*items[:i], item._replace(start=start), *items[i + 1 :]]
     return items
 
 
@@ -152,12 +171,12 @@ class _Contour:
         if found:
             raise self.reading.refusal(item.line, found, "it before the contour or after it")
 
-    def _element(self, motion: Motion) -> _Element:
+    def _element(self, motion: Motion) -> Element:
         start, end = motion.start[self.plane], motion.end[self.plane]
         if motion.arc is None and np.linalg.norm(end - start) < NEAR:
             found = "no way in X and Y beside a contour"
             raise self.reading.refusal(motion.line, found, "Z before the contour, or on its way")
-        element = _Element(motion=motion, start=start, end=end, d=self.d)
+        element = Element(motion=motion, start=start, end=end, d=self.d)
         if motion.arc is not None and element.radius < NEAR:
             self._refuse(motion.line)
         return element
@@ -185,15 +204,15 @@ class _Contour:
                     yield self._round(left[0], end, onward)
                     here = onward
 
-    def _coming(self) -> _Element:
+    def _coming(self) -> Element:
         """The way to the contour as a part of it."""
         start, end = self.approach.start[self.plane], self.approach.end[self.plane]
         if not np.linalg.norm(end - start) > abs(self.d):
             found = "a way to the contour that is no longer than the tool's radius"
             raise self.reading.refusal(self.approach.line, found, "a longer one")
-        return _Element(motion=self.approach, start=start, end=end, d=self.d)
+        return Element(motion=self.approach, start=start, end=end, d=self.d)
 
-    def _ends(self, before: _Element, after: _Element | None) -> tuple[Array, Array | None]:
+    def _ends(self, before: Element, after: Element | None) -> tuple[Array, Array | None]:
         """End of a shifted path; at an outer corner also where the one behind it begins."""
         end = before.shifted(before.end)
         if after is None:
@@ -205,10 +224,10 @@ class _Contour:
             return after.shifted(at), None
         if turn * self.d < 0.0:
             return end, after.shifted(at)
-        cuts = _cuts(before, after) if abs(turn) > SMOOTH else np.zeros((0, 2))
-        if not len(cuts):
+        found = cuts(before, after) if abs(turn) > SMOOTH else np.zeros((0, 2))
+        if not len(found):
             self._refuse(after.motion.line)
-        return np.asarray(cuts[np.argmin(np.linalg.norm(cuts - at, axis=1))]), None
+        return np.asarray(found[np.argmin(np.linalg.norm(found - at, axis=1))]), None
 
     def _moved(self, motion: Motion, start: Array | None, end: Array) -> Motion:
         """A motion between other points of the plane."""
@@ -216,9 +235,9 @@ class _Contour:
         if start is not None:
             ends[0][self.plane] = start
         ends[1][self.plane] = end
-        return replace(motion, start=ends[0], end=ends[1], beside=0.0)
+        return motion._replace(start=ends[0], end=ends[1], beside=0.0)
 
-    def _cut(self, element: _Element, start: Array, end: Array) -> Motion:
+    def _cut(self, element: Element, start: Array, end: Array) -> Motion:
         """The shifted path of an element between two points of it."""
         moved = self._moved(element.motion, start, end)
         if element.arc is None:
@@ -232,21 +251,21 @@ class _Contour:
         angle += (1.0 if positive else -1.0) * 2.0 * np.pi * (turns - 1)
         if abs(angle) > whole + NEAR / element.radius:
             self._refuse(element.motion.line)
-        return replace(moved, arc=Arc(element.arc.plane, element.arc.centre, angle))
+        return moved._replace(arc=Arc(element.arc.plane, element.arc.centre, angle))
 
-    def _round(self, after: _Element, start: Array, end: Array) -> Motion:
+    def _round(self, after: Element, start: Array, end: Array) -> Motion:
         """The arc round an outer corner, at the height at which the next element begins."""
         x, y = self.plane
         centre, positive = after.start, self.d < 0.0
         arc = Arc((x, y), centre, angle_between(start, end, centre, positive))
-        moved = self._moved(replace(after.motion, words="", turned=()), start, end)
+        moved = self._moved(after.motion._replace(words="", turned=()), start, end)
         flat = moved.end.copy()
         others = [k for k in range(len(flat)) if k not in self.plane]
         flat[others] = moved.start[others]
-        return replace(moved, end=flat, arc=arc)
+        return moved._replace(end=flat, arc=arc)
 
 
-def _cuts(a: _Element, b: _Element) -> Array:
+def cuts(a: Element, b: Element) -> Array:
     """Points at which two shifted paths meet, carried on, (M, 2)."""
     if a.arc is None and b.arc is None:
         return _line_line(a, b)
@@ -256,14 +275,14 @@ def _cuts(a: _Element, b: _Element) -> Array:
     return _circle_circle(a, b)
 
 
-def _line_line(a: _Element, b: _Element) -> Array:
+def _line_line(a: Element, b: Element) -> Array:
     u, v = a.direction(a.start), b.direction(b.start)
     p, q = a.shifted(a.start), b.shifted(b.start)
     s = np.linalg.solve(np.column_stack([u, -v]), q - p)[0]
     return np.array([p + s * u])
 
 
-def _line_circle(line: _Element, arc: _Element) -> Array:
+def _line_circle(line: Element, arc: Element) -> Array:
     assert arc.arc is not None
     u, p = line.direction(line.start), line.shifted(line.start)
     to = arc.arc.centre - p
@@ -274,7 +293,7 @@ def _line_circle(line: _Element, arc: _Element) -> Array:
     return np.array([p + (along + side * np.sqrt(half)) * u for side in (-1.0, 1.0)])
 
 
-def _circle_circle(a: _Element, b: _Element) -> Array:
+def _circle_circle(a: Element, b: Element) -> Array:
     assert a.arc is not None
     assert b.arc is not None
     between = b.arc.centre - a.arc.centre

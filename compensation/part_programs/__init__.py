@@ -1,0 +1,25 @@
+"""Part programs: read into motions, written again.
+
+In: a Klartext or G-code program (`read_part_program`) and where its zero stands (`Frame`). Out:
+`Program`: its blocks in their order, every motion with the places of all axes. A new language is a
+module with `read`, `lines`, `begin` and `listed`, and its ending in `program`.
+"""
+
+from compensation.part_programs.frame import Frame
+from compensation.part_programs.loads import Load, forces, read_loads
+from compensation.part_programs.motion import Arc, Cycle, Keep, Motion, Paths
+from compensation.part_programs.program import Program, read_part_program
+
+__all__ = [
+    "Arc",
+    "Cycle",
+    "Frame",
+    "Keep",
+    "Load",
+    "Motion",
+    "Paths",
+    "Program",
+    "forces",
+    "read_loads",
+    "read_part_program",
+]

@@ -1,0 +1,114 @@
+"""Cycles of Klartext that make a hole along Z, called once at its compensated place.
+
+The definition of the cycle stands before every call again, its surface (Q203) shifted by what the
+bottom of the hole needs.
+"""
+
+import re
+from typing import NamedTuple
+
+from compensation.part_programs.language import NUMBER, Reading
+from compensation.part_programs.motion import Cycle
+from twin.frames import Array
+
+HOLES = ("200", "201", "202", "203", "205", "206", "207", "208", "209", "240", "241")
+_DEFINED = re.compile(r"CYCL DEF (\d{3})\b")
+_NUMBER = re.compile(rf"\bQ(\d+) *= *({NUMBER})(?=\s|\Z)")
+_SURFACE = re.compile(rf"(\bQ203 *= *){NUMBER}", re.IGNORECASE)
+
+
+PLUNGING = 100.0
+"""Feed where a cycle has none as a number, such as FAUTO, mm/min: for the time alone."""
+
+
+class Hole(NamedTuple):
+    """A cycle as it was defined; heights in coordinates of the program, mm.
+
+    Attributes:
+        text: The block, `{top}` where its surface stands.
+        surface: Q203.
+        depth: Q201, downwards.
+        near: Set-up clearance above the surface, Q200.
+        far: Height above it on which the cycle ends.
+        feed: Q206, or what is in force, mm/min.
+    """
+
+    text: str
+    surface: float
+    depth: float
+    near: float
+    far: float
+    feed: float
+
+
+def defined(line: int, block: str, reading: Reading) -> Hole:
+    """A cycle by its definition.
+
+    Raises:
+        BadFile: Another cycle, numbers that are missing.
+    """
+    number = _DEFINED.match(block.upper())
+    if number is None or number[1] not in HOLES:
+        known = ", ".join(HOLES)
+        expected = f"cycles 7, 9, 13, 32, 247 and holes ({known}); others are resolved before"
+        raise reading.refusal(line, repr(" ".join(block.split()[:4])), expected)
+    plain = " ".join(part.partition(";")[0].rstrip(" ~") for part in block.upper().splitlines())
+    found = {k: float(v) * reading.unit for k, v in _NUMBER.findall(plain)}
+    for k, name in (("200", "clearance"), ("201", "depth"), ("203", "surface")):
+        if k not in found:
+            raise reading.refusal(line, f"a cycle without Q{k}", f"its {name} as a number")
+    if found["201"] >= 0.0:
+        raise reading.refusal(line, f"Q201={found['201']:g}", "a depth below zero")
+    text = _SURFACE.sub(r"\1{top}", block.replace("{", "{{").replace("}", "}}"))
+    near = found["200"]
+    far = max(near, found.get("204", 0.0))
+    feed = found.get("206") or reading.feed or PLUNGING
+    return Hole(text=text, surface=found["203"], depth=-found["201"], near=near, far=far, feed=feed)
+
+
+def call(
+    line: int,
+    hole: Hole,
+    words: str,
+    turned: tuple[str, ...],
+    reading: Reading,
+    raised: float = 0.0,
+) -> None:
+    """The hole at a place where the axes have just come to.
+
+    Args:
+        line: Of the call.
+        hole: As it was defined.
+        words: What else stands in the block.
+        turned: Rotary axes that it names.
+        reading: Of the program, its axes above the hole.
+        raised: Height that the call adds to the surface, mm.
+
+    Raises:
+        BadFile: A place that is not known, a contour or tool-point control.
+    """
+    z = reading.column(line, "Z")
+    surface = hole.surface + raised + float(reading.offset[z])
+    levels = []
+    for height in (hole.near, -hole.depth, hole.far):
+        place = reading.at.copy()
+        place[z] = surface + height
+        levels.append(place)
+    cycle = Cycle(hole.text, hole.depth, 0)
+    above, bottom, after = levels
+    minutes = (hole.near + hole.depth) / hole.feed
+    reading.hole(line, (above, bottom, after), words, cycle, turned, minutes)
+
+
+def way(start: Array, end: Array, z: int, height: float) -> list[Array]:
+    """Places on the way to a call at a place of its own: up first where the tool stands low.
+
+    Args:
+        start: Where the axes stand, (A,).
+        end: The place of the call, (A,).
+        z: Column of Z.
+        height: Above the surface that the cycle begins at, mm.
+    """
+    up, over = start.copy(), end.copy()
+    up[z] = over[z] = max(float(start[z]), height)
+    return [over] if up[z] == start[z] else [up, over]

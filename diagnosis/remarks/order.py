@@ -1,0 +1,114 @@
+"""A jump in what is left, at a row of a run without times: rows may stand in order all the same."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import betainc
+
+from diagnosis.fit import Fit, fit_run
+from diagnosis.regression import solve
+from twin.frames import Array
+from twin.record import Instrument, IntArray
+
+CHANCE = 1e-6
+"""Probability, over all rows at which it may be, below which a jump is told."""
+
+SHARE = 0.2
+"""Share of the squared residual that it must hold: half of the standard deviation or so."""
+
+FEWEST = 20
+"""Moments (rows of the file, or poses) from which a run has a before and an after."""
+
+FREE = 3
+"""Components of a displacement."""
+
+WIDE = 10.0
+"""What is believed of it, mm."""
+
+PASSES = 4
+"""Times that the noise is found anew with it; three settle it."""
+
+
+@dataclass(frozen=True, slots=True)
+class JumpInOrder:
+    """What is left is displaced from a row on, in a run without times.
+
+    Attributes:
+        before: Last line of the run file before it.
+        after: First line after it.
+        size: Displacement, mm.
+        u: Its standard uncertainty, mm.
+    """
+
+    before: int
+    after: int
+    size: float
+    u: float
+
+
+def jump_in_order(fit: Fit) -> JumpInOrder | None:
+    """The likeliest displacement of everything from a row on, if it is beyond chance.
+
+    Moments count as independent, not the rows that share one: an F test with three degrees of
+    freedom, corrected for the number of places that it may have.
+    """
+    t = fit.run.touches
+    is_cmm = (
+        t.instrument is Instrument.CMM
+    )  # its rows are sorted by names, the part was made before
+    if is_cmm or np.ptp(t.time) > 0.0 or len(t.runs) > 1 or t.instrument.reads_angle:
+        return None
+    if fit.memory is not None and fit.memory.is_filtered:
+        fit = fit_run(fit.run, fit.model, gross=fit.gross)
+    line, pose = fit.run.line[fit.used], t.pose[fit.used]
+    order = np.argsort(line, kind="stable")
+    line = line[order]
+    first = np.flatnonzero(np.diff(pose[order], prepend=-1) != 0)
+    if len(first) < FEWEST or len(np.unique(pose)) < len(first):
+        return None
+    N = (t.normal_table / (fit.u * fit.weight)[:, None])[fit.used][order]
+    fall = _falls(N, fit.solution.Q[order], fit.solution.residual[order], first)
+    k = int(np.argmax(fall))
+    share, dof = fall[k] / fit.solution.objective, len(first) - 2 * FREE
+    p = float(betainc(0.5 * dof, 0.5 * FREE, max(1.0 - share, 0.0))) * len(fall)
+    if p > CHANCE or share < SHARE:
+        return None
+    after = np.arange(len(line)) >= first[k + 1]
+    X, y = fit.X[fit.used][order], fit.y[fit.used][order]
+    size, u = _size(X, y, N * after[:, None], FREE * len(first))
+    return JumpInOrder(int(line[first[k + 1] - 1]), int(line[first[k + 1]]), size, u)
+
+
+def _size(X: Array, y: Array, N: Array, independent: int) -> tuple[float, float]:
+    """A displacement with its uncertainty, mm, beside all that a fit has free.
+
+    With the displacement the noise is smaller: it is found anew, and so is the rest.
+    """
+    factor = 1.0
+    for _ in range(PASSES):
+        found = solve(np.column_stack([X, WIDE * N]) / factor, y / factor)
+        factor *= float(np.sqrt(found.objective / max(found.dof, 1.0)))
+    step = WIDE * found.phi[-FREE:]
+    size = float(np.linalg.norm(step))
+    u = WIDE * float(np.linalg.norm(step / size @ found.root[-FREE:]))
+    return size, u * float(np.sqrt(max(len(y) / independent, 1.0)))
+
+
+def _falls(N: Array, Q: Array, r: Array, first: IntArray) -> Array:
+    """Fall of the objective with a displacement from every moment but the first on, (M - 1,).
+
+    Args:
+        N: Normals over the noise, (N, 3).
+        Q: Basis of what the fit has free, (N, P).
+        r: What it leaves, (N,).
+        first: First row of every moment, (M,).
+    """
+
+    def from_on(rows: Array) -> Array:
+        sums = np.add.reduceat(rows, first, axis=0)
+        return np.asarray(sums[::-1].cumsum(axis=0)[::-1][1:])
+
+    C = from_on(N[:, :, None] * Q[:, None, :])
+    A = from_on(N[:, :, None] * N[:, None, :]) - C @ C.swapaxes(1, 2)
+    b = from_on(N * r[:, None])
+    return np.einsum("ki,kij,kj->k", b, np.linalg.pinv(A, rcond=1e-9, hermitian=True), b)
