@@ -8,7 +8,8 @@ limit, and no file.
 The CAD kernel runs in a process of its own (`build`), because its faults end the process they run
 in. `verify` reads the files anew: by the kernel, by a reader of the STEP text that knows no kernel,
 and by two mesh libraries. What a workshop adds to the design (seats of the balls, pads,
-datum sides, lettering) follows by rule in `details`; `meshes` knows triangles. Another file format
+datum sides, lettering) follows by rule in `details`; `triangles` makes triangles without
+needles, `meshes` measures and writes them. Another file format
 is written in `build` beside `exchange` and gets its own figures in `verify.conformity`.
 """
 
@@ -16,7 +17,7 @@ from cad_out.build import as_part, run_apart
 from cad_out.meshes import Mesh
 from cad_out.verify import Conformity, export_standard, measure
 
-PARTS = ("details", "making", "meshes", "build", "verify")
+PARTS = ("details", "making", "triangles", "meshes", "build", "verify")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = ["Conformity", "Mesh", "as_part", "export_standard", "measure", "run_apart"]

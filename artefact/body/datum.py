@@ -85,6 +85,11 @@ class DatumSphere:
         elevation = np.arctan2(out[:, 2], np.hypot(out[:, 0], out[:, 1]))
         return np.where((length > 0.0)[:, None], np.column_stack([azimuth, elevation]), np.nan)
 
+    def is_bare(self, uv: Array) -> Mask:
+        """Whether the ball itself is there, not its stem."""
+        bare: Mask = rows(uv)[:, 1] >= self.rim
+        return bare
+
     def contains(self, uv: Array) -> Mask:
         """Whether the point stays `STEM_CLEARANCE` away from the rim of the stem."""
         free: Mask = rows(uv)[:, 1] >= self.rim + STEM_CLEARANCE

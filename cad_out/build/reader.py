@@ -6,23 +6,49 @@ from typing import Any
 
 import numpy as np
 from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
+from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as IndexedMap
 from OCP.collections import Sequence_TDF_Label
+from OCP.GeomAbs import GeomAbs_CurveType, GeomAbs_SurfaceType
+from OCP.gp import gp_Pnt
 from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TDF import TDF_Label
-from OCP.TopAbs import TopAbs_Orientation
+from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
+from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+from scipy.interpolate import NdBSpline
 
 from cad_out.build.faces import faces_of, is_closed, is_valid, shells_of, solids_of, volume
 from cad_out.build.pmi import notes_of_label, read_tolerances
 from cad_out.build.xcaf import name_of, new_document, settings
 from cad_out.details import Tolerance
+from cad_out.triangles import (
+    Chart,
+    Edge,
+    Face,
+    Frame,
+    Map,
+    Side,
+    arc_step,
+    bisected,
+    cone,
+    cylinder,
+    plane_chart,
+    refined,
+    revolved_chart,
+    scaled_chart,
+    torus,
+)
 from twin.errors import NotBuildable
 from twin.frames import Array
 
+_LOOKED_AT = 100  # triangles of a face whose distance is measured
 _ANGLE = 0.3  # rad between neighbouring triangles; the chord decides on all but tiny radii
 
 
@@ -143,6 +169,34 @@ def tessellate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray]
     return np.concatenate(corners), np.concatenate(triangles), np.concatenate(owners)
 
 
+def farthest_from_faces(
+    shape: Any, corners: Array, triangles: np.ndarray, numbers: np.ndarray
+) -> float:
+    """Largest distance of a mesh from the curved faces of its solid, by the kernel's projection.
+
+    Args:
+        shape: The solid.
+        corners: Shape (V, 3), mm.
+        triangles: Shape (F, 3).
+        numbers: Index of every triangle's face, (F,).
+
+    Returns:
+        The largest of all middles of sides, mm; of every face at most a hundred
+        triangles are looked at.
+    """
+    worst = 0.0
+    for number, face in enumerate(faces_of(shape)):
+        if BRepAdaptor_Surface(face).GetType() == GeomAbs_SurfaceType.GeomAbs_Plane:
+            continue
+        mine = triangles[numbers == number]
+        some = corners[mine[np.linspace(0, len(mine) - 1, min(len(mine), _LOOKED_AT)).astype(int)]]
+        surface = ShapeAnalysis_Surface(BRep_Tool.Surface_s(face))
+        for x in (0.5 * (some + np.roll(some, 1, axis=1))).reshape(-1, 3):
+            surface.ValueOfUV(gp_Pnt(*map(float, x)), 1e-6)
+            worst = max(worst, float(surface.Gap()))
+    return worst
+
+
 def face_numbers(shape: Any, faces: dict[str, Any]) -> dict[str, int]:
     """Index of every named face in the order of a solid's faces."""
     order = faces_of(shape)
@@ -163,3 +217,138 @@ def _triangulation(mesh: Any, location: Any) -> tuple[Array, np.ndarray]:
     )
     corner_of = np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)])
     return points, corner_of - 1
+
+
+def triangulate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray]:
+    """Triangles of a solid, joined, without needles.
+
+    Args:
+        shape: The solid.
+        chord: Largest distance from the surfaces to aim at, mm.
+
+    Returns:
+        Corners (V, 3), mm, triangles (F, 3) with outward winding, and for each triangle the
+        index of its face in the order of the solid's faces (F,).
+    """
+    vertices, lines = IndexedMap(), IndexedMap()
+    TopExp.MapShapes_s(shape, TopAbs_ShapeEnum.TopAbs_VERTEX, vertices)
+    TopExp.MapShapes_s(shape, TopAbs_ShapeEnum.TopAbs_EDGE, lines)
+    corners = np.array([_xyz(BRep_Tool.Pnt_s(TopoDS.Vertex(vertex))) for vertex in vertices])
+    edges = [_edge(TopoDS.Edge(line), vertices, chord) for line in lines]
+    faces = []
+    for face in faces_of(shape):
+        forward = TopoDS.Face(face.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
+        chart = _chart(BRepAdaptor_Surface(forward), chord)
+        sides = [
+            Side(edge=lines.FindIndex(edge) - 1, at=_places(edge, forward, chart.place))
+            for edge in _sides_of(forward)
+        ]
+        found = Face(
+            point=chart.point,
+            sides=sides,
+            is_flat=chart.is_flat,
+            is_reversed=face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED,
+            spacing=chart.spacing,
+        )
+        faces.append(found)
+    return refined(corners, edges, faces, chord)
+
+
+def _sides_of(face: Any) -> list[Any]:
+    """Edges of a face, its seam twice, without those that are only a point."""
+    found = []
+    explorer = TopExp_Explorer(face, TopAbs_ShapeEnum.TopAbs_EDGE)
+    while explorer.More():
+        edge = TopoDS.Edge(explorer.Current())
+        if not BRep_Tool.Degenerated_s(edge):
+            found.append(edge)
+        explorer.Next()
+    return found
+
+
+def _edge(edge: Any, vertices: Any, chord: float) -> Edge:
+    """An edge with as many points as the chord asks for; none where it is only a point."""
+    ends = TopExp.FirstVertex_s(edge, False), TopExp.LastVertex_s(edge, False)
+    first, last = (vertices.FindIndex(vertex) - 1 for vertex in ends)
+    if BRep_Tool.Degenerated_s(edge):
+        return Edge(at=lambda t: np.empty((0, 3)), t=np.zeros(2), ids=np.array([first, last]))
+    curve = BRepAdaptor_Curve(TopoDS.Edge(edge.Oriented(TopAbs_Orientation.TopAbs_FORWARD)))
+
+    def at(t: Array) -> Array:
+        return np.array([_xyz(curve.Value(float(v))) for v in t]).reshape(-1, 3)
+
+    low, high = curve.FirstParameter(), curve.LastParameter()
+    t = np.array([low, high])
+    if curve.GetType() == GeomAbs_CurveType.GeomAbs_Circle:
+        steps = int(np.ceil((high - low) / arc_step(curve.Circle().Radius(), chord)))
+        t = np.linspace(low, high, max(steps, 1) + 1)
+    elif curve.GetType() != GeomAbs_CurveType.GeomAbs_Line:
+        t = bisected(at, np.linspace(low, high, 5), chord)
+    return Edge(at=at, t=t, ids=np.array([first, *[0] * (len(t) - 2), last]))
+
+
+def _places(edge: Any, face: Any, place: Map) -> Map:
+    """Parameters of an edge to places in the chart of one of its faces."""
+    curve = BRepAdaptor_Curve2d(edge, face)
+
+    def at(t: Array) -> Array:
+        found = [(p.X(), p.Y()) for p in (curve.Value(float(v)) for v in t)]
+        return place(np.array(found).reshape(-1, 2))
+
+    return at
+
+
+def _xyz(p: Any) -> Array:
+    return np.array([p.X(), p.Y(), p.Z()])
+
+
+def _chart(surface: Any, chord: float) -> Chart:
+    """Chart of a face's surface."""
+    kinds, kind = GeomAbs_SurfaceType, surface.GetType()
+    if kind == kinds.GeomAbs_Plane:
+        return plane_chart(_frame(surface.Plane().Position()))
+    low = np.array([surface.FirstUParameter(), surface.FirstVParameter()])
+    high = np.array([surface.LastUParameter(), surface.LastVParameter()])
+    if kind == kinds.GeomAbs_Cylinder:
+        shape = surface.Cylinder()
+        profile = cylinder(shape.Radius())
+    elif kind == kinds.GeomAbs_Cone:
+        shape = surface.Cone()
+        profile = cone(shape.RefRadius(), shape.SemiAngle())
+    elif kind == kinds.GeomAbs_Torus:
+        shape = surface.Torus()
+        profile = torus(shape.MajorRadius(), shape.MinorRadius())
+    else:
+        return scaled_chart(_in_space(surface), low, high)
+    return revolved_chart(_frame(shape.Position()), profile, low, high, chord)
+
+
+def _frame(position: Any) -> Frame:
+    x, y, z = position.XDirection(), position.YDirection(), position.Direction()
+    return Frame(x=_xyz(x), y=_xyz(y), z=_xyz(z), origin=_xyz(position.Location()))
+
+
+def _in_space(surface: Any) -> Map:
+    """Parameters of a surface to points; a spline is evaluated at many places at once."""
+    if surface.GetType() == GeomAbs_SurfaceType.GeomAbs_BSplineSurface:
+        spline = surface.BSpline()
+        count = spline.NbUPoles(), spline.NbVPoles()
+        poles = [
+            [_xyz(spline.Pole(i + 1, j + 1)) for j in range(count[1])] for i in range(count[0])
+        ]
+        knots = _knots(spline, "U"), _knots(spline, "V")
+        at: Map = NdBSpline(knots, np.array(poles), (spline.UDegree(), spline.VDegree()))
+        return at
+
+    def one_by_one(uv: Array) -> Array:
+        found = [_xyz(surface.Value(float(u), float(v))) for u, v in uv]
+        return np.array(found).reshape(-1, 3)
+
+    return one_by_one
+
+
+def _knots(spline: Any, axis: str) -> Array:
+    """Knots of a spline, each as often as it counts."""
+    number = range(1, getattr(spline, f"Nb{axis}Knots")() + 1)
+    knot, times = getattr(spline, f"{axis}Knot"), getattr(spline, f"{axis}Multiplicity")
+    return np.repeat([knot(i) for i in number], [times(i) for i in number])

@@ -34,9 +34,8 @@ SCENES = ("standard.3mf", "standard.glb")
 """Names of the files through which the two processes speak."""
 
 _SCREW_CHORD = 0.05  # mm
-_ROUNDS = 5  # of refinement before the mesh is refused
-_FIRST = 0.75  # of the chord asked for at once: on spheres the kernel overshoots by a quarter
-_FINER = 0.7  # of the last: five rounds end at a sixth of the first
+_ROUNDS = 3  # of meshes before the last is refused; the first one keeps the chord as a rule
+_FINER = 0.7  # of the last
 
 
 def build(folder: str, chord: float, author: str, organisation: str) -> None:
@@ -56,13 +55,14 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
     solid, products = products_of(standard, details_of(standard))
     design = hashlib.sha256((place / STANDARD).read_bytes()).hexdigest()
     write_step(place / STEP, products, standard, Origin(design, author, organisation))
-    mesh = _mesh(standard, solid, chord)
+    mesh, farthest = _mesh(standard, solid, chord)
     np.savez(place / MESH, corners=mesh.corners, triangles=mesh.triangles, owner=mesh.owner)
     pieces = _pieces(standard, products, mesh)
     write_3mf(place / SCENES[0], standard.name, pieces)
     write_glb(place / SCENES[1], pieces)
     volumes = {product.name: product.volume for product in products}
-    (place / FACTS).write_text(json.dumps({"volumes": volumes}), encoding="utf-8")
+    facts = {"volumes": volumes, "body_chord_error": farthest}
+    (place / FACTS).write_text(json.dumps(facts), encoding="utf-8")
 
 
 def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list[Piece]:
@@ -96,24 +96,25 @@ def reread(folder: str) -> None:
     (Path(folder) / FACTS).write_text(json.dumps(facts), encoding="utf-8")
 
 
-def _mesh(standard: Standard, solid: Solid, chord: float) -> Mesh:
-    """Mesh of body and balls with the chord error kept.
+def _mesh(standard: Standard, solid: Solid, chord: float) -> tuple[Mesh, float]:
+    """Mesh of body and balls with the chord error kept, and the body's distance from it, mm.
 
-    The kernel takes the chord for a wish: it is measured, and the mesh refined.
+    Both are measured at other places than the triangulation looks at.
     """
-    from cad_out.build.reader import face_numbers, tessellate
+    from cad_out.build.reader import face_numbers, farthest_from_faces, triangulate
 
     names = {number: name for name, number in face_numbers(solid.plain, solid.plain_faces).items()}
     balls = [ball_mesh(sphere, chord) for sphere in standard.spheres]
-    asked = _FIRST * chord
+    asked = chord
     for _ in range(_ROUNDS):
-        corners, triangles, numbers = tessellate(solid.plain, asked)
+        corners, triangles, numbers = triangulate(solid.plain, asked)
         owner = np.array([names.get(number, "") for number in range(numbers.max() + 1)])[numbers]
-        mesh = joined([welded(corners, triangles, owner), *balls])
+        mesh = joined([Mesh(corners, triangles, owner), *balls])
         errors = chord_errors(standard, mesh.corners, mesh.triangles, mesh.owner)
-        worst = max(errors.values())
+        farthest = farthest_from_faces(solid.plain, corners, triangles, numbers)
+        worst = max(farthest, *errors.values())
         if worst <= chord:
-            return mesh
+            return mesh, farthest
         asked *= _FINER
     raise NotBuildable(
         f"the mesh stays {worst * 1e3:.1f} µm from the surface, asked were {chord * 1e3:.1f} µm"

@@ -6,6 +6,7 @@ figures by two mesh libraries, STL, 3MF and glTF files. No CAD kernel here.
 
 from cad_out.meshes.mesh import (
     Mesh,
+    aspects,
     ball_mesh,
     chord_errors,
     face_areas,
@@ -24,6 +25,7 @@ from cad_out.meshes.scene import Piece, write_3mf, write_glb
 __all__ = [
     "Mesh",
     "Piece",
+    "aspects",
     "ball_mesh",
     "chord_errors",
     "face_areas",

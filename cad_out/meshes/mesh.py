@@ -227,6 +227,15 @@ def inner_folds(corners: Array, triangles: np.ndarray, least: float) -> tuple[Ar
     return 0.5 * (begin + end)[folded], length[folded]
 
 
+def aspects(corners: Array, triangles: np.ndarray) -> Array:
+    """Longest side of every triangle over the height on it, (F,): 1.15 if all sides are equal."""
+    a, b, c = (corners[triangles[:, k]] for k in range(3))
+    longest = np.max([((a - b) ** 2).sum(1), ((b - c) ** 2).sum(1), ((c - a) ** 2).sum(1)], axis=0)
+    twice = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    ratio: Array = longest / np.maximum(twice, 1e-300)
+    return ratio
+
+
 def face_areas(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> dict[str, float]:
     """Area of the triangles of every named feature, mm^2."""
     a, b, c = (corners[triangles[:, k]] for k in range(3))

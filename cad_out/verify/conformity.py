@@ -12,6 +12,7 @@ from artefact.body import BLEND, Standard
 from cad_out.build import FACTS, STEP, run_kernel
 from cad_out.details import BALL, Details, Screw, Tolerance, details_of, notes_of, tolerances_of
 from cad_out.meshes import (
+    aspects,
     chord_errors,
     face_areas,
     inner_folds,
@@ -47,6 +48,10 @@ AREA_LIMIT = 1e-3
 SHARP_LIMIT = 0.1
 """Length of sharp inner edges on an upright standard, mm."""
 
+ASPECT_LIMIT = 20.0
+"""Longest side of a triangle over the height on it: where programs for finite elements begin to
+warn, and far from where 32-bit corners (15 nm at 400 mm) turn the normals of an STL."""
+
 _SHARP = 0.6  # rad between two triangles; those of a blend are half as far apart
 _SAMPLES = 61  # points along each side of a face that is compared
 
@@ -80,6 +85,8 @@ class Conformity:
         triangles: In the STL file.
         chord: Asked for, mm.
         chord_error: Largest distance of the mesh from the exact surface by feature.
+        body_chord_error: The same of all faces of the body, by the kernel's projection.
+        aspect: Longest side of a triangle over the height on it, the largest.
         step_bytes: Size of the STEP file.
         stl_bytes: Size of the STL file.
     """
@@ -108,6 +115,8 @@ class Conformity:
     triangles: int
     chord: float
     chord_error: dict[str, float]
+    body_chord_error: float
+    aspect: float
     step_bytes: int
     stl_bytes: int
 
@@ -165,6 +174,15 @@ class Conformity:
                 chord <= self.chord + NM,
                 f"{feature}: mesh {chord / UM:.1f} µm off, limit {self.chord / UM:g} µm",
             ),
+            (
+                self.body_chord_error <= self.chord + NM,
+                f"body: mesh {self.body_chord_error / UM:.1f} µm off, limit {self.chord / UM:g} µm",
+            ),
+            (
+                self.aspect <= ASPECT_LIMIT,
+                f"a triangle of the mesh is {self.aspect:.0f} times as long as high, limit "
+                f"{ASPECT_LIMIT:g}",
+            ),
         )
         return [words for good, words in checks if not good]
 
@@ -174,7 +192,7 @@ def measure(
     folder: Path,
     stl: Path,
     owner: np.ndarray,
-    built: dict[str, float],
+    built: dict[str, Any],
     chord: float,
 ) -> Conformity:
     """Read the STEP and STL files anew and compare them with the design.
@@ -184,7 +202,8 @@ def measure(
         folder: With the STEP file; the kernel's second process answers through it.
         stl: The STL file.
         owner: Feature of each of its triangles, (F,).
-        built: Volume of every product before it was written, mm^3.
+        built: Facts of the building process: volume of every product before it was written,
+            mm^3, distance of the body's mesh from its faces, mm.
         chord: Asked for, mm.
 
     Returns:
@@ -197,9 +216,10 @@ def measure(
     corners, triangles = read_stl(stl)
     named = set(faces) & set(found["names"])
     screws = {kind.name: kind for kind in details.screws}
-    bought = sum(len(kind.holes) * built[name] for name, kind in screws.items())
+    made = built["volumes"]
+    bought = sum(len(kind.holes) * made[name] for name, kind in screws.items())
     volume = found["volume"] - bought
-    balls = sum(built[sphere.name] for sphere in standard.spheres)
+    balls = sum(made[sphere.name] for sphere in standard.spheres)
     return Conformity(
         solids=found["solids"],
         expected=1 + len(standard.spheres) + sum(len(kind.holes) for kind in screws.values()),
@@ -210,7 +230,7 @@ def measure(
         shells=found["shells"],
         is_millimetre=file_unit_is_millimetre(folder / STEP),
         volume=volume,
-        volume_built=sum(v for name, v in built.items() if name not in screws),
+        volume_built=sum(v for name, v in made.items() if name not in screws),
         mass=standard.material.density * (volume - balls) + BALL.density * balls,
         names=tuple(sorted(named)),
         missing=tuple(name for name in face_names(standard, details) if name not in named),
@@ -225,6 +245,8 @@ def measure(
         triangles=len(triangles),
         chord=chord,
         chord_error=chord_errors(standard, corners, triangles, owner),
+        body_chord_error=built["body_chord_error"],
+        aspect=float(aspects(corners, triangles).max()),
         step_bytes=(folder / STEP).stat().st_size,
         stl_bytes=stl.stat().st_size,
     )
@@ -257,6 +279,10 @@ def _sharp(standard: Standard, details: Details, corners: Array, triangles: np.n
     for bore in details.bores:
         off = np.linalg.norm(np.cross(middle - bore.mouth, bore.direction), axis=1)
         inside |= off < bore.radius + 0.1
+    for sphere in standard.spheres:  # the tip of a countersink is a point, whatever its cutter
+        seat = details.seats[sphere.name]
+        tip = np.array([sphere.centre[0], sphere.centre[1], seat.bottom])
+        inside |= np.linalg.norm(middle - tip, axis=1) < 0.5
     return float(length[~inside].sum())
 
 
@@ -330,6 +356,7 @@ def write_conformity(path: Path, conformity: Conformity) -> None:
         "area_error": AREA_LIMIT,
         "chord_error_mm": conformity.chord,
         "sharp_mm": SHARP_LIMIT,
+        "aspect": ASPECT_LIMIT,
     }
     table = {
         "format": "conformity/1",

@@ -80,7 +80,7 @@ def build_and_measure(
     """
     write_standard(place / STANDARD, standard)
     run_kernel("build", place, chord, author, organisation)
-    built = json.loads((place / FACTS).read_text(encoding="utf-8"))["volumes"]
+    built = json.loads((place / FACTS).read_text(encoding="utf-8"))
     with np.load(place / MESH) as arrays:
         mesh = Mesh(arrays["corners"], arrays["triangles"], arrays["owner"])
     write_stl(place / STL, mesh)

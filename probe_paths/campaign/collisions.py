@@ -121,7 +121,8 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
         raise BadFile(program.path, f"line {line[i]}", found, wanted)
     looks = stroke_gaps(clearance, start, direction, back, distance, feature, SMALLEST_GAP)
     for stage, (gap, nearest) in looks.items():
-        _refuse(program, line, gap, np.array([f"{name} {stage}" for name in nearest]))
+        least = stage.least_gap(clearance.probe.radius)
+        _refuse(program, line, gap, np.array([f"{name} {stage}" for name in nearest]), least)
 
 
 def _check_search(
@@ -137,12 +138,14 @@ def _check_search(
     _refuse(program, line, gap, nearest)
 
 
-def _refuse(program: ReadProgram, line: IntArray, gap: Array, nearest: Labels) -> None:
+def _refuse(
+    program: ReadProgram, line: IntArray, gap: Array, nearest: Labels, least: float = SMALLEST_GAP
+) -> None:
     """Raise BadFile for the first move whose gap is too small."""
-    bad = np.flatnonzero(gap < SMALLEST_GAP)
+    bad = np.flatnonzero(gap < least)
     if len(bad):
         i = bad[np.argmin(line[bad])]
         raise BadFile(
             program.path, f"line {line[i]}", f"a gap of {gap[i]:.2f} mm to {nearest[i]}",
-            f"at least {SMALLEST_GAP:g} mm between probe and anything solid",
+            f"at least {least:.2g} mm between probe and anything solid",
         )  # fmt: skip

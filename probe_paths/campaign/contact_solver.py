@@ -6,7 +6,7 @@ from datetime import datetime
 
 import numpy as np
 
-from artefact.body import Meeting, Standard, contact
+from artefact.body import DatumSphere, Meeting, Standard, contact
 from artefact.reach import Mask
 from probe_paths.campaign.disturbances import Disturbance
 from probe_paths.control import Clock, ReadProgram
@@ -196,7 +196,12 @@ class ContactSolver:
         ]
         for name in dict.fromkeys(self.feature.tolist()):
             if name in self.standard.features:
-                inside = self.standard.features[name].contains(self.uv)
+                surface = self.standard.features[name]
+                # what is planned keeps away from the stem; the machine as it is may come nearer
+                if isinstance(surface, DatumSphere):
+                    inside = surface.is_bare(self.uv)
+                else:
+                    inside = surface.contains(self.uv)
                 failures.append(((self.feature == name) & ~inside, Meeting.EDGE))
         for failed, meeting in failures:
             self.meeting[self.is_contact & failed] = meeting

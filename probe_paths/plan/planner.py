@@ -28,6 +28,8 @@ from twin.machine import Chain, table_to_tool
 from twin.record import IntArray, Labels, Setup
 from twin.units import DEG
 
+_MARGIN = 0.011  # mm: gaps are found to 0.01, readings in programs are rounded to 0.0001
+
 
 @dataclass(frozen=True, eq=False)
 class _Task:
@@ -249,8 +251,7 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     above = touches.start[rows].copy()
     above[:, z] = height[rows]
     clearance = task.clearance
-    limit = min(SMALLEST_GAP, o.smallest_gap)
-    start = touches.start[rows]
+    start, enough = touches.start[rows], max(SMALLEST_GAP + _MARGIN, o.smallest_gap)
     direction = np.zeros(start.shape)
     direction[:, [task.chain.axis_index(name) for name in LINEAR]] = touches.direction[rows]
     looks = stroke_gaps(
@@ -260,11 +261,12 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
         back=np.full(len(rows), o.standoff),
         distance=np.full(len(rows), o.standoff + o.search),
         feature=touches.feature[rows],
-        enough=max(limit, o.smallest_gap),
+        enough=enough,
     )
-    down = clearance.swept_gap(above, start, enough=limit)
+    down = clearance.swept_gap(above, start, enough=enough)
     for stage, (gap, nearest) in (*looks.items(), (Stage.WAY_IN, down)):
-        least = o.smallest_gap if stage is Stage.TOUCH else limit
+        least = stage.least_gap(task.probe.radius) + _MARGIN
+        least = max(least, o.smallest_gap) if stage is Stage.TOUCH else least
         for i in np.flatnonzero(gap < least):
             words = f"{gap[i]:.2f} mm between probe and {nearest[i]} {stage}"
             reason[rows[i]] = reason[rows[i]] or words

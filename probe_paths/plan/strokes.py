@@ -4,7 +4,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from probe_paths.plan.clearance import ToolClearance
+from probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance
 from twin.frames import Array
 from twin.record import Labels
 
@@ -16,6 +16,10 @@ class Stage(StrEnum):
     TOUCH = "at the touch"
     OVER_TRAVEL = "where it goes on if the surface is not met"
     RETRACT = "on its way up after a miss"
+
+    def least_gap(self, radius: float) -> float:
+        """Gap that a ball of a radius needs, mm: beside what it touches its stylus has a third."""
+        return min(SMALLEST_GAP, radius / 3.0) if self is Stage.TOUCH else SMALLEST_GAP
 
 
 def stroke_gaps(

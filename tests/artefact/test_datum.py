@@ -32,6 +32,8 @@ def test_rim_is_where_cone_and_ball_have_one_radius():
     assert np.sin(SPHERE.rim) * 12.5 == pytest.approx(z - 80.0, abs=1e-9)
     low = np.array([[0.0, SPHERE.rim + np.radians(14.9)], [0.0, SPHERE.rim + np.radians(15.1)]])
     assert SPHERE.contains(low).tolist() == [False, True]
+    edge = np.array([[0.0, SPHERE.rim - 1e-9], [0.0, SPHERE.rim + 1e-9]])
+    assert SPHERE.is_bare(edge).tolist() == [False, True]
 
 
 def test_sphere_contact_is_at_the_sum_of_the_radii():

@@ -25,7 +25,7 @@ from cad_out.meshes.mesh import (
     owners,
     read_stl,
 )
-from cad_out.verify.conformity import FACE_LIMIT, face_deviations, face_names
+from cad_out.verify.conformity import ASPECT_LIMIT, FACE_LIMIT, face_deviations, face_names
 from cad_out.verify.part21 import SphereFace, SplineFace, read_faces
 from twin.errors import BadFile, NotBuildable
 from twin.units import NM, UM
@@ -66,6 +66,18 @@ def test_volume_is_that_of_textbook_formulas(upright, built):
     """Pillars by quadrature, posts, seats, blends, relief, bores, lettering: no kernel, no grid."""
     by_hand = volume_by_hand.of_upright(upright, details_of(upright))
     assert built[1].volume == pytest.approx(by_hand, rel=2e-5)
+
+
+def test_the_stl_has_no_needles(built):
+    trimesh = pytest.importorskip("trimesh")
+    place, conformity, _ = built
+    mesh = trimesh.load_mesh(str(place / "standard.stl"))
+    assert np.rad2deg(mesh.face_angles.min()) > 4.0
+    sides = np.linalg.norm(mesh.triangles - np.roll(mesh.triangles, 1, axis=1), axis=2)
+    ratio = sides.max(axis=1) ** 2 / (2.0 * mesh.area_faces)
+    assert conformity.aspect == pytest.approx(ratio.max(), rel=1e-4)
+    assert conformity.aspect < ASPECT_LIMIT
+    assert conformity.body_chord_error <= conformity.chord
 
 
 def test_poles_and_knots_in_the_file_are_those_of_the_design(upright, built):

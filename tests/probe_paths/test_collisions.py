@@ -16,6 +16,7 @@ from probe_paths.control.log import read_log
 from probe_paths.control.steps import Move
 from probe_paths.plan.clearance import ToolClearance
 from probe_paths.plan.probe import Probe
+from probe_paths.plan.strokes import Stage
 from twin.errors import BadFile
 from twin.frames import apply, inverse
 from twin.machine.kinematics import tip
@@ -129,3 +130,13 @@ def test_gaps_to_the_table_by_hand(chain, small):
     gap, nearest = clearance.gap(q)
     assert nearest[0] in ("BASE", "FF1")
     assert gap[0] > 10.0
+
+
+@pytest.mark.parametrize(("radius", "beside"), [(0.75, 0.25), (1.0, 1.0 / 3.0), (3.0, 0.5)])
+def test_a_small_ball_has_less_room_where_it_touches_and_nowhere_else(radius, beside):
+    """Its stylus of two thirds has a third of the radius beside a wall that the ball touches."""
+    least = {stage: stage.least_gap(radius) for stage in Stage}
+    assert least.pop(Stage.TOUCH) == pytest.approx(beside)
+    assert set(least.values()) == {SMALLEST_GAP}
+    stylus = Probe(radius=radius).stack[0][1]
+    assert beside <= radius - stylus + 1e-12

@@ -1,0 +1,132 @@
+"""Delaunay triangles in an outline in a plane."""
+
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.spatial import Delaunay, cKDTree
+
+from twin.frames import Array
+
+_FAR = 3.0 * np.array([[-1.0, -1.1], [1.2, -1.0], [1.0, 1.3], [-1.1, 1.0]])
+"""Corners far outside, so that all that is outside hangs together."""
+
+
+class Sheet:
+    """Delaunay triangulation of points in a plane, and the pieces of an outline in it.
+
+    Attributes:
+        places: The points, (P, 2).
+        ends: Pieces of the outline, (S, 2), into the places.
+        wall: Piece that the side of a triangle opposite each of its corners is, or -1, (T, 3).
+    """
+
+    def __init__(self, places: Array, ends: np.ndarray) -> None:
+        self.places, self.ends = places, ends
+        low, high = places.min(axis=0), places.max(axis=0)
+        far = 0.5 * (low + high) + (high - low).max() * _FAR
+        self._whole = Delaunay(np.concatenate([places, far]))
+        walls = self._codes(ends[:, 0], ends[:, 1])
+        order = np.argsort(walls)
+        t = self._whole.simplices
+        sides = self._codes(t[:, [1, 2, 0]], t[:, [2, 0, 1]])
+        at = np.minimum(np.searchsorted(walls[order], sides), len(walls) - 1)
+        self.wall = np.where(walls[order][at] == sides, order[at], -1)
+
+    def _codes(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """One number for every pair, whatever its order."""
+        low = np.minimum(one, other).astype(np.int64)
+        return low * (len(self.places) + len(_FAR)) + np.maximum(one, other)
+
+    @cached_property
+    def lost(self) -> np.ndarray:
+        """Pieces of the outline that are no side of any triangle, (S,)."""
+        lost = np.ones(len(self.ends), dtype=bool)
+        lost[self.wall[self.wall >= 0]] = False
+        return lost
+
+    @cached_property
+    def inside(self) -> np.ndarray:
+        """Which triangles one reaches across the outline an odd number of times, (T,)."""
+        count = len(self.wall)
+        a = np.repeat(np.arange(count), 3)
+        b, is_wall = self._whole.neighbors.ravel(), self.wall.ravel() >= 0
+        free = (b >= 0) & ~is_wall
+        size = (count, count)
+        ways = coo_array((np.ones(free.sum()), (a[free], b[free])), shape=size)
+        _, room = connected_components(ways, directed=False)
+        doors = coo_array((np.ones(is_wall.sum()), (room[a[is_wall]], room[b[is_wall]])), size)
+        outer = room[np.flatnonzero(self._whole.neighbors.min(axis=1) < 0)[0]]
+        order, before = breadth_first_order(doors.tocsr(), outer, directed=False)
+        inside = np.zeros(count, dtype=bool)
+        for k in order[1:]:
+            inside[k] = not inside[before[k]]
+        return inside[room]
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """Triangles inside, counter-clockwise, (F, 3)."""
+        t: np.ndarray = self._whole.simplices[self.inside]
+        a, b, c = (self.places[t[:, k]] for k in range(3))
+        back = cross(b - a, c - a) < 0.0
+        t[back] = t[back][:, ::-1]
+        return t
+
+    @cached_property
+    def seen_wide(self) -> np.ndarray:
+        """Pieces in whose circle the corner of a triangle inside on them stands, (S,)."""
+        t, wall = self._whole.simplices[self.inside], self.wall[self.inside]
+        row, k = np.nonzero(wall >= 0)
+        apex = self.places[t[row, k]]
+        one = self.places[t[row, (k + 1) % 3]] - apex
+        other = self.places[t[row, (k + 2) % 3]] - apex
+        seen = np.zeros(len(self.ends), dtype=bool)
+        seen[wall[row, k][np.einsum("ni,ni->n", one, other) < 0.0]] = True
+        return seen
+
+    def sines(self) -> Array:
+        """Sine of the smallest angle of every triangle inside, 1 where the outline has it."""
+        wall = self.wall[self.inside] >= 0
+        corner = self.places[self._whole.simplices[self.inside]]
+        side = corner[:, [2, 0, 1]] - corner[:, [1, 2, 0]]  # opposite of each corner
+        length = np.linalg.norm(side, axis=2)
+        row, sharp = np.arange(len(side)), np.argmin(length, axis=1)
+        one, other = (sharp + 1) % 3, (sharp + 2) % 3
+        along = np.maximum(length[row, one] * length[row, other], 1e-300)
+        sine = np.abs(cross(side[:, 0], side[:, 1])) / along
+        return np.where(wall[row, one] & wall[row, other], 1.0, sine)
+
+    def contains(self, places: Array) -> np.ndarray:
+        """Whether places lie in a triangle inside, (N,)."""
+        at = self._whole.find_simplex(places)
+        return (at >= 0) & self.inside[at]
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Third components of the cross products of plane vectors, (N,)."""
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+
+def circumcircles(corner: Array) -> tuple[Array, Array]:
+    """Centres (F, 2) and radii (F,) of the circles through plane triangles (F, 3, 2)."""
+    a = corner[:, 0]
+    b, c = corner[:, 1] - a, corner[:, 2] - a
+    twice = 2.0 * cross(b, c)
+    bb, cc = (b**2).sum(axis=1), (c**2).sum(axis=1)
+    x = (c[:, 1] * bb - b[:, 1] * cc) / twice
+    y = (b[:, 0] * cc - c[:, 0] * bb) / twice
+    return a + np.column_stack([x, y]), np.hypot(x, y)
+
+
+def apart(centre: Array, radius: Array) -> np.ndarray:
+    """Of candidates, the first ones first, those that stand in no circle of one taken, (C,)."""
+    keep = np.ones(len(centre), dtype=bool)
+    if not len(centre):
+        return keep
+    near = cKDTree(centre).query_ball_point(centre, 0.9 * radius)
+    for k, found in enumerate(near):
+        if keep[k]:
+            later = np.array(found)
+            keep[later[later > k]] = False
+    return keep

@@ -1,0 +1,85 @@
+"""Triangles without needles: a box with a slanting bore and a cone, checked by trimesh."""
+
+import numpy as np
+import pytest
+
+from cad_out.meshes.mesh import aspects
+from cad_out.triangles.delaunay import Sheet, cross
+
+CHORD = 0.02
+R, DEEP, WIDE = 6.0, 8.0, 5.0  # mm: bore, countersink's depth and radius
+
+
+@pytest.fixture(scope="module")
+def drilled():
+    """Corners, triangles and face numbers of a box with a bore through it and a countersink."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone, BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    from cad_out.build.reader import triangulate
+
+    box = BRepPrimAPI_MakeBox(gp_Pnt(-40.0, -30.0, 0.0), gp_Pnt(40.0, 30.0, 25.0)).Shape()
+    leaning = gp_Ax2(gp_Pnt(-20.0, 0.0, -20.0), gp_Dir(np.sin(0.4), 0.0, np.cos(0.4)))
+    bore = BRepPrimAPI_MakeCylinder(leaning, R, 80.0).Shape()
+    down = gp_Ax2(gp_Pnt(20.0, 5.0, 25.0), gp_Dir(0.0, 0.0, -1.0))
+    tip = BRepPrimAPI_MakeCone(down, WIDE, 0.0, DEEP).Shape()
+    shape = BRepAlgoAPI_Cut(BRepAlgoAPI_Cut(box, bore).Shape(), tip).Shape()
+    return triangulate(shape, CHORD)
+
+
+def test_the_mesh_is_closed_and_its_volume_that_of_the_formulas(drilled):
+    trimesh = pytest.importorskip("trimesh")
+    corners, triangles, _ = drilled
+    mesh = trimesh.Trimesh(corners, triangles, process=False)
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
+    by_hand = 80.0 * 60.0 * 25.0 - np.pi * R**2 * 25.0 / np.cos(0.4) - np.pi * WIDE**2 * DEEP / 3.0
+    assert mesh.volume == pytest.approx(by_hand, rel=2e-4)
+
+
+def test_no_triangle_is_a_needle(drilled):
+    trimesh = pytest.importorskip("trimesh")
+    corners, triangles, _ = drilled
+    mesh = trimesh.Trimesh(corners, triangles, process=False)
+    assert np.rad2deg(mesh.face_angles.min()) > 5.0
+    sides = np.linalg.norm(mesh.triangles - np.roll(mesh.triangles, 1, axis=1), axis=2)
+    assert aspects(corners, triangles) == pytest.approx(
+        sides.max(axis=1) ** 2 / mesh.area_faces / 2
+    )
+    assert aspects(corners, triangles).max() < 12.0
+
+
+def test_triangles_keep_the_chord(drilled):
+    corners, triangles, numbers = drilled
+    middle = corners[triangles].mean(axis=1)
+    axis, place = np.array([np.sin(0.4), 0.0, np.cos(0.4)]), np.array([-20.0, 0.0, -20.0])
+    from_axis = np.linalg.norm(np.cross(middle - place, axis), axis=1)
+    inner = np.unique(numbers[np.abs(from_axis - R) < 0.1])
+    bore = np.isin(numbers, inner)
+    assert bore.sum() > 200
+    assert np.abs(from_axis[bore] - R).max() < CHORD
+    x, y, z = (middle - [20.0, 5.0, 25.0 - DEEP]).T
+    off = np.abs(np.hypot(x, y) - z * WIDE / DEEP) / np.hypot(1.0, WIDE / DEEP)
+    cone = np.isin(numbers, numbers[np.hypot(x, y) + np.abs(z) < 1.0])
+    assert off[cone].max() < CHORD
+
+
+def test_the_inside_of_an_outline_with_a_hole():
+    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+    places = np.concatenate([square, 0.25 * square + 1.5])
+    ring = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    sheet = Sheet(places, np.concatenate([ring, ring + 4]))
+    assert not sheet.lost.any()
+    a, b, c = (places[sheet.triangles[:, k]] for k in range(3))
+    assert 0.5 * cross(b - a, c - a).sum() == pytest.approx(15.0)
+    assert sheet.contains(np.array([[0.5, 0.5], [2.0, 2.0], [5.0, 1.0]])).tolist() == [
+        True,
+        False,
+        False,
+    ]
+
+
+def test_a_piece_that_is_no_side_is_found():
+    places = np.array([[0.0, 0.0], [4.0, 0.0], [2.0, 0.3], [2.0, -0.3]])
+    assert Sheet(places, np.array([[0, 1], [0, 2], [2, 1]])).lost.tolist() == [True, False, False]
