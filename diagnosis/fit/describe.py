@@ -339,5 +339,8 @@ def _bound(inner: Inner, value: float) -> int:
     grid = np.asarray(inner.grid, dtype=float)
     if not inner.continuous or inner.acts == "at an instant" or len(grid) < 2:
         return 0
-    at_low, at_high = value < grid.min() * (1.0 + AT_END), value > grid.max() * (1.0 - AT_END)
+    low, high = sorted((float(grid[0]), float(grid[-1])))
+    # where a scan is finer than that share, what lies within it is an estimate all the same
+    at_low = value - low < AT_END * min(low, high - low)
+    at_high = high - value < AT_END * min(high, high - low)
     return -1 if at_low else 1 if at_high else 0

@@ -197,10 +197,22 @@ def test_uneven_targets_tell_one_period() -> None:
     assert own == pytest.approx(2.5, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("travel", "longest"), [(60.0, 30.0), (280.0, 50.0), (660.0, 110.0), (4000.0, 250.0)]
+)
+def test_a_long_axis_is_scanned_up_to_the_turn_of_a_pinion(travel: float, longest: float) -> None:
+    """Six of a period beyond 50 mm must lie in the travel, so that it is no curve."""
+    scanned = scanned_periods(np.linspace(0.0, travel, 2001))
+    assert scanned[-1] == pytest.approx(longest)
+    assert np.all(np.diff(scanned) > 0.0)
+
+
 def test_periods_are_scanned_down_to_what_readings_resolve() -> None:
     fine = scanned_periods(np.arange(0.0, 100.0, 0.01))
     assert fine[0] == pytest.approx(0.02)
     assert fine[-1] == pytest.approx(50.0, rel=1e-3)
+    uneven = scanned_periods(np.sort(np.random.default_rng(0).uniform(0.0, 60.0, 1000)))
+    assert uneven[0] == pytest.approx(60.0 / 4000.0, rel=1e-2)
     coarse = scanned_periods(np.arange(0.0, 300.0, 6.0))
     assert coarse[0] == pytest.approx(1.0)
     # repeated targets stand no closer for their scatter

@@ -16,7 +16,7 @@ from twin.files.run_file import read_run
 from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.circle import read_circle
 from twin.foreign.points import linear_machine, points_run, read_points
-from twin.foreign.positioning import read_positioning
+from twin.foreign.positioning import PositioningTest, read_positioning
 from twin.foreign.serial_arm import arm_from_dh
 from twin.library.ordinary import ordinary_model
 from twin.record.copies import without_copies
@@ -165,6 +165,30 @@ def within(reported, true):
     numbers = {r.name.removesuffix("_um"): r for r in reported}
     numbers |= {r.quantity: r for r in reported}
     return all(abs(abs(numbers[k].value) - v) < 3.5 * numbers[k].u for k, v in true.items())
+
+
+def test_counts_that_an_encoder_lost_are_a_jump_of_its_axis():
+    """Four strokes of 80 readings; from reading 203 on 0.6 µm are missing."""
+    rng = np.random.default_rng(6)
+    way = np.repeat([1, -1, 1, -1], 80)
+    there = np.sort(rng.uniform(0.0, 50.0, (4, 80)), axis=1)
+    target = np.concatenate([row[::s] for row, s in zip(there, way[::80], strict=True)])
+    time = 0.1 * np.arange(320)
+    off = 0.005 * target + 0.2 * way + 0.6 * (np.arange(320) >= 203)
+    test = PositioningTest(
+        axis="X",
+        target=target,
+        deviation=(off + 0.05 * rng.standard_normal(320)) * UM,
+        cycle=np.repeat([1, 2, 3, 4], 80),
+        direction=way,
+        line=np.arange(320),
+        time=time,
+    )
+    result = diagnose(positioning_run(test, one_axis_machine("X", target), 0.05 * UM))
+    told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
+    assert set(told) == {"jump(EXX)", "backlash(X)"}
+    assert within(told["jump(EXX)"], {"amplitude": 0.6, "instant": 20.25})
+    assert result.fit.test_rms == pytest.approx(0.05 * UM, rel=0.15)
 
 
 def test_equal_readings_of_two_cycles_are_no_copies(tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.errors import DesignError
-from twin.foreign.other_frame import in_measured_frame, in_nominal_frame, other_frames
+from twin.foreign.other_frame import in_measured_frame, in_nominal_frame, measured_frames
 from twin.foreign.point_list import PointList
 from twin.foreign.points import linear_machine, points_run
 from twin.record.touches import computed_deviation
@@ -52,7 +52,7 @@ def test_errors_of_a_part_are_those_in_the_frame_of_the_machine(letters) -> None
     errors = np.random.default_rng(5).normal(0.0, 1.0 * UM, (N, 3))
     errors[:, letters:] = 0.0
     listed = points(nominal, turned(nominal + errors), letters)
-    (frame,) = other_frames(listed)
+    (frame,) = measured_frames(listed)
     assert frame.turn == pytest.approx(TURN, abs=2e-5)
     back = np.nan_to_num(in_nominal_frame(listed, [frame]).deviation)
     np.testing.assert_allclose(distances(nominal + back), distances(nominal + errors), atol=1e-9)
@@ -63,7 +63,7 @@ def test_a_plate_stands_where_it_was_measured_and_its_deviations_follow() -> Non
     nominal = at_random()
     measured = turned(nominal) * np.array([1.0 + 50e-6, 1.0, 1.0])  # X reads 50 ppm too long
     listed = points(nominal, measured)
-    frames = other_frames(listed)
+    frames = measured_frames(listed)
     moved = in_measured_frame(listed, frames)
     run = points_run(moved, "standard", linear_machine(moved, frames), 1.0 * UM, frames)
     t = run.touches
@@ -77,16 +77,16 @@ def test_a_plate_stands_where_it_was_measured_and_its_deviations_follow() -> Non
 
 def test_what_lies_near_its_frame_is_left_to_the_set_up_and_a_mirror_is_refused() -> None:
     nominal = at_random()
-    assert other_frames(points(nominal, nominal + 0.5)) == []
+    assert not measured_frames(points(nominal, nominal + 0.5))[0].is_far
     with pytest.raises(DesignError, match="mirrored frame"):
-        other_frames(points(nominal, nominal * [-1.0, 1.0, 1.0]))
+        measured_frames(points(nominal, nominal * [-1.0, 1.0, 1.0]))
 
 
 def test_gross_points_do_not_turn_a_list() -> None:
     nominal = at_random(2)
     measured = turned(nominal)
     measured[:3] += 40.0
-    (frame,) = other_frames(points(nominal, measured, 2))
+    (frame,) = measured_frames(points(nominal, measured, 2))
     assert frame.turn == pytest.approx(TURN, abs=1e-9)
 
 
@@ -94,10 +94,10 @@ def test_a_height_far_away_is_shifted_and_a_missing_coordinate_is_left_out() -> 
     nominal = at_random(2)
     heights = points(nominal, nominal + np.array([0.0, 0.0, 120.0]))
     heights.deviation[:, :2] = np.nan
-    (frame,) = other_frames(heights)
+    (frame,) = measured_frames(heights)
     assert np.abs(in_nominal_frame(heights, [frame]).deviation[:, 2]).max() < 1e-9
     listed = points(nominal, turned(nominal), 2)
     listed.deviation[4, 0] = np.nan
-    back = in_nominal_frame(listed, other_frames(listed)).deviation[:, :2]
+    back = in_nominal_frame(listed, measured_frames(listed)).deviation[:, :2]
     assert np.isnan(back[4]).all()
     assert np.abs(np.delete(back, 4, axis=0)).max() < 1e-9

@@ -48,7 +48,7 @@ def test_nonsense_finds_nothing_and_a_name_finds_itself_alone() -> None:
         ("gravity(EBB,C)", "tilt under a load off the centre of C", "B"),
         ("stiffness(t)", "compliance of the tool", "t"),
         ("probe-lobing", "lobes of the probe", "probe"),
-        ("artefact-slip", "slip of the standard on the table", "standard"),
+        ("artefact-slip", "slip of the set-up", "standard"),
         ("coupling(EBX,Z)", "tilt of X about Y, which changes with Z", "X"),
     ],
 )

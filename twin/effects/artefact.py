@@ -85,7 +85,7 @@ class ArtefactSlip:
 
     kind = "artefact-slip"
     name = "artefact-slip"
-    title = Title("slip of the standard on the table", "standard")
+    title = Title("slip of the set-up", "standard")
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -195,7 +195,7 @@ EXPANSION = Kind(
 )
 SLIP = Kind.of(
     ArtefactSlip,
-    title="slip of the standard on the table",
+    title="slip of the set-up",
     synonyms="clamping, moved artefact, shifted fixture, knocked",
     formula="shift = e + r x (p - c) after an unknown instant, to the end of the set-up",
     units="e: µm; r: µrad; instant: s",

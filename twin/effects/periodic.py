@@ -24,6 +24,9 @@ from twin.units import UM, URAD
 SHORTEST, LONGEST = 1.0, 50.0
 """Periods that are scanned on a linear axis, mm, if nothing else is known; closer readings are
 scanned down to what they resolve."""
+TURNS, WIDEST = 6.0, 250.0
+"""A pinion on a rack turns once in up to `WIDEST` mm: periods beyond `LONGEST` are scanned where
+the travel holds `TURNS` of them; fewer are hard to tell from a curve of the geometry."""
 FRACTIONS = 4
 """Whole fractions of a stated pitch that are scanned: starts of the thread, balls of the nut, lines
 of the encoder on the screw."""
@@ -41,6 +44,11 @@ fewer poses have more of their own than two numbers of one wave in 400."""
 COHERENT = 0.999
 """Mean resultant of readings times n from which n waves a turn look like none: readings are 2.6
 degrees of a wave off an even grid."""
+UNEVEN = 0.9
+"""Mean resultant over the usual distance of readings from which they stand on a grid of it."""
+PER_READING, MOST_PERIODS = 4, 40_000
+"""Periods that are looked for in dense uneven readings: so many for each of them, so many at most.
+A choice of three thousand readings along 60 mm is scanned down to 5 µm."""
 READINGS = 4000
 """Readings of which it is taken; more make no difference."""
 
@@ -200,17 +208,17 @@ class Harmonic(_Repeating):
 def scanned_periods(q: Array, pitch: float | None = None) -> Array:
     """Periods that some readings can show, ascending, (G,), mm.
 
-    From half the travel (and `LONGEST`) down to `SHORTEST`, or to twice the distance of the
-    readings where they stand closer; and around whole fractions of a stated pitch beyond that.
-    Frequencies 1/p are evenly spaced.
+    From half the travel (and `LONGEST`, or `WIDEST` on a long axis) down to `SHORTEST`, or to twice
+    the distance of the readings where they stand closer, of uneven ones farther (`PER_READING`);
+    and around whole fractions of a stated pitch beyond that. Frequencies 1/p are evenly spaced.
 
     Args:
         q: Readings of the axis, (N,), mm.
         pitch: As stated, mm; None where nobody said.
     """
     travel = float(np.ptp(q))
-    shortest = min(SHORTEST, 2.0 * usual_distance(q)) if travel > 0.0 else SHORTEST
-    longest = max(min(LONGEST, 0.5 * travel), 2.0 * shortest)
+    shortest = min(SHORTEST, _resolved(q)) if travel > 0.0 else SHORTEST
+    longest = max(min(LONGEST, 0.5 * travel), min(WIDEST, travel / TURNS), 2.0 * shortest)
     low, high = 1.0 / longest, 1.0 / shortest
     step = 1.0 / (OVERSAMPLING * max(travel, longest))
     frequencies = np.linspace(low, high, int(np.ceil((high - low) / step)) + 1)
@@ -242,6 +250,18 @@ def finest_harmonic(q: Array) -> int:
     counts = np.arange(len(q) // 2, 2 * FINEST_HARMONIC + 1)
     alike = (n for n in counts if abs(np.exp(1j * n * q).mean()) > COHERENT)
     return (int(next(alike, 2 * FINEST_HARMONIC + 1)) - 1) // 2
+
+
+def _resolved(q: Array) -> float:
+    """Shortest period that readings tell from longer ones, mm.
+
+    Even ones take half their distance for a constant; dense uneven ones have no such period.
+    """
+    places, usual = np.unique(q), 2.0 * usual_distance(q)
+    even = float(np.median(np.diff(places)))
+    if usual >= SHORTEST or abs(np.exp(2j * np.pi * places / even).mean()) > UNEVEN:
+        return usual
+    return min(usual, float(np.ptp(q)) / min(PER_READING * len(places), MOST_PERIODS))
 
 
 def usual_distance(q: Array) -> float:

@@ -1,4 +1,4 @@
-"""Elastic bodies: beams under weight and load, and the stiffness of the whole at the tool point.
+"""Elastic bodies: beams under weight and load, compliant axes, stiffness at the tool point.
 
 One kind a file, as in `effects`; `section` and `beam` are the mechanics. Weights need a section and
 a material, so a `beam` is stated by the user and never proposed.

@@ -12,7 +12,7 @@ from twin.foreign.axis_run import one_axis_machine, positioning_run
 from twin.foreign.circle import circle_machine, circle_run, read_circle
 from twin.foreign.machine_draft import machine_text
 from twin.foreign.mapping_file import mapped_run
-from twin.foreign.other_frame import in_measured_frame, in_nominal_frame, other_frames
+from twin.foreign.other_frame import in_measured_frame, in_nominal_frame, measured_frames
 from twin.foreign.point_list import joined_points, misplaced
 from twin.foreign.points import linear_machine, points_run, read_points
 from twin.foreign.positioning import PositioningTest, read_positioning
@@ -32,9 +32,9 @@ __all__ = [
     "linear_machine",
     "machine_text",
     "mapped_run",
+    "measured_frames",
     "misplaced",
     "one_axis_machine",
-    "other_frames",
     "points_run",
     "positioning_figures",
     "positioning_run",

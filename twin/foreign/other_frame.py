@@ -51,9 +51,14 @@ class OtherFrame:
     shift: float
     turn: float
 
+    @property
+    def is_far(self) -> bool:
+        """Whether it is too far from the nominal frame for a linear fit of the set-up."""
+        return self.turn > TURN or self.shift > SHIFT
 
-def other_frames(points: PointList) -> list[OtherFrame]:
-    """Set-ups that were measured in a frame too far from the nominal one for a linear fit.
+
+def measured_frames(points: PointList) -> list[OtherFrame]:
+    """Frames in which the set-ups were measured, of those that have points enough to tell.
 
     Raises:
         DesignError: Points that fit a mirrored frame alone.
@@ -75,8 +80,7 @@ def other_frames(points: PointList) -> list[OtherFrame]:
         middle = points.nominal[rows][whole].mean(axis=0)
         shift = float(np.linalg.norm(apply(T, middle) - middle))
         turn = float(np.arccos(np.clip(0.5 * (np.trace(T[:3, :3]) - 1.0), -1.0, 1.0)))
-        if turn > TURN or shift > SHIFT:
-            out.append(OtherFrame(setup, T, shift, turn))
+        out.append(OtherFrame(setup, T, shift, turn))
     return out
 
 

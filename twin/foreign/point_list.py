@@ -41,8 +41,11 @@ class PointList:
 def misplaced(points: PointList) -> list[tuple[str, str]]:
     """Points that were found nearer to where another one belongs: (its name, the other's).
 
-    What all coordinates have in common is taken off first, for lists in another frame. Names mixed
-    up, or a list in another order, look so.
+    What all points of a coordinate have in common is taken off first. Names mixed up, or a list in
+    another order, look so. A point without a name is told by its line.
+
+    Args:
+        points: Brought to the nominal frame.
     """
     out = []
     for one in np.unique(points.setup):
@@ -53,7 +56,8 @@ def misplaced(points: PointList) -> list[tuple[str, str]]:
         off = points.deviation[of]
         common = [np.median(v[s]) if s.any() else 0.0 for v, s in zip(off.T, seen.T, strict=True)]
         off = np.nan_to_num(off - common)
-        place, name = nominal + off, points.feature[of]
+        place = nominal + off
+        name = [f or f"line {n}" for f, n in zip(points.feature[of], points.line[of], strict=True)]
         order = np.argsort(nominal[:, 0])
         along = nominal[order, 0]
         reach = np.linalg.norm(off, axis=1) / NEARER
@@ -64,7 +68,7 @@ def misplaced(points: PointList) -> list[tuple[str, str]]:
             near = near[near != k]
             distance = np.linalg.norm(nominal[near] - place[k], axis=1)
             if len(near) and distance.min() < reach[k]:
-                out.append((str(name[k]), str(name[near[np.argmin(distance)]])))
+                out.append((str(name[k]), str(name[int(near[np.argmin(distance)])])))
     return out
 
 

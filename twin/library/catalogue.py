@@ -24,14 +24,14 @@ from twin.effects import (
     geometric,
     gravity,
     joint_sag,
+    jump,
     location,
     periodic,
     position_table,
     probe,
     servo_lag,
-    stiffness,
 )
-from twin.elastic import body, tool_point
+from twin.elastic import body, stiffness, tool_point
 from twin.errors import BadFile, DesignError, UnknownEffect
 from twin.library.trial import users_fault
 from twin.machine import Chain
@@ -307,6 +307,7 @@ for _kind in (
     coupling.KIND,
     backlash.KIND,
     periodic.KIND,
+    jump.KIND,
     position_table.KIND,
     thermal_expansion.KIND,
     axis_warming.KIND,

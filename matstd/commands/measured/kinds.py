@@ -181,8 +181,8 @@ def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple
         in_nominal_frame,
         joined_points,
         linear_machine,
+        measured_frames,
         misplaced,
-        other_frames,
         points_run,
         read_points,
     )
@@ -190,7 +190,7 @@ def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple
 
     lists = [read_points(sheet, args.unit) for sheet in sheets]
     points = joined_points(lists, [sheet.path.stem for sheet in sheets])
-    frames = other_frames(points)
+    frames = measured_frames(points)
     wrong = misplaced(in_nominal_frame(points, frames))
     if wrong:
         some = ", ".join(f"{own!r} at {other!r}" for own, other in wrong[:3])
@@ -198,6 +198,7 @@ def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple
             f"- {len(wrong)} of {len(points.line)} points were found nearer to the nominal place "
             f"of another point than to their own ({some}): names or their order are mixed up?"
         )
+    frames = [f for f in frames if f.is_far]
     is_part = meaning == "part"
     points = (in_nominal_frame if is_part else in_measured_frame)(points, frames)
     for f in frames:
