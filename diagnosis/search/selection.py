@@ -121,6 +121,11 @@ class EffectSubset:
     members: tuple[Member, ...]
     effects: EffectSet
 
+    @property
+    def key(self) -> tuple[tuple[int, float], ...]:
+        """Which variants it holds at which scales, whatever their order."""
+        return tuple(sorted((m.variant, m.scale) for m in self.members))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verified:
@@ -191,6 +196,7 @@ class Search:
         self.fixed = fixed
         self.progress = progress
         self._scores: dict[tuple[tuple[int, float], ...], Scores] = {}
+        self._ranked: dict[tuple[tuple[int, float], ...], list[int]] = {}
         self._products: dict[int, Array] = {}
 
     def evaluate(self, members: Iterable[Member]) -> EffectSubset:
@@ -213,7 +219,7 @@ class Search:
 
     def scores(self, chosen: EffectSubset) -> Scores:
         """Scores of all variants as additions to a set, computed once."""
-        key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
+        key = chosen.key
         if key not in self._scores:
             self._scores[key] = score_all(chosen.effects, self.pool, self._inside(chosen))
         return self._scores[key]
@@ -240,12 +246,15 @@ class Search:
 
     def ranking(self, chosen: EffectSubset) -> list[int]:
         """Best variant of every candidate that is not in a set, most evidence first."""
-        evidence = self.scores(chosen).evidence
-        order = np.argsort(-evidence, kind="stable")
-        taken = {m.candidate for m in chosen.members}
-        _, first = np.unique(self.pool.owner[order], return_index=True)
-        ranked = order[np.sort(first)]
-        return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
+        if chosen.key not in self._ranked:
+            evidence = self.scores(chosen).evidence
+            order = np.argsort(-evidence, kind="stable")
+            taken = {m.candidate for m in chosen.members}
+            _, first = np.unique(self.pool.owner[order], return_index=True)
+            ranked = order[np.sort(first)].tolist()
+            owner = self.pool.owner
+            self._ranked[chosen.key] = [v for v in ranked if int(owner[v]) not in taken]
+        return self._ranked[chosen.key]
 
     def additions(self, chosen: EffectSubset) -> list[int]:
         """The same without what would hold a member."""
