@@ -15,7 +15,7 @@ TCP = frozenset({43.4, 234.0})
 
 KEPT = frozenset(
     {4.0, 5.1, 15.0, 17.0, 18.0, 19.0, 20.0, 21.0, 40.0, 43.0, 49.0, 50.0, 50.1, 61.0, 61.1, 64.0}
-    | {69.0, 80.0, 93.0, 94.0, 98.0, 99.0, 187.0}
+    | {69.0, 80.0, 92.1, 92.2, 93.0, 94.0, 98.0, 99.0, 187.0}
     | TCP
     | DATUMS
     | HOMES
@@ -23,7 +23,7 @@ KEPT = frozenset(
 """Words that stay in the program: modes, what ends one, smoothing, ways home."""
 
 _READ = MOVES | CYCLES | {41.0, 42.0, 53.0, 90.0, 91.0, 90.1, 91.1} | KEPT
-_ENDS = frozenset({15.0, 50.0, 50.1, 69.0})
+_ENDS = frozenset({15.0, 50.0, 50.1, 69.0, 92.1, 92.2})
 """End what is refused: they name no axis."""
 
 _KEPT_M = frozenset({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19, 29, 30, 48, 49})
@@ -48,6 +48,7 @@ class Modes:
     """What stays in force.
 
     Attributes:
+        before_cycle: G0 or G1 if one of them was the last before canned cycles; back after G80.
         calls_by_t: Whether T itself changes the tool: nowhere in the program is an M6.
         next_tool: Of the last T word.
         minutes: That the motion takes, of an F word in inverse time.
@@ -56,6 +57,7 @@ class Modes:
     """
 
     calls_by_t: bool
+    before_cycle: float | None = None
     motion: float | None = None
     plane: str = "XY"
     is_absolute: bool = True
@@ -70,8 +72,6 @@ class Modes:
 
 
 _SETS: dict[float, tuple[str, float | str | bool | None]] = {
-    **{g: ("motion", g) for g in MOVES | CYCLES},
-    80.0: ("motion", None),
     **{g: ("plane", plane) for g, plane in _PLANES.items()},
     90.0: ("is_absolute", True),
     91.0: ("is_absolute", False),
@@ -96,7 +96,9 @@ def take(
     for g in words:
         if g not in _READ or (g in _ENDS and not set("XYZABCUVW").isdisjoint(other)):
             raise reading.refusal(line, f"G{g:g}", _REFUSED.get(g, _UNDERSTOOD))
-        if g in _SETS:
+        if g in MOVES or g in CYCLES or g == 80.0:
+            _take_motion(g, modes)
+        elif g in _SETS:
             setattr(modes, *_SETS[g])
         elif g in (20.0, 21.0):
             reading.unit = 25.4 if g == 20.0 else 1.0
@@ -104,13 +106,27 @@ def take(
             reading.side = _SIDES[g]
         elif g in (43.0, 49.0) or g in TCP:
             _length(g, other, reading)
-        elif g in DATUMS and modes.datum not in (None, g):
-            expected = f"G{modes.datum:g} alone: a compensated program holds for one datum"
-            raise reading.refusal(line, f"G{g:g}", expected)
         elif g in DATUMS:
-            modes.datum = g
+            _take_datum(line, g, reading, modes)
+
+
+def _take_motion(g: float, modes: Modes) -> None:
+    """G0 to G3, a canned cycle or its end, after which the motion before it holds again."""
+    if g in CYCLES and modes.motion not in CYCLES:
+        modes.before_cycle = modes.motion if modes.motion in (0.0, 1.0) else None
+    if g == 80.0:
+        modes.motion = modes.before_cycle if modes.motion in CYCLES else None
+    else:
+        modes.motion = g
     if modes.motion not in CYCLES:
         modes.cycle = None
+
+
+def _take_datum(line: int, g: float, reading: Reading, modes: Modes) -> None:
+    if modes.datum not in (None, g):
+        expected = f"G{modes.datum:g} alone: a compensated program holds for one datum"
+        raise reading.refusal(line, f"G{g:g}", expected)
+    modes.datum = g
 
 
 def _length(g: float, other: dict[str, float], reading: Reading) -> None:
@@ -127,7 +143,9 @@ def function(line: int, m: int, reading: Reading, modes: Modes) -> None:
     Raises:
         BadFile: One that is not understood.
     """
-    if m not in _KEPT_M and (m not in reading.passed or m in _SUBPROGRAMS):
+    if m in reading.tcp_functions:
+        reading.switch(m == reading.tcp_functions[0], reading.length)
+    elif m not in _KEPT_M and (m not in reading.passed or m in _SUBPROGRAMS):
         expected = "M0 to M9, M19, M29, M30, M48, M49"
         if m not in _SUBPROGRAMS:
             expected += f"; --pass-m {m} where it moves nothing"

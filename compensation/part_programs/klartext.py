@@ -41,7 +41,8 @@ _ONE_WORD = re.compile(r"\b(F) (MAX|AUTO)\b|\b(LA|MB|DL|DR|S|F|R) (?=[+-]?\d)|\b
 """Words that may be written in two."""
 
 _EXPECTED = (
-    (r"FN|.*\bQ|.*=", "numbers, and parameters Q that the program sets itself"),
+    (r"(?!TCH)(?:FN|.*\bQ|.*=)", "numbers, and parameters Q that the program sets itself"),
+    (r"TCH", "no touches: a compensated program holds for one datum"),
     (r"LBL|CALL", "LBL and CALL LBL, with REP or without"),
     (r"CYCL", "cycles 7, 9, 13, 32, 247 and holes: others are resolved into motions before"),
     (r"CT|APPR|DEP", "L, LP, CC, C, CP, CR, RND, CHF: others are resolved into them before"),

@@ -26,7 +26,7 @@ _JUMP = re.compile(
 _FUNCTION = re.compile(r"FN ?(\d+) ?: ?Q(\d+) ?= ?(.+)")
 _ASSIGNED = re.compile(r"Q(\d+) ?= ?(.+)")
 _USED = re.compile(r"([+-]?)Q(\d+)\b", re.IGNORECASE)
-_NAMED_NUMBERS = re.compile(r"\s*CYCL DEF (?!7\.)", re.IGNORECASE)
+_NAMED_NUMBERS = re.compile(r"\s*(?:CYCL DEF (?!7\.)|TCH PROBE)", re.IGNORECASE)
 """Cycles name their own numbers like parameters."""
 
 _ENDS = re.compile(r"(?:.* )?M0*(?:2|30)(?: .*)?")

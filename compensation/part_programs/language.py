@@ -36,6 +36,7 @@ class Reading:
         lengths: Of tools by number or name, mm; of the others that of the datum.
         radii: Of tools by number, mm.
         passed: Numbers of M functions of the machine of which the user says that they move nothing.
+        tcp_functions: M functions of the machine that switch tool-point control on, and off.
         at: Program coordinates with the shift, (A,), mm and rad; nan where unknown.
         offset: Shift of the program's zero, (A,), mm.
         tool: Number, or name, of that in the spindle.
@@ -48,6 +49,7 @@ class Reading:
     lengths: dict[int | str, float]
     radii: dict[int | str, float] = field(default_factory=dict)
     passed: frozenset[int] = frozenset()
+    tcp_functions: tuple[int, ...] = ()
     at: Array = field(init=False)
     offset: Array = field(init=False)
     items: list[Item | Corner] = field(default_factory=list)

@@ -57,6 +57,7 @@ def read_part_program(
     lengths: dict[int | str, float] | None = None,
     radii: dict[int | str, float] | None = None,
     passed: Iterable[int] = (),
+    tcp_functions: Iterable[int] = (),
 ) -> Program:
     """Read a Klartext (`.H`) or G-code (`.ngc`, `.nc`) program.
 
@@ -65,6 +66,7 @@ def read_part_program(
         lengths: Of tools by number or name, mm.
         radii: Likewise; where the program goes beside a contour.
         passed: Numbers of M functions of the machine that move nothing.
+        tcp_functions: Those of G-code that switch tool-point control on, and off.
 
     Raises:
         BadFile: Another ending, a block that is not understood, a program that was compensated.
@@ -88,6 +90,7 @@ def read_part_program(
         lengths=lengths or {},
         radii=radii or {},
         passed=frozenset(passed),
+        tcp_functions=tuple(tcp_functions),
     )
     language.read(text, reading)
     items = without_corners(reading.items, reading)

@@ -1,12 +1,14 @@
 """A part program compensated by the inverse of the exact twin, and what that does on the twin."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from compensation.field import MachineErrors, actual_tip, aligned, correction, shifted
-from compensation.part_programs import Keep, Paths, Program, forces
+from compensation.part_programs import Keep, Motion, Paths, Program, forces
 from compensation.tables import Header, point_spacing
 from twin.errors import OutsideTravel
 from twin.frames import Array
@@ -58,6 +60,29 @@ class Compensated:
     u: Array
     u_at: IntArray
     unmoved: tuple[int, ...]
+
+    @cached_property
+    def is_stated(self) -> NDArray[np.bool_]:
+        """Points that the program states, (N,): not those over a hole that its cycle goes to."""
+        return self._ahead[self.motion] == 0
+
+    @property
+    def leans(self) -> Array:
+        """How far the top of every hole lies off the axis through its bottom, (H,), mm."""
+        tops = np.flatnonzero(self._ahead[self.motion] == 1)
+        along = self.nominal[tops] - self.nominal[tops + 1]
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        off = self.after[tops] - self.after[tops + 1]
+        return np.linalg.norm(off - np.sum(off * along, axis=1, keepdims=True) * along, axis=1)
+
+    @cached_property
+    def _ahead(self) -> IntArray:
+        return _aheads(self.program.motions)
+
+
+def _aheads(motions: Sequence[Motion]) -> IntArray:
+    """Motions from each to the one whose correction it has."""
+    return np.array([m.cycle.ahead if m.cycle else 0 for m in motions])
 
 
 class _Path:
@@ -258,7 +283,7 @@ def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray,
 
 def _shift_cycles(path: _Path, which: IntArray, at: Array) -> None:
     """Give the motions of a canned cycle what its bottom needs, in place: each is one line."""
-    ahead = np.array([m.cycle.ahead if m.cycle else 0 for m in path.motions])
+    ahead = _aheads(path.motions)
     own = np.flatnonzero(ahead)
     bottom = own + ahead[own]
     rows, bottoms = np.searchsorted(which, own), np.searchsorted(which, bottom)

@@ -167,7 +167,8 @@ def read_law(path: str | Path) -> SavedLaw:
     """The chosen law of a `thermal.json`.
 
     Raises:
-        BadFile: No such file, or one that has been changed so that no law can be made of it.
+        BadFile: No such file, one that has been changed so that no law can be made of it, or an
+            unstable one.
     """
     try:
         data = json.loads(read_text(path))
@@ -175,7 +176,7 @@ def read_law(path: str | Path) -> SavedLaw:
             raise BadFile(path, "format", repr(data["format"]), f"'{FORMAT}'")
         return SavedLaw(
             name=data["chosen"],
-            law=_law(data["law"]),
+            law=_stable(_law(data["law"]), path),
             factor=np.array(data["factor"], dtype=float),
             drives=tuple(data["drives"]),
             components=tuple(data["components"]),
@@ -188,6 +189,18 @@ def read_law(path: str | Path) -> SavedLaw:
         if isinstance(error, BadFile):
             raise
         raise BadFile(path, "law", repr(error)[:200], "a thermal.json as matstd wrote it") from None
+
+
+def _stable(law: Law, path: str | Path) -> Law:
+    """A law whose poles lie inside the unit circle; raises BadFile."""
+    inner = law.rest if isinstance(law, BeamLaw) else law
+    inputs = getattr(inner, "inputs", None)
+    taus = getattr(inputs, "time_constants", ()) or [t for _, t in getattr(inputs, "places", ())]
+    for tau in taus:
+        if not 0.0 <= tau < np.inf or (tau == 0.0 and hasattr(inputs, "time_constants")):
+            found = f"a time constant of {tau:g} s: an unstable law"
+            raise BadFile(path, "law", found, "time constants above zero")
+    return law
 
 
 def _law(data: dict[str, Any]) -> Law:

@@ -86,11 +86,11 @@ def suspects(run: Run, is_absurd: bool) -> Iterator[Suspect]:
         order = [t.chain.axis_index(name) for name in chain.axes]
         touches = replace(t, chain=chain, q=t.q[:, order], approach=t.approach[:, order])
         yield _with_touches(run, fault, axes, touches)
-    rotary = [t.chain.axis_index(axis) for axis in t.chain.rotary_axes]
-    if rotary:
+    rotary = t.chain.rotary_axes
+    for axes in dict.fromkeys((rotary, *((axis,) for axis in rotary))) if rotary else ():
         q = t.q.copy()
-        q[:, rotary] /= DEG
-        yield _with_touches(run, Fault.RADIANS, t.chain.rotary_axes, replace(t, q=q))
+        q[:, [t.chain.axis_index(axis) for axis in axes]] /= DEG
+        yield _with_touches(run, Fault.RADIANS, axes, replace(t, q=q))
     yield _with_touches(run, Fault.NORMALS_INWARD, (), replace(t, normal=-t.normal))
 
 

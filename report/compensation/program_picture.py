@@ -27,6 +27,7 @@ def draw_program(path: str | Path, done: Compensated) -> None:
     drawn = figure(4.2)
     left, right = drawn.subplots(1, 2)
     _path(left, done, rows)
+    rows = rows[done.is_stated[rows]]
     t = done.elapsed[rows] / MINUTE
     for field, colour, label in (
         (done.before, RED, "without"),
@@ -49,6 +50,7 @@ def draw_program(path: str | Path, done: Compensated) -> None:
 def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:
     """Nominal, actual and compensated path in the plane in which it is widest."""
     points = done.nominal[rows]
+    is_hole = np.array([m.cycle is not None for m in done.program.motions])[done.motion[rows]]
     wide = np.ptp(points, axis=0)
     is_rapid = np.array([m.is_rapid for m in done.program.motions])[done.motion[rows]]
     if not is_rapid.all():  # what cuts nothing would cross the picture
@@ -66,6 +68,7 @@ def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:
     ):
         shown = points + gain * field[rows]
         ax.plot(shown[:, i], shown[:, j], style, color=colour, lw=1.2, label=label)
+        ax.plot(shown[is_hole, i], shown[is_hole, j], ".", color=colour, ms=4)
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel(f"{'xyz'[i]} in mm")
     ax.set_ylabel(f"{'xyz'[j]} in mm")

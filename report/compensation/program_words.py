@@ -18,12 +18,18 @@ def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
     """
     motions, points = len(done.program.motions), len(done.q)
     yield f"{name}: {motions} motions as {points} lines", True
-    before, after = rms(done.before) / UM, rms(done.after) / UM
-    worst = np.linalg.norm(done.after, axis=1).max() / UM
+    before, after = (rms(field[done.is_stated]) / UM for field in (done.before, done.after))
+    worst = np.linalg.norm(done.after[done.is_stated], axis=1).max() / UM
     words = f"tool point {digits(before)} -> {digits(after)} µm rms (worst {digits(worst)} µm)"
     if done.u.any() and rms(done.u[:, None]) > NM:
         words += f"; the model is known to {digits(rms(done.u[:, None]) / UM, 2)} µm there"
     yield f"- {words}", False
+    if len(done.leans):
+        most = digits(done.leans.max() / UM)
+        yield (
+            f"- {len(done.leans)} holes by cycles, right at their bottom; lean {most} µm at most",
+            False,
+        )
     added = np.abs(done.added[:, done.program.frame.linear]).max() / UM
     minutes = digits(done.elapsed[-1] / MINUTE)
     yield f"- largest correction {digits(added)} µm; {minutes} min of motion", False

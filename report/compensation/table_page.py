@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from compensation.field import MachineErrors, rms
 from compensation.tables import Header, Played
 from report.compensation.table_pictures import draw_errors_left, draw_shares
-from report.compensation.table_words import control_title, result_sentence
+from report.compensation.table_words import control_title, result_sentence, small
 from report.numbers import digits, signed, with_uncertainty
 from report.pages import Picture, write_page
 from twin.machine import Chain
@@ -66,10 +64,9 @@ def _control(place: Path, played: Played, chain: Chain) -> dict[str, Any]:
         "title": control_title(played.format),
         "files": ", ".join(played.files),
         "sentence": result_sentence(result),
-        "after": rms(result.after) / UM,
-        "worst": float(np.linalg.norm(result.after, axis=1).max()) / UM,
-        "expected": result.expected / UM,
-        "interpolation": played.interpolation / UM,
+        "after": small(rms(result.after) / UM),
+        "expected": small(result.expected / UM, 2),
+        "interpolation": small(played.interpolation / UM, 2),
         "where": "over the workspace" if played.by_name else "along the axes through the datum",
         "by_name": played.by_name,
         "left": [
@@ -102,8 +99,13 @@ def _test(played: Played, chain: Chain) -> dict[str, Any]:
         ("table on, sign wrong", test.wrong_sign),
     ):
         u = test.u / UM
-        cells = [signed(v / UM, s or None) for v, s in zip(values, u, strict=True)]
+        cells = [_cell(v / UM, s) for v, s in zip(values, u, strict=True)]
         rows.append({"label": label, "cells": cells})
     change = (test.with_table - test.without) / UM
-    rows.append({"label": "change by switching it on", "cells": [signed(v, None) for v in change]})
+    rows.append({"label": "change by switching it on", "cells": [_cell(v, 0.0) for v in change]})
     return {"place": ", ".join(words), "rows": rows}
+
+
+def _cell(value: float, u: float) -> str:
+    """A deviation in µm: no indicator shows a nanometre."""
+    return "0" if max(abs(value), u) < 1e-3 else signed(value, u or None)

@@ -28,9 +28,9 @@ def control_title(name: str) -> str:
 def result_sentence(result: Result) -> str:
     """Before, after, and what to expect with a model that is not the truth, rms."""
     before, after = rms(result.before) / UM, rms(result.after) / UM
-    words = f"{digits(before)} -> {_small(after)} µm rms over the workspace"
+    words = f"{digits(before)} -> {small(after)} µm rms over the workspace"
     worst = np.linalg.norm(result.after, axis=1).max() / UM
-    words += f" (worst of {len(result.q)} poses {_small(worst)} µm)"
+    words += f" (worst of {len(result.q)} poses {small(worst)} µm)"
     if result.u_rms > NM:
         numbers = (result.u_rms, result.expected_before, result.expected)
         u, was, will = (digits(v / UM, 2) for v in numbers)
@@ -38,9 +38,9 @@ def result_sentence(result: Result) -> str:
     return words
 
 
-def _small(value: float) -> str:
-    """µm, nothing below a nanometre."""
-    return digits(value) if value >= 1e-3 else "< 0.001"
+def small(value: float, significant: int = 3) -> str:
+    """A size in µm, nothing below a nanometre."""
+    return digits(value, significant) if value >= 1e-3 else "< 0.001"
 
 
 def held_words(left: Left) -> str:
@@ -53,7 +53,7 @@ def table_lines(played: Played) -> Iterator[tuple[str, bool]]:
     """Lines on the console, and whether each is the first of its control."""
     yield f"{control_title(played.format)}: {result_sentence(played.result)}", True
     where = "over the workspace" if played.by_name else "along the axes through the datum"
-    bound = _small(played.interpolation / UM)
+    bound = small(played.interpolation / UM)
     yield f"- interpolation and rounding leave at most {bound} µm {where}", False
     held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
     if held:

@@ -34,7 +34,7 @@ _MISTAKES = {
     Fault.AXES_SWAPPED: "the columns of {axes} are exchanged",
     Fault.ROTARY_ORDER: "{axes} stand in the chain in the other order (it fits with {chain})",
     Fault.OTHER_SIDE: "{axes} stands on the other side of the chain (it fits with {chain})",
-    Fault.RADIANS: "the columns of {axes} hold radians, not degrees",
+    Fault.RADIANS: "readings of {axes} are radians, not degrees",
     Fault.NORMALS_INWARD: "the normals point into the standard",
     Fault.MINUTES: "touches follow each other in less than a second: time_s looks like minutes, "
     "not seconds",

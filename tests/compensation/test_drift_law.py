@@ -1,5 +1,6 @@
 """Saved laws of a drift as errors of a machine: against closed forms of heat, and probed."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -252,6 +253,16 @@ def test_a_file_that_is_no_law(bench_chain, bench):
     register(DRIFT_LAW)
     with pytest.raises(BadFile, match=r"machine.toml.*expected a thermal\.json of ours"):
         parse_effect(f"drift-law({bench},z:EZZ)", bench_chain)
+
+
+def test_an_unstable_law_is_refused(thermal_json, bench_chain, tmp_path):
+    register(DRIFT_LAW)
+    data = json.loads(thermal_json.read_text())
+    data["law"]["inputs"]["places"][0][1] = -600.0
+    changed = tmp_path / "changed.json"
+    changed.write_text(json.dumps(data))
+    with pytest.raises(BadFile, match="a time constant of -600 s: an unstable law"):
+        parse_effect(f"drift-law({changed},z:EZZ)", bench_chain)
 
 
 def test_command(bench, errors_file, thermal_json, tmp_path, capsys, unrendered):

@@ -120,6 +120,9 @@ def test_a_hole_is_where_it_should_be_at_its_bottom(frame, known, head, tmp_path
     assert max(off[k] for k in bottoms) < 0.03 * UM
     # above it the same shift holds: what it leaves there is told
     assert 0.03 * UM < max(off[k - 1] for k in bottoms) < 3 * UM
+    assert len(done.leans) == len(bottoms)
+    assert max(done.leans) <= max(off[k - 1] + off[k] for k in bottoms)
+    assert np.linalg.norm(done.after[done.is_stated], axis=1).max() < 0.03 * UM
 
 
 @pytest.mark.parametrize(
@@ -175,9 +178,13 @@ def test_tool_point_control_has_three_names(frame, tmp_path):
         blocks = ["X+1 Y+2 Z+3", on, "X+10 Y+20 Z-5 B-40 C+30", off, "Z+50"]
         text = "\n".join(b if b in (on, off) else line + b for b in blocks) + "\n"
         ends.append([(m.tcpm, *m.end) for m in program(text, frame, tmp_path, name).motions])
+    text = "G0 X1 Y2 Z3\nM428\nG0 X10 Y20 Z-5 B-40 C30\nM429\nG0 Z50\n"
+    found = program(text, frame, tmp_path, "c.ngc", tcp_functions=(428, 429))
+    ends.append([(m.tcpm, *m.end) for m in found.motions])
     assert [row[0] for row in ends[0]] == [False, True, False]
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
     np.testing.assert_allclose(ends[0], ends[2], atol=1e-9)
+    np.testing.assert_allclose(ends[0], ends[3], atol=1e-9)
 
 
 # --- Klartext -------------------------------------------------------------------------------------
@@ -239,6 +246,16 @@ def test_klartext_that_is_refused(frame, tmp_path, blocks, said):
     with pytest.raises(BadFile) as refused:
         program(f"{START}{blocks}\n", frame, tmp_path)
     assert said in str(refused.value)
+
+
+def test_after_a_cycle_the_motion_before_it_holds(frame, tmp_path):
+    """As on Fanuc; LinuxCNC asks for a word, which is written anyway."""
+    text = "G0 X0 Y0 Z5\nG81 X1 Z-3 R2 F100\nG80\nZ15\nG80\n"
+    found = program(text, frame, tmp_path, "a.ngc")
+    assert [m.line for m in found.motions] == [1, 2, 2, 2, 4]
+    assert found.motions[-1].is_rapid
+    with pytest.raises(BadFile, match="line 6: found axes without G0"):
+        program(f"{text}X5\n", frame, tmp_path, "a.ngc")
 
 
 def test_words_of_posts_that_move_nothing(frame, tmp_path):

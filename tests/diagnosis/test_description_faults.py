@@ -45,6 +45,17 @@ def test_a_reversed_axis_is_named_though_the_reader_refuses_the_run(texts) -> No
     assert "nothing was changed" in sentence
 
 
+def test_one_column_in_radians_is_named_alone(texts) -> None:
+    run, machine = texts
+    head = [line for line in run.splitlines() if line.startswith("#")]
+    names, *rows = [line.split(",") for line in run.splitlines()[len(head) :]]
+    at = names.index("C_deg")
+    for row in rows:
+        row[at] = f"{np.radians(float(row[at])):.9f}"
+    (fault,) = faults_in("\n".join([*head, *map(",".join, [names, *rows])]) + "\n", machine)
+    assert (fault.fault, fault.axes, fault.alike) == (Fault.RADIANS, ("C",), ())
+
+
 def test_rotary_axes_in_the_other_order_are_named_with_the_chain(texts) -> None:
     run, machine = texts
     (fault,) = faults_in(run, machine.replace("[w C' B' X'", "[w B' C' X'"))

@@ -91,6 +91,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
         by_tool("--tool", args.tool),
         by_tool("--tool-radius", args.tool_radius),
         args.pass_m,
+        args.tcp_m,
     )
     if args.loads:
         program = replace(program, loads=read_loads(args.loads))

@@ -68,7 +68,7 @@ def _poses(args: argparse.Namespace, job: Job) -> Touches:
     if args.program is not None:
         frame = Frame(job.errors.chain, job.datum)
         tools = by_tool("--tool", args.tool), by_tool("--tool-radius", args.tool_radius)
-        program = read_part_program(Path(args.program), frame, *tools, args.pass_m)
+        program = read_part_program(Path(args.program), frame, *tools, args.pass_m, args.tcp_m)
         loads = read_loads(args.loads) if args.loads else ()
         return passed(replace(program, loads=loads), job.errors)
     q, length = read_poses(args.poses, job.errors.chain)

@@ -1,7 +1,8 @@
 """What `matstd compensate` begins with: errors of a machine, their state, a datum, a workspace."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,14 +60,12 @@ def read_job(args: argparse.Namespace) -> Job:
         value=dict(_numbers("--value", args.value)),
         force=tuple(args.load),
     )
-    try:
+    with _drives_told(args.model):
         errors = _errors(args, state)
-        for text in args.add:
-            errors = _with_added(errors, text)
+    for text in args.add:
+        errors = _with_added(errors, text)
+    with _drives_told(args.model):
         errors = _with_unknowns(errors)
-    except UnknownEffect as error:
-        expected = "expected --temperature, --rpm or --value for all that the model follows"
-        raise DesignError(f"{args.model}: {error}; {expected}") from error
     errors = errors.switched(dict(_numbers("--switch", args.switch)))
     if not any(theta.any() for theta in errors.theta):
         raise DesignError(f"{args.model}: no error of an axis is known and switched on")
@@ -84,6 +83,16 @@ def read_job(args: argparse.Namespace) -> Job:
     for path in args.active:
         Header.of(read_text(path), path).refuse_active(job.header(1), path)
     return job
+
+
+@contextmanager
+def _drives_told(model: str) -> Iterator[None]:
+    """Say which options state what a model follows, where something of it is not stated."""
+    try:
+        yield
+    except UnknownEffect as error:
+        expected = "expected --temperature, --rpm or --value for all that the model follows"
+        raise DesignError(f"{model}: {error}; {expected}") from error
 
 
 def _with_added(errors: MachineErrors, text: str) -> MachineErrors:

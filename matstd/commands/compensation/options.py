@@ -102,3 +102,11 @@ def add_program(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="M functions of this machine that move nothing and change no coordinates",
     )
+    parser.add_argument(
+        "--tcp-m",
+        metavar=("ON", "OFF"),
+        nargs=2,
+        type=int,
+        default=(),
+        help="M functions of G-code that switch tool-point control (LinuxCNC's tables: 428 429)",
+    )
