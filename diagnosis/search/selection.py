@@ -121,11 +121,6 @@ class EffectSubset:
     members: tuple[Member, ...]
     effects: EffectSet
 
-    @property
-    def key(self) -> tuple[tuple[int, float], ...]:
-        """Which variants it holds at which scales, whatever their order."""
-        return tuple(sorted((m.variant, m.scale) for m in self.members))
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verified:
@@ -195,8 +190,7 @@ class Search:
         self.complement = pool.complement
         self.fixed = fixed
         self.progress = progress
-        self._scores: dict[tuple[tuple[int, float], ...], Scores] = {}
-        self._ranked: dict[tuple[tuple[int, float], ...], list[int]] = {}
+        self._known: dict[tuple[tuple[int, float], ...], tuple[Scores, list[int]]] = {}
         self._products: dict[int, Array] = {}
 
     def evaluate(self, members: Iterable[Member]) -> EffectSubset:
@@ -218,11 +212,18 @@ class Search:
         return self.pool.names[self.pool.owner[variant]]
 
     def scores(self, chosen: EffectSubset) -> Scores:
-        """Scores of all variants as additions to a set, computed once."""
-        key = chosen.key
-        if key not in self._scores:
-            self._scores[key] = score_all(chosen.effects, self.pool, self._inside(chosen))
-        return self._scores[key]
+        """Scores of all variants as additions to a set."""
+        return self._scored(chosen)[0]
+
+    def _scored(self, chosen: EffectSubset) -> tuple[Scores, list[int]]:
+        """The same, with the best variant of every candidate, most evidence first; made once."""
+        key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
+        if key not in self._known:
+            scores = score_all(chosen.effects, self.pool, self._inside(chosen))
+            order = np.argsort(-scores.evidence, kind="stable")
+            _, first = np.unique(self.pool.owner[order], return_index=True)
+            self._known[key] = scores, order[np.sort(first)].tolist()
+        return self._known[key]
 
     def _inside(self, chosen: EffectSubset) -> Array:
         """Inner products of a set's columns with all signatures, (K, M).
@@ -244,22 +245,12 @@ class Search:
         assert self.fixed is not None
         return np.asarray(self.fixed.T @ self.pool.C)
 
-    def ranking(self, chosen: EffectSubset) -> list[int]:
-        """Best variant of every candidate that is not in a set, most evidence first."""
-        if chosen.key not in self._ranked:
-            evidence = self.scores(chosen).evidence
-            order = np.argsort(-evidence, kind="stable")
-            taken = {m.candidate for m in chosen.members}
-            _, first = np.unique(self.pool.owner[order], return_index=True)
-            ranked = order[np.sort(first)].tolist()
-            owner = self.pool.owner
-            self._ranked[chosen.key] = [v for v in ranked if int(owner[v]) not in taken]
-        return self._ranked[chosen.key]
-
     def additions(self, chosen: EffectSubset) -> list[int]:
-        """The same without what would hold a member."""
+        """Best variant of every candidate that is not in a set and would hold no member of it."""
         members, variants = [m.effect for m in chosen.members], self.pool.variants
-        return [v for v in self.ranking(chosen) if not would_hold(variants[v], members)]
+        taken = {m.candidate for m in chosen.members}
+        others = (v for v in self._scored(chosen)[1] if int(self.pool.owner[v]) not in taken)
+        return [v for v in others if not would_hold(variants[v], members)]
 
     def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""
