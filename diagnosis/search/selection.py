@@ -230,9 +230,7 @@ class Search:
 
         Those of a variant are made once: a long run has few variants that are ever members.
         """
-        rows = [np.zeros((0, self.pool.C.shape[1]))]
-        if self.fixed is not None:
-            rows.append(self._fixed_product)
+        rows = [self._fixed_product]
         for m in chosen.members:
             if m.variant not in self._products:
                 self._products[m.variant] = self.pool.columns_of(m.variant).T @ self.pool.C
@@ -241,16 +239,19 @@ class Search:
 
     @cached_property
     def _fixed_product(self) -> Array:
-        """The same of the columns that are in every set."""
-        assert self.fixed is not None
-        return np.asarray(self.fixed.T @ self.pool.C)
+        """The same of the columns that are in every set, if there are any."""
+        none = np.zeros((0, self.pool.C.shape[1]))
+        return none if self.fixed is None else np.asarray(self.fixed.T @ self.pool.C)
+
+    def ranking(self, chosen: EffectSubset) -> list[int]:
+        """Best variant of every candidate that is not in a set, most evidence first."""
+        taken = {m.candidate for m in chosen.members}
+        return [v for v in self._scored(chosen)[1] if int(self.pool.owner[v]) not in taken]
 
     def additions(self, chosen: EffectSubset) -> list[int]:
-        """Best variant of every candidate that is not in a set and would hold no member of it."""
+        """The same without what would hold a member."""
         members, variants = [m.effect for m in chosen.members], self.pool.variants
-        taken = {m.candidate for m in chosen.members}
-        others = (v for v in self._scored(chosen)[1] if int(self.pool.owner[v]) not in taken)
-        return [v for v in others if not would_hold(variants[v], members)]
+        return [v for v in self.ranking(chosen) if not would_hold(variants[v], members)]
 
     def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""
