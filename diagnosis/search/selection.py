@@ -203,8 +203,7 @@ class Search:
 
     def member(self, chosen: EffectSubset, variant: int) -> Member:
         """A variant as an addition to a set, at its likeliest scale there."""
-        scale = float(self.scores(chosen).scale[variant])
-        owner = int(self.pool.owner[variant])
+        scale, owner = float(self.scores(chosen).scale[variant]), int(self.pool.owner[variant])
         return Member(variant, owner, self.pool.variants[variant], scale)
 
     def name_of(self, variant: int) -> str:
@@ -240,8 +239,8 @@ class Search:
     @cached_property
     def _fixed_product(self) -> Array:
         """The same of the columns that are in every set, if there are any."""
-        none = np.zeros((0, self.pool.C.shape[1]))
-        return none if self.fixed is None else np.asarray(self.fixed.T @ self.pool.C)
+        C = self.pool.C
+        return np.zeros((0, C.shape[1])) if self.fixed is None else np.asarray(self.fixed.T @ C)
 
     def ranking(self, chosen: EffectSubset) -> list[int]:
         """Best variant of every candidate that is not in a set, most evidence first."""
