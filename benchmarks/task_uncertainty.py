@@ -23,7 +23,8 @@ from artefact.worth import Calibration
 from diagnosis.fit import Prior, fit_run
 from matstd.stages.budgets import CLAMPED, PLAIN, budgets
 from matstd.stages.design import _twin
-from probe_paths.campaign import visits
+from probe_paths.campaign import check_moves, visits
+from probe_paths.control import ReadProgram, read_program
 from sensitivity.population import drawn_errors
 from twin.effects import setup_errors
 from twin.frames import Array, pose, rotation
@@ -99,7 +100,7 @@ def machine(
     project: Project,
     standard: Standard,
     known: Calibration,
-    programs: list[Path],
+    programs: tuple[ReadProgram, ...],
     number: int,
     rng: np.random.Generator,
 ) -> dict[str, tuple[float, float, float, float]]:
@@ -143,7 +144,10 @@ def main() -> None:
     args = parser.parse_args()
     project = read_project(args.project)
     standard = read_standard(args.out / "standard.toml")
-    programs = sorted((args.out / "programs").glob("*_[0-9]*.H"))
+    paths = sorted((args.out / "programs").glob("*_[0-9]*.H"))
+    programs = tuple(read_program(path, project.chain) for path in paths)
+    for program in programs:  # once for all machines
+        check_moves(program, standard, project.chain)
     rows = []
     for k in range(args.first, args.first + args.machines):
         rng = np.random.default_rng([project.seed, k])

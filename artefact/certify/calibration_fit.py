@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from artefact.body import FreeformPatch, Known, KnownFeature, Standard
-from artefact.certify.cmm_points_file import CmmPoints
+from artefact.certify.cmm_points_file import SIDES, CmmPoints
 from artefact.certify.face_correction import corrected_face
 from twin.errors import BadFile, NotEnoughData
 from twin.frames import Array, apply
@@ -120,9 +120,10 @@ def _remarks(nominal: Standard, cmm: CmmPoints, known: dict[str, KnownFeature]) 
     out = []
     if missing:
         out.append(f"no points on {', '.join(missing)}: as designed, as uncertain as is assumed")
-    plane = int(np.sum(cmm.feature == nominal.plane.name))
-    if plane:
-        out.append(f"{plane} points on {nominal.plane.name} align nothing: balls say where it is")
+    datums = (nominal.plane.name, *SIDES)
+    if touched := int(np.isin(cmm.feature, datums).sum()):
+        on = ", ".join(name for name in datums if name in cmm.feature)
+        out.append(f"{touched} points on {on} align nothing: balls say where the piece is")
     return out
 
 

@@ -18,6 +18,9 @@ STAMP = "MATSTD"
 _STAMPED = re.compile(rf"{STAMP} ([0-9a-f]{{16}})")
 _NUMBERED = re.compile(r"(.+)_\d+\Z")
 _FEATURE = ("feature", "name", "element", "label", "point")
+SIDES = ("DATUM_B", "DATUM_C")
+"""Datums that our program touches by hand, which a list of all points has as well."""
+
 _DIAMETER = ("diameter", "d", "dia")
 
 
@@ -57,7 +60,7 @@ def read_cmm_points(path: str | Path, standard: Standard) -> CmmPoints:
     column = _column(sheet, _FEATURE, "the feature")
     names = [_feature(n, standard) for n in sheet.text(column)]
     for name, line in zip(names, sheet.lines, strict=True):
-        if name not in standard.features:
+        if name not in (*standard.features, *SIDES):
             raise BadFile(
                 path, f"line {line}", f"feature {name!r}", f"one of {', '.join(standard.features)}"
             )
@@ -103,7 +106,8 @@ def _checked_stamp(sheet: Sheet, standard: Standard) -> list[str]:
 def _feature(name: str, standard: Standard) -> str:
     """A feature by its name, or by the name of a numbered point on it."""
     numbered = _NUMBERED.match(name)
-    return numbered[1] if numbered and name not in standard.features else name
+    known = (*standard.features, *SIDES)
+    return numbered[1] if numbered and name not in known else name
 
 
 def _bare(column: str) -> str:

@@ -1,13 +1,15 @@
 """DMIS program that takes the points of a calibration on a coordinate measuring machine.
 
-Datum plane and two balls align the part by hand, then all features are measured in the frame of the
-design with one upright stylus: every ball as a sphere, every face point as a point of its own, so
-that any DMIS software can run the program and list x, y and z. Between points the stylus goes up to
-a plane above the standard.
+The datum system of the drawing, plane A, two touches on side B and one on side C, aligns the part
+by hand, then all features are measured in the frame of the design with one upright stylus: every
+ball as a sphere, every face point as a point of its own, so that any DMIS software can run the
+program and list x, y and z. Between points the stylus goes up to a plane above the standard.
 
 Reference:
     ISO 22093:2011 (DMIS 5.2): DATSET, FEAT, MEAS, PTMEAS, OUTPUT.
 """
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -33,16 +35,21 @@ _RINGS = ((60.0, 4), (25.0, 8))  # elevation, degrees, and number of points belo
 _PLANE_POINTS = 8
 
 
-def dmis_program(standard: Standard) -> str:
+Sides = Mapping[str, tuple[Array, Array]]
+"""Points (K, 3) and outward normal (3,) of the datum sides, by name."""
+
+
+def dmis_program(standard: Standard, sides: Sides) -> str:
     """Text of the program.
 
     Args:
         standard: As designed; its fingerprint stands in the program and in its results.
+        sides: Where `DATUM_B` is touched twice, from -x to +x, and `DATUM_C` once.
     """
-    if len(standard.spheres) < 2:
-        raise NotEnoughData(f"'{standard.name}' has {len(standard.spheres)} balls, 2 align it")
+    if len(standard.spheres) < 3:
+        raise NotEnoughData(f"'{standard.name}' has {len(standard.spheres)} balls, 3 align it")
     high = max(body_top(standard), standard.blank_height) + LIFT
-    lines = [*_head(standard), *_aligned(standard), "MODE/PROG,MAN"]
+    lines = [*_head(standard), *_aligned(standard, sides), "MODE/PROG,MAN"]
     for sphere in standard.spheres:
         size = f"{_xyz(sphere.centre)},{2 * sphere.radius:.4f}"
         lines.append(f"F({sphere.name})=FEAT/SPHERE,OUTER,CART,{size}")
@@ -100,46 +107,28 @@ def _head(standard: Standard) -> list[str]:
     ]
 
 
-def _aligned(standard: Standard) -> list[str]:
-    """Datum plane and two balls by hand; the frame of the design from them."""
-    first, second = farthest_balls(standard)
-    a, b = standard.spheres[first], standard.spheres[second]
-    along = (b.centre - a.centre)[:2]
-    turned = float(np.arctan2(along[1], along[0]) / DEG)
+def _aligned(standard: Standard, sides: Sides) -> list[str]:
+    """Datums A, B and C by hand; the frame of the design from them."""
     plane, half = standard.plane, np.asarray(standard.base.half_size)
     points = plane_points(standard)
     normals = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    lines = [
+    (along, south), (corner, west) = sides["DATUM_B"], sides["DATUM_C"]
+    return [
         "MODE/MAN",
         f"F({plane.name})=FEAT/PLANE,CART,0.0000,0.0000,{plane.height:.4f},0.0,0.0,1.0",
         f"$$ near the rim, which is at {half[0]:g} and {half[1]:g} mm",
         *_measured("PLANE", plane.name, points, normals, None),
-    ]
-    for label, ball in (("M1", a), ("M2", b)):
-        size = f"{_xyz(ball.centre)},{2 * ball.radius:.4f}"
-        lines.append(f"F({label})=FEAT/SPHERE,OUTER,CART,{size}")
-        p, n = ball_points(ball.centre, ball.radius)
-        lines += [f"$$ {ball.name}", *_measured("SPHERE", label, p[:5], n[:5], None)]
-    x, y, _ = a.centre
-    return [
-        *lines,
+        f"F(DATUM_B)=FEAT/LINE,BND,CART,{_xyz(along[0])},{_six(along[1], south)}",
+        *_measured("LINE", "DATUM_B", along, np.tile(south, (2, 1)), None),
+        f"F(DATUM_C)=FEAT/POINT,CART,{_six(corner[0], west)}",
+        *_measured("POINT", "DATUM_C", corner, west[None], None),
         f"DATDEF/FA({plane.name}),DAT(A)",
-        "DATDEF/FA(M1),DAT(B)",
-        f"F(ML)=FEAT/LINE,BND,CART,{_xyz(a.centre)},{_xyz(b.centre)},0.0,0.0,1.0",
-        "CONST/LINE,F(ML),BF,FA(M1),FA(M2)",
-        "DATDEF/FA(ML),DAT(C)",
-        "D(BALLS)=DATSET/DAT(A),ZDIR,ZORIG,DAT(C),XDIR,DAT(B),XORIG,YORIG",
-        f"D(TURNED)=ROTATE/ZAXIS,{-turned:.6f}",
-        f"D(PART)=TRANS/XORIG,{-x:.4f},YORIG,{-y:.4f},ZORIG,{-plane.height:.4f}",
+        "DATDEF/FA(DATUM_B),DAT(B)",
+        "DATDEF/FA(DATUM_C),DAT(C)",
+        "D(SIDES)=DATSET/DAT(A),ZDIR,ZORIG,DAT(B),XDIR,YORIG,DAT(C),XORIG",
+        f"D(PART)=TRANS/XORIG,{-corner[0, 0]:.4f},YORIG,{-along[0, 1]:.4f},"
+        f"ZORIG,{-plane.height:.4f}",
     ]
-
-
-def farthest_balls(standard: Standard) -> tuple[int, int]:
-    """The two balls that are farthest apart as seen from above."""
-    xy = np.array([s.centre[:2] for s in standard.spheres])
-    apart = np.linalg.norm(xy[:, None] - xy, axis=2)
-    i, j = np.unravel_index(int(np.argmax(apart)), apart.shape)
-    return int(i), int(j)
 
 
 def plane_points(standard: Standard) -> Array:

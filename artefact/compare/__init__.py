@@ -18,6 +18,7 @@ from artefact.compare.identifiability import (
     identifiability_report,
 )
 from artefact.compare.power import ERROR, RISK, WANTED, Power, proof_power, task_normals
+from artefact.compare.regions import WorstRegions, worst_regions
 
 __all__ = [
     "ERROR",
@@ -28,6 +29,7 @@ __all__ = [
     "IdentifiabilityReport",
     "Power",
     "Rival",
+    "WorstRegions",
     "compare",
     "evaluated",
     "identifiability_report",
@@ -35,4 +37,5 @@ __all__ = [
     "proof_power",
     "random_lots",
     "task_normals",
+    "worst_regions",
 ]

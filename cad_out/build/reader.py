@@ -330,15 +330,23 @@ def _frame(position: Any) -> Frame:
 
 def _in_space(surface: Any) -> Map:
     """Parameters of a surface to points; a spline is evaluated at many places at once."""
-    if surface.GetType() == GeomAbs_SurfaceType.GeomAbs_BSplineSurface:
-        spline = surface.BSpline()
-        count = spline.NbUPoles(), spline.NbVPoles()
-        poles = [
-            [_xyz(spline.Pole(i + 1, j + 1)) for j in range(count[1])] for i in range(count[0])
+    is_spline = surface.GetType() == GeomAbs_SurfaceType.GeomAbs_BSplineSurface
+    spline = surface.BSpline() if is_spline else None
+    if spline is not None and not (spline.IsUPeriodic() or spline.IsVPeriodic()):
+        each = [
+            (i, j) for i in range(1, spline.NbUPoles() + 1) for j in range(1, spline.NbVPoles() + 1)
         ]
+        weight = np.array([[spline.Weight(*ij)] for ij in each])  # of a rational one
+        poles = np.hstack([np.array([_xyz(spline.Pole(*ij)) for ij in each]) * weight, weight])
         knots = _knots(spline, "U"), _knots(spline, "V")
-        at: Map = NdBSpline(knots, np.array(poles), (spline.UDegree(), spline.VDegree()))
-        return at
+        net = poles.reshape(spline.NbUPoles(), spline.NbVPoles(), 4)
+        at = NdBSpline(knots, net, (spline.UDegree(), spline.VDegree()))
+
+        def at_once(uv: Array) -> Array:
+            found = at(uv)
+            return np.asarray(found[:, :3] / found[:, 3:])
+
+        return at_once
 
     def one_by_one(uv: Array) -> Array:
         found = [_xyz(surface.Value(float(u), float(v))) for u, v in uv]

@@ -16,7 +16,7 @@ from cad_out.details.mounting import (
     Screw,
     relief_profile,
 )
-from cad_out.details.places import Bore, Side
+from cad_out.details.places import Bore, Side, datum_touches
 from cad_out.details.seats import Seat, glue_gap
 from cad_out.details.stroke_font import HEIGHT, strokes
 from cad_out.details.tolerances import BALL_SIZE, DATUMS, Tolerance, notes_of, tolerances_of
@@ -39,6 +39,7 @@ __all__ = [
     "Seat",
     "Side",
     "Tolerance",
+    "datum_touches",
     "details_of",
     "glue_gap",
     "notes_of",

@@ -75,6 +75,23 @@ def sides_of(standard: Standard) -> dict[str, Side]:
     return out
 
 
+def datum_touches(standard: Standard) -> dict[str, tuple[Array, Array]]:
+    """Points (K, 3) and outward normal (3,) of the sides that are datums.
+
+    Side B is touched twice, as far apart as its straight part is long, side C once in its middle,
+    both at half the plate's height.
+    """
+    sides, z = sides_of(standard), 0.5 * standard.base.thickness
+    out = {}
+    for name, shares in (("DATUM_B", (-0.8, 0.8)), ("DATUM_C", (0.0,))):
+        side = sides[name]
+        normal = np.array([*side.normal, 0.0])
+        across = np.abs(normal[[1, 0, 2]])
+        middle = side.offset * normal + [0.0, 0.0, z]
+        out[name] = np.array([middle + s * side.half_length * across for s in shares]), normal
+    return out
+
+
 def plan_room(standard: Standard, xy: Array) -> Array:
     """Distance of places (N, 2) from all that stands on the plate, is bored into it, or ends it.
 

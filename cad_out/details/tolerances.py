@@ -17,6 +17,10 @@ PROFILE, POSITION = 0.05, 0.2
 FLATNESS, PARALLELISM, SQUARENESS = 0.005, 0.01, 0.02
 """Widths of tolerance zones, mm."""
 
+FACE_ROUGHNESS = 0.4
+"""Ra of freeform faces, um: a probing ball rests on peaks of four times that, which scatter from
+touch to touch by less than a probe repeats."""
+
 BALL_SIZE = 0.0025
 """Either way of the nominal diameter of a bought ball, mm; its lot is sorted far finer."""
 
@@ -49,7 +53,8 @@ def notes_of(standard: Standard, details: Details) -> tuple[str, ...]:
     notes = [
         "Dimensions in mm, at 20 degC. General tolerances ISO 2768-mK; inner edges R 3.",
         "Datum A: upper face; B: side at -y, two touches; C: side at -x, one touch.",
-        "Freeform faces: B-splines of this model are the nominal; as milled, then calibrated.",
+        "Freeform faces: B-splines of this model are the nominal; as milled, "
+        f"Ra {FACE_ROUGHNESS:g} um or finer, then calibrated.",
         glue + "glue outside the circle of contact only.",
         f"Material: {standard.material.name}; stress-relieve before finishing.",
     ]

@@ -70,14 +70,18 @@ def _hint_table(hint: FaceHint) -> dict[str, Any]:
     """Of one face, for the finishing cutter; angles in degrees, null where no axis will do."""
     return {
         "least_convex_radius_mm": hint.convex if hint.convex < 1e6 else None,
-        "slope_deg": [angle / DEG for angle in hint.slope],
+        "slope_deg": [_degrees(angle) for angle in hint.slope],
         "step_over_mm": {
             f"Ra {ra / UM:g} um": width for ra, width in zip(ROUGHNESS, hint.step_over, strict=True)
         },
-        "tilts_deg": [tilt / DEG for tilt in hint.tilts],
-        "best_tilt_deg": None if hint.axis is None else hint.axis[0] / DEG,
-        "best_azimuth_deg": None if hint.axis is None else hint.axis[1] / DEG,
+        "tilts_deg": [_degrees(tilt) for tilt in hint.tilts],
+        "best_tilt_deg": None if hint.axis is None else _degrees(hint.axis[0]),
+        "best_azimuth_deg": None if hint.axis is None else _degrees(hint.axis[1]),
         "contact_angle_deg": None
         if hint.contact is None
-        else [angle / DEG for angle in hint.contact],
+        else [_degrees(angle) for angle in hint.contact],
     }
+
+
+def _degrees(angle: float) -> float:
+    return round(angle / DEG, 6)

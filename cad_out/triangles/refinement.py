@@ -259,6 +259,7 @@ def _improve(
     if not len(order):
         return set(), False
     centre, radius = circumcircles(corner[order])
+    outside = ~sheet.contains(centre)  # of an outline whose pieces there are too short to halve
     struck = np.zeros(len(centre), dtype=bool)
     hit = np.zeros(len(ends), dtype=bool)
     low, high = places[ends[:, 0]], places[ends[:, 1]]
@@ -266,8 +267,8 @@ def _improve(
     for k, found in enumerate(cKDTree(centre).query_ball_point(0.5 * (low + high), half)):
         hit[k] = bool(found) and may[k]
         struck[found] = True
+    centre[outside] = corner[order][outside].mean(axis=1)
     new = centre[~struck][apart(centre[~struck], radius[~struck])]
-    new = new[sheet.contains(new)]
     face.inner = np.concatenate([face.inner, new])
     return outline.pieces(hit), bool(len(new))
 

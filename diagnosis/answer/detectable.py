@@ -1,12 +1,12 @@
 """What a run could have shown: the smallest size of every effect that would have been found."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import chdtri
 
-from diagnosis.evidence import EffectSet, Signatures
+from diagnosis.evidence import EffectSet, ScaledEffect, Signatures, projected
 from diagnosis.fit import inner_unit
 from diagnosis.search import CHANCE
 from twin.frames import Array
@@ -60,27 +60,25 @@ class Detectable:
 
 
 def detectable(
-    effects: EffectSet, pool: Signatures, touches: int | None = None
+    pool: Signatures, found: Sequence[ScaledEffect], touches: int | None = None
 ) -> tuple[Detectable, ...]:
-    """Smallest detectable size of every candidate, with the found effects in the model.
+    """Smallest detectable size of every candidate, with the other found effects in the model.
 
     The non-centrality that passes the corrected threshold in four of five runs, over the squared
     signature per unit of prior, averaged over the directions of the effect's parameters.
 
     Args:
-        effects: The final set.
         pool: Signatures of all candidates.
+        found: The final set.
         touches: Number of touches of the run, where set and pool are an even choice of them.
     """
     share = 1.0 if touches is None else len(pool.complement.u) / touches
-    E = effects.whiten(pool.C)
-    n_variants = len(pool.variants)
-    mean, whole = np.zeros(n_variants), np.zeros(n_variants)
-    for k, (which, cols) in pool.by_width.items():
-        own = np.einsum("kvi,kvi->vi", E[:, cols], E[:, cols])
-        diagonal = np.einsum("vii->vi", pool.gram[k])
-        mean[which] = (diagonal - own).sum(axis=1) / k
-        whole[which] = (pool.size[cols] ** 2).sum(axis=1) / k
+    effects = EffectSet(pool.complement, projected(pool.complement, found))
+    mean, whole = _surviving(effects, pool)
+    for one in found:  # which would hide itself
+        rest = projected(pool.complement, [f for f in found if f is not one])
+        own = np.array([v.name == one.effect.name for v in pool.variants], dtype=bool)
+        mean[own] = _surviving(EffectSet(pool.complement, rest), pool)[0][own]
     needed = _needed(pool)
     scale = share * effects.objective / max(effects.dof, 1.0)
     with np.errstate(divide="ignore"):
@@ -93,6 +91,18 @@ def detectable(
         survives = mean[middle] / whole[middle] if whole[middle] > 0.0 else 0.0
         out.append(_one(pool, middle, float(length[middle]), max(float(survives), 0.0)))
     return tuple(out)
+
+
+def _surviving(effects: EffectSet, pool: Signatures) -> tuple[Array, Array]:
+    """Squares of signatures that a set cannot imitate, and of whole ones, by variant, (V,) each."""
+    E = effects.whiten(pool.C)
+    mean, whole = np.zeros((2, len(pool.variants)))
+    for k, (which, cols) in pool.by_width.items():
+        own = np.einsum("kvi,kvi->vi", E[:, cols], E[:, cols])
+        diagonal = np.einsum("vii->vi", pool.gram[k])
+        mean[which] = (diagonal - own).sum(axis=1) / k
+        whole[which] = (pool.size[cols] ** 2).sum(axis=1) / k
+    return mean, whole
 
 
 def _needed(pool: Signatures) -> Array:

@@ -173,7 +173,6 @@ def _result(
     start = _structures(final, progress)
     progress(0.8, "what the run could have shown")
     seen = final.library.sample
-    effects = EffectSet(seen.complement, projected(seen.complement, final.effects))
     return Diagnosis(
         run=task.run,
         verdict=verdict,
@@ -183,7 +182,7 @@ def _result(
         left=left,
         depends_on=_dependences(left if unexplained else start),
         where=_where(steps, verdict),
-        detectable=detectable(effects, seen, len(final.library.complement.u)),
+        detectable=detectable(seen, final.effects, len(final.library.complement.u)),
         plans=_plans(task, added, classes, gross, rng),
         geometry=learnt_geometry(
             steps[-1].fit,

@@ -22,7 +22,7 @@ from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from diagnosis.fit.prior import Prior
 from diagnosis.regression import PRIOR_DOF, Solution
@@ -30,6 +30,7 @@ from twin.effects import Change, ComponentError, LocationError
 from twin.frames import Array
 from twin.machine import LETTERS, Chain, error_class
 from twin.model import Effect, Model
+from twin.record import IntArray
 
 FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
 """On what is expected: from the class down to a machine of a laboratory."""
@@ -63,8 +64,51 @@ def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
     best = int(np.argmax(evidence))
     if evidence[best] < evidence[0] + CLEARLY:
         return prior
-    chosen = each[best][: len(prior)]
+    chosen = _released(G, g, square, len(y), each[best], _errors_of(model, kinds))[: len(prior)]
     return Prior(prior.mean, chosen[:, None] * prior.root, chosen)
+
+
+def _errors_of(model: Model, kinds: Array) -> list[IntArray]:
+    """Numbers of the parameters that one error of one axis has of a kind, for every error, (K,)."""
+    of: dict[tuple[object, ...], list[int]] = {}
+    own = [e for e in model.effects for _ in e.parameters]
+    for i, (effect, kind) in enumerate(zip(own, kinds, strict=True)):
+        if kind != "stays":
+            since, error = getattr(effect, "since", None), getattr(effect, "effect", effect)
+            of.setdefault((since, getattr(error, "symbol", None), kind), []).append(i)
+    return [np.array(numbers) for numbers in of.values()]
+
+
+def _released(
+    G: Array, g: Array, square: float, count: int, factor: Array, errors: Sequence[IntArray]
+) -> Array:
+    """The factors with those errors left to the class, one by one, that are not as small.
+
+    With variance v more for the parameters of one error, K and k the information and its vector
+    about them that the others leave, the evidence changes as det(I + v K) and k^T (I/v + K)^-1 k
+    say: one factorisation serves all errors.
+    """
+    factor = factor.copy()
+    while True:
+        M = factor[:, None] * G * factor
+        M[np.diag_indices_from(M)] += 1.0
+        low = cho_factor(M, lower=True)
+        half = solve_triangular(low[0], factor[:, None] * np.column_stack([G, g]), lower=True)
+        K, k = G - half[:, :-1].T @ half[:, :-1], g - half[:, :-1].T @ half[:, -1]
+        left = max(square - float(half[:, -1] @ half[:, -1]), 0.0) + PRIOR_DOF
+        gains = [_gain(K, k, left, count, of, 1.0 - factor[of[0]] ** 2) for of in errors]
+        best = int(np.argmax(gains)) if gains else 0
+        if not gains or gains[best] <= 0.0:
+            return factor
+        factor[errors[best]] = 1.0
+
+
+def _gain(K: Array, k: Array, left: float, count: int, of: IntArray, more: float) -> float:
+    """Log evidence gained by so much more variance of some parameters."""
+    wide = np.eye(len(of)) + more * K[np.ix_(of, of)]
+    told = more * float(k[of] @ np.linalg.solve(wide, k[of]))
+    less = np.log(max(left - told, PRIOR_DOF) / left)
+    return float(-0.5 * np.linalg.slogdet(wide)[1] - 0.5 * (count + PRIOR_DOF) * less)
 
 
 def _kind(effect: Effect, chain: Chain) -> str:

@@ -50,7 +50,7 @@ class Drawn(NamedTuple):
 
 
 class Driver(NamedTuple):
-    """What an effect is drawn over: a column of the run, "" for none; within a period, mm, or 0."""
+    """What an effect is drawn over: a column of the run or ""; within a period of it, or 0."""
 
     column: str
     period: float = 0.0
@@ -194,14 +194,16 @@ def _drivers(effect: Effect, touches: Touches) -> Mapping[Driver, Array]:
     """Everything an effect may be a function of, in order."""
     known = variables(touches)
     scanned = inner_values(effect, touches)
-    periods = [value for inner, value in scanned if inner.acts == "with a period"]
     out: dict[Driver, Array] = {}
     if any(inner.unit == "s" for inner, _ in scanned):
         out[Driver("time_s")] = touches.since_start
     for axis in touches.chain.programmed_axes:
         q, is_rotary = touches.reading(axis), touches.chain.link(axis).kind == "rotary"
-        out |= {Driver(f"{axis}_mm", period): q % period for period in periods}
-        out[Driver(f"{axis}_deg" if is_rotary else f"{axis}_mm")] = q / (DEG if is_rotary else 1.0)
+        column, unit = (f"{axis}_deg", DEG) if is_rotary else (f"{axis}_mm", 1.0)
+        for value in (v for inner, v in scanned if inner.over == axis):
+            period = 2.0 * np.pi / value if is_rotary else value
+            out[Driver(column, period / unit)] = q % period / unit
+        out[Driver(column)] = q / unit
         out[Driver(f"dir{axis}")] = touches.last_move(axis)
     n = normal_in_tool(touches)
     out[Driver("azimuth_deg")] = np.arctan2(n[:, 1], n[:, 0]) / DEG

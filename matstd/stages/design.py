@@ -13,9 +13,9 @@ import numpy as np
 from artefact.body import Standard, write_standard
 from artefact.brief import Project
 from artefact.certify import dmis_program, like_task
-from artefact.compare import identifiability_report
+from artefact.compare import WorstRegions, identifiability_report, worst_regions
 from artefact.place import Placement, design_standard
-from cad_out.details import details_of
+from cad_out.details import datum_touches, details_of
 from cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from cad_out.verify import Conformity, export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
@@ -45,6 +45,7 @@ from report.pages import Design, Proven
 from sensitivity.first_order import Workspace, latin_hypercube
 from sensitivity.montecarlo import Workers
 from sensitivity.population import drawn_errors
+from sensitivity.study import Study
 from twin.compute import Progress
 from twin.files import errors_toml, write_run, write_whole
 from twin.frames import Array
@@ -76,8 +77,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     placement = _placement(project, workspace, rng.placement, progress, poses)
     placement, stiffness = _with_sag(placement, project.standard.down)
     plans = _plans(project, placement)
-    write_standard(folder / "standard.toml", placement.standard)
-    write_whole(folder / "cmm.dmi", dmis_program(placement.standard), newline="\r\n")
+    _write_standard(folder, placement.standard)
     with ThreadPoolExecutor(1) as beside:  # the kernel works in processes of its own
         cad = beside.submit(_export, project, placement.standard, folder)
         progress("what can be told apart", 0, 1)
@@ -116,6 +116,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         study=study,
         maps=maps,
         placement=placement,
+        worst=_worst(placement, study),
         conformity=conformity,
         making=making,
         stations=stations,
@@ -125,6 +126,19 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         budgets=budgets,
         visits=visits,
     )
+
+
+def _write_standard(folder: Path, standard: Standard) -> None:
+    """The design, and the program of its calibration."""
+    write_standard(folder / "standard.toml", standard)
+    program = dmis_program(standard, datum_touches(standard))
+    write_whole(folder / "cmm.dmi", program, newline="\r\n")
+
+
+def _worst(placement: Placement, study: Study) -> WorstRegions:
+    """What the faces see of the poses at which machines are wrong again and again."""
+    on_body = placement.criterion.on(placement.standard)
+    return worst_regions(on_body, placement.proof, study.q, study.volumetric.recurrence)
 
 
 def _export(project: Project, standard: Standard, folder: Path) -> Conformity:

@@ -22,6 +22,8 @@ CONTACT_TOLERANCE = 1e-3 * NM
 _STEPS = 12
 """Of Newton's method; with errors of ordinary size four were enough."""
 
+_LATE = 10.0  # mm beyond the end of a touch: far more than errors of a machine that runs
+
 FIRST_MORNING = datetime(2000, 1, 1, 8, 0, 0)
 """When a simulated campaign begins; any date does, but it must not depend on today."""
 
@@ -86,7 +88,9 @@ class ContactSolver:
         motion = np.einsum("nij,nj->ni", D, self.direction[:, columns])
         self.motion = turn(self.T_artefact_table, motion)  # (N, 3) of the ball per mm of travel
         centre = apply(self.T_artefact_table, tip(chain, self.start, self.length))
-        hit = contact(self.standard, centre, self.motion, self.radius)
+        # errors bring nearer what is met a little late; what is farther off is not looked at
+        latest = self.distance + _LATE
+        hit = contact(self.standard, centre, self.motion, self.radius, latest)
         self.meeting = hit.meeting
         self.feature = hit.feature.astype(str)
         met = self.is_contact

@@ -95,7 +95,7 @@ def simulate(
 
 
 def visits(
-    programs: Sequence[str | Path],
+    programs: Sequence[str | Path | ReadProgram],
     standard: Standard,
     machines: Sequence[VirtualMachine],
     rng: np.random.Generator,
@@ -106,16 +106,20 @@ def visits(
     """Run program files on the twin several times, the texts read and their moves checked once.
 
     Args:
+        programs: Files; one that is read already is taken for checked.
         machines: As they really are at every visit: with another noise, the standard clamped anew.
 
     Other arguments and errors as of `simulate`.
     """
     chain, dialect = machines[0].chain, machines[0].dialect
     believed = calibrated or standard
-    texts = [read_program(path, chain, probe, dialect) for path in programs]
-    for done, text in enumerate(texts):
-        progress("moves of the programs", done, len(texts))
-        check_moves(text, believed, chain)
+    texts = []
+    for done, program in enumerate(programs):
+        if not isinstance(program, ReadProgram):
+            progress("moves of the programs", done, len(programs))
+            program = read_program(program, chain, probe, dialect)
+            check_moves(program, believed, chain)
+        texts.append(program)
     out = []
     for done, machine in enumerate(machines):
         progress("touches on the twin", done, len(machines))

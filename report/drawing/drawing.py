@@ -162,7 +162,8 @@ def _tables(sheet: Sheet, standard: Standard, details: Details) -> float:
     rows = [["face", "x", "y", "z", "size", "slope", "R", "proves the model, and of it most"]]
     rows += [_face_row(patch) for patch in standard.patches]
     widths = (11, 14, 14, 14, 22, 11, 13, 89)
-    y = sheet.table(_TABLES, _TOP, widths, rows, "Freeform faces (middle, steepest, least radius)")
+    title = "Freeform faces (middle, steepest slope, least concave radius between their edges)"
+    y = sheet.table(_TABLES, _TOP, widths, rows, title)
     rows = [["ball", "x", "y", "z", "Ø", "foot", "land z", "identifies the machine; calibrated"]]
     for ball in standard.spheres:
         place = [f"{c:.1f}" for c in ball.centre]

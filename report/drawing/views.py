@@ -29,6 +29,7 @@ def draw_top(sheet: Sheet, view: View, standard: Standard, details: Details) -> 
         sheet.circle(middle, view.scale * sphere.radius)
         _cross(sheet, view, sphere.centre[:2], sphere.radius)
         sheet.text(middle[0] + 0.6, middle[1] + 0.6, sphere.name.removeprefix("SPH"), size=2.2)
+    _hole_names(sheet, view, standard, details)  # last, so that nothing higher hides one
     for line in details.lettering:
         if line.T_artefact_text[2, 2] > 0.5:
             for stroke in strokes(line.text):
@@ -41,20 +42,27 @@ def _holes(sheet: Sheet, view: View, standard: Standard, details: Details) -> No
         for radius in (hole.bore_radius, hole.radius):
             sheet.circle(view.at([hole.x, hole.y])[0], view.scale * radius)
         _cross(sheet, view, np.array([hole.x, hole.y]), hole.bore_radius)
-        _name(sheet, view, np.array([hole.x, hole.y]), hole.bore_radius, hole.name)
     for bore in details.bores:
         begin = np.array(bore.mouth[:2])
         if bore.direction[2] < 0.0:
             sheet.circle(view.at(begin)[0], view.scale * bore.radius)
             _cross(sheet, view, begin, bore.radius)
-            _name(sheet, view, begin, bore.radius, bore.name)
         else:
             along = np.array(bore.direction[:2])
             across = bore.radius * np.array([-along[1], along[0]])
             end = begin + bore.depth * along
             corners = [begin + across, end + across, end - across, begin - across]
             sheet.line(view.at(corners), THIN, "--")
-            _name(sheet, view, end, 2.0, bore.name)
+
+
+def _hole_names(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
+    for hole in standard.holes:
+        _name(sheet, view, np.array([hole.x, hole.y]), hole.bore_radius, hole.name)
+    for bore in details.bores:
+        along = np.array(bore.direction[:2])
+        is_upright = bore.direction[2] < 0.0
+        end = np.array(bore.mouth[:2]) + (0.0 if is_upright else 0.4 * bore.depth) * along
+        _name(sheet, view, end, bore.radius if is_upright else 2.0, bore.name)
 
 
 def _outline(half: tuple[float, float], radius: float, details: Details) -> Array:

@@ -33,6 +33,9 @@ ARM = (
 USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
 """What a reader asks for first, of a machine tool and of a serial arm."""
 
+SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
+"""What is a curve, told by its peak to valley."""
+
 NOTED = 8
 """Quantities that are told on the console."""
 
@@ -112,13 +115,18 @@ def _line(row: GeometryRow) -> GeometryLine:
     if row.has_changed and row.change is not None:
         notes.append(f"changed by {_value(row.change.value, row.change.u, factor, unit)}")
     is_noted = bool(notes)
+    at_ends = _value(row.at_ends.value, row.at_ends.u, UM, "µm")
+    # of an instrument of angles, whose arm is a metre, both are one figure
+    is_same = row.unit == "mm" or at_ends.removesuffix("µm") == value_words(row).removesuffix(
+        "µrad"
+    )
     if row.change is not None and not row.has_changed:
         difference = _value(row.change.value, row.change.u, factor, unit)
         notes.append(f"no change beyond chance ({difference})")
     return GeometryLine(
         name=name,
         value=value_words(row),
-        at_ends="" if row.unit == "mm" else _value(row.at_ends.value, row.at_ends.u, UM, "µm"),
+        at_ends="" if is_same else at_ends,
         expected=expected,
         note="; ".join(notes),
         is_noted=is_noted,
@@ -165,7 +173,9 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
         line = _line(row)
         where = "at the end of the arm" if row.quantity in ARM else "over the travel"
         at_ends = f", {line.at_ends} {where}" if line.at_ends else ""
-        told.append(f"{line.name}: {line.value}{at_ends}{f'; {line.note}' if line.note else ''}")
+        span = ", peak to valley" if row.quantity in SPANS else ""
+        note = f"; {line.note}" if line.note else ""
+        told.append(f"{line.name}{span}: {line.value}{at_ends}{note}")
     more = len(noted) - len(told)
     told += [f"and {more} more in the table"] if more > 0 else []
     if any(step.rung is Rung.MODEL for step in geometry.ladder) and not any(

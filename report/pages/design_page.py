@@ -144,7 +144,9 @@ def _standard(design: Design, on_machine: dict[str, float]) -> dict[str, Any]:
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
         "certificate": design.placement.certificate,
         "criterion": criterion_words(design.project.standard),
-        "identification": " ".join(design_lines(design.placement, design.project.workspace)[2:]),
+        "identification": " ".join(
+            design_lines(design.placement, design.project.workspace, design.worst)[2:]
+        ),
         "comparison": [_rival(r, design, on_machine) for r in design.placement.rivals],
         "rival": _rival(best, design, on_machine) if best is not None else None,
         "step_deviation": _at_most(faces),

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from artefact.brief import Project
-from artefact.compare import IdentifiabilityReport
+from artefact.compare import IdentifiabilityReport, WorstRegions
 from artefact.place import Placement
 from cad_out.making import Making
 from cad_out.verify import Conformity
@@ -50,6 +50,7 @@ class Design:
         study: Sensitivities and random machines.
         maps: File and caption of the study's pictures.
         placement: Standard and touches.
+        worst: What the faces see of the poses that are wrong again and again.
         conformity: CAD files, measured after they were written.
         making: Reach of cutters, first mode, sag.
         stations: Touches in their order and the programs that make them, by clamping and probe.
@@ -64,6 +65,7 @@ class Design:
     study: Study
     maps: list[tuple[str, str]]
     placement: Placement
+    worst: WorstRegions
     conformity: Conformity
     making: Making
     stations: tuple[Station, ...]

@@ -279,7 +279,8 @@ def shown_partial(found: Partial) -> tuple[Partial, str, str]:
     if not variable:
         x = found.x / factor
     elif found.driver.period:
-        variable = f"{noun(found.driver.column)} within a period of {found.driver.period:.4g} mm"
+        unit = "°" if found.driver.column.endswith("_deg") else " mm"
+        variable = f"{noun(found.driver.column)} within a period of {found.driver.period:.4g}{unit}"
     scaled = replace(
         found,
         x=x,

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from artefact.compare import Rival
+from artefact.compare import Rival, WorstRegions
 from artefact.place import Placement
 from diagnosis.answer import Proof
 from diagnosis.fit import Fit
@@ -96,8 +96,12 @@ def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, flo
     )
 
 
-def design_lines(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> list[str]:
-    """The verdict, what is left in the probed volume, and what faces cost or gain over spheres."""
+def design_lines(
+    placement: Placement,
+    workspace: Mapping[str, tuple[float, float]],
+    worst: WorstRegions | None = None,
+) -> list[str]:
+    """The verdict, what is left in the probed volume, what faces cost or gain, what they see."""
     own = placement.own
     others = [r for r in placement.rivals if r is not own and r.body is not None]
     line = f"in the probed volume alone it leaves {_um(own.rms)}"
@@ -105,7 +109,19 @@ def design_lines(placement: Placement, workspace: Mapping[str, tuple[float, floa
         rival = min(others, key=lambda r: r.rms)
         line += f", the best other artefact there, {rival.name}, {_um(rival.rms)}"
     told = [f(placement) for f in (identification_sentence, proof_sentence, blind_spots)]
+    told += [_regions_sentence(worst)] if worst is not None else []
     return [verdict_of_design(placement, workspace), line, *filter(None, told)]
+
+
+def _regions_sentence(worst: WorstRegions) -> str:
+    """What the faces see of the poses at which machines are wrong again and again."""
+    return (
+        f"Where errors dominate, at the {worst.poses} poses of your workspace that are most often "
+        f"among the worst twentieth ({100 * worst.recurrence:.0f} % of random machines each, on "
+        f"average): touches on the freeform faces alone leave {_um(worst.after)} of the expected "
+        f"{_um(worst.before)}; they see {100 * worst.covered:.0f} % of these poses, with a tenth "
+        "of the error left at most."
+    )
 
 
 def proof_line(number: int, in_workspace: Proof, in_volume: Proof, fit: Fit) -> str:

@@ -14,6 +14,7 @@ from artefact.certify.calibration_fit import calibrated, fitted_ball
 from artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
 from artefact.certify.dmis import APPROACH, dmis_program
 from artefact.worth.calibration import Calibration
+from cad_out.details.places import datum_touches
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.fit.identification import fit_run
 from matstd.cli import main
@@ -259,9 +260,9 @@ def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
     write_standard(tmp_path / "standard.toml", nominal)
     out = tmp_path / "made.toml"
 
-    def call(path: Path) -> int:
+    def call(path: Path, *options: str) -> int:
         standard = str(tmp_path / "standard.toml")
-        return main(["calibrate", standard, "--points", str(path), "-o", str(out)])
+        return main(["calibrate", standard, "--points", str(path), "-o", str(out), *options])
 
     assert call(written(tmp_path / "inch.csv", rows, scale=1 / 25.4)) == 2
     assert "in inches, expected mm" in capsys.readouterr().err
@@ -271,6 +272,14 @@ def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
     inches = written(tmp_path / "in.csv", rows, nominal.fingerprint, "in", 1 / 25.4)
     assert call(inches) == 0
     assert "FF1: 30 points" in capsys.readouterr().out
+    by_hand = [
+        ("DATUM_A", 1.0, 2.0, 20.0),
+        ("DATUM_B", 0.0, -75.0, 10.0),
+        ("DATUM_C", -75.0, 0.0, 10.0),
+    ]
+    listed = written(tmp_path / "all.csv", [*by_hand, *rows], nominal.fingerprint)
+    assert call(listed, "--force") == 0
+    assert "3 points on DATUM_A, DATUM_B, DATUM_C align nothing" in capsys.readouterr().out
     nominal_file = str(tmp_path / "standard.toml")
     both = ["calibrate", nominal_file, "--program", "--cad", str(tmp_path / "c"), "-o", str(out)]
     assert main([*both, "--force"]) == 2
@@ -282,7 +291,7 @@ def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
 
 def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
     """Read back by patterns of its own: points on surfaces, normals, ways that meet nothing."""
-    text = dmis_program(nominal)
+    text = dmis_program(nominal, datum_touches(nominal))
     assert nominal.fingerprint in text.splitlines()[0]
     number = r"(-?\d+\.\d+)"
     feature, stylus, moved = "", 1.5, 0
@@ -312,6 +321,18 @@ def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
                 moved += 1
             where = goal
     assert moved > 200
+    # by hand the frame of the drawing: the plate's own outline gives the places of B and C
+    (a, b), thick = nominal.base.half_size, nominal.base.thickness
+    by_hand = text.partition("MODE/PROG")[0]
+    touched = np.array(re.findall(rf"PTMEAS/CART,{','.join([number] * 6)}", by_hand), dtype=float)
+    assert touched[:-3, 2] == pytest.approx(thick, abs=1e-3)
+    first, second, third = touched[-3:]
+    assert first[1] == second[1] == pytest.approx(-b, abs=1e-3)
+    assert second[0] - first[0] > a
+    assert third[0] == pytest.approx(-a, abs=1e-3)
+    assert first[3:].tolist() == [0.0, -1.0, 0.0]
+    assert third[3:].tolist() == [-1.0, 0.0, 0.0]
+    assert f"D(PART)=TRANS/XORIG,{a:.4f},YORIG,{b:.4f},ZORIG,{-thick:.4f}" in by_hand
     opened, closed = text.count("MEAS/") - text.count("PTMEAS/"), text.count("ENDMES")
     assert opened == closed == text.count("OUTPUT/")
 

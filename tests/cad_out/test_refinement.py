@@ -83,3 +83,24 @@ def test_the_inside_of_an_outline_with_a_hole():
 def test_a_piece_that_is_no_side_is_found():
     places = np.array([[0.0, 0.0], [4.0, 0.0], [2.0, 0.3], [2.0, -0.3]])
     assert Sheet(places, np.array([[0, 1], [0, 2], [2, 1]])).lost.tolist() == [True, False, False]
+
+
+def test_rational_splines_are_followed():
+    """A box with a bore whose faces the kernel has turned into rational B-splines."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    from cad_out.build.reader import farthest_from_faces, triangulate
+
+    trimesh = pytest.importorskip("trimesh")
+    box = BRepPrimAPI_MakeBox(gp_Pnt(-20.0, -15.0, 0.0), gp_Pnt(20.0, 15.0, 10.0)).Shape()
+    upright = gp_Ax2(gp_Pnt(3.0, 2.0, -5.0), gp_Dir(0.0, 0.0, 1.0))
+    bored = BRepAlgoAPI_Cut(box, BRepPrimAPI_MakeCylinder(upright, R, 30.0).Shape()).Shape()
+    shape = BRepBuilderAPI_NurbsConvert(bored).Shape()
+    corners, triangles, numbers = triangulate(shape, CHORD)
+    mesh = trimesh.Trimesh(corners, triangles, process=False)
+    assert mesh.is_watertight
+    assert mesh.volume == pytest.approx(40.0 * 30.0 * 10.0 - np.pi * R**2 * 10.0, rel=2e-4)
+    assert farthest_from_faces(shape, corners, triangles, numbers) < CHORD

@@ -8,7 +8,7 @@ from scipy.stats import multivariate_t
 
 from diagnosis.fit.identification import fit_run
 from diagnosis.fit.prior import Prior
-from diagnosis.fit.suited_prior import _evidence
+from diagnosis.fit.suited_prior import _evidence, _released
 from diagnosis.geometry.learnt import geometry_rows
 from diagnosis.regression.noise import PRIOR_DOF
 from twin.library.ordinary import ordinary_model
@@ -61,6 +61,28 @@ def test_evidence_is_that_of_a_multivariate_t_distribution():
     np.testing.assert_allclose(np.diff(ours), np.diff(theirs), rtol=1e-9)
 
 
+def test_what_is_left_to_the_class_gains_evidence_and_nothing_else_would():
+    rng = np.random.default_rng(2)
+    X = rng.normal(size=(60, 12))
+    true = np.where(np.isin(np.arange(12), (4, 5)), 1.0, 0.02) * rng.normal(size=12)
+    y = X @ true + rng.normal(0.0, 0.3, 60)
+    errors = [np.arange(i, i + 2) for i in range(0, 12, 2)]
+
+    def likely(factor):
+        V = np.eye(60) + (X * factor**2) @ X.T
+        return multivariate_t(np.zeros(60), V, df=PRIOR_DOF).logpdf(y)
+
+    small = np.full(12, 1.0 / 16.0)
+    found = _released(X.T @ X, X.T @ y, float(y @ y), 60, small, errors)
+    assert (found[4:6] == 1.0).all()
+    assert found[[0, 1, 2, 3]].max() < 1.0
+    assert likely(found) > likely(small) + 10.0
+    for of in errors:
+        other = found.copy()
+        other[of] = 1.0
+        assert likely(other) <= likely(found)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_good_machine_is_told_as_well_as_by_least_squares_of_what_is_there(seed):
     run = holes(seed)
@@ -98,3 +120,14 @@ def test_lines_keep_what_is_expected_of_them_and_so_does_a_machine_of_its_class(
     bow = 120.0 * UM * ((x - 250.0) / 250.0) ** 2 * run.touches.normal[:, 1]
     bowed = fit_run(replace(run, deviation=run.deviation - bow), model)
     assert bowed.prior.factor.min() > factor.min()
+
+
+def test_one_error_that_is_not_as_small_as_the_rest_keeps_what_is_expected_of_it():
+    run = holes(2)
+    model = ordinary_model(run.touches.chain)
+    x = run.touches.point[:, 0]
+    bow = 160.0 * UM * ((x - 250.0) / 250.0) ** 2 * run.touches.normal[:, 1]
+    fit = fit_run(replace(run, deviation=run.deviation - bow), model)
+    factor = {e.name: fit.prior.factor[i] for i, e in enumerate(model.effects)}
+    assert factor["geometric(EYX,parabolic)"] == factor["geometric(EYX,sinusoidal)"] == 1.0
+    assert factor["geometric(EXX,parabolic)"] == factor["geometric(EXY,parabolic)"] < 0.3

@@ -9,6 +9,7 @@ from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.fit.identification import fit_run
 from diagnosis.geometry.learnt import geometry_rows
 from diagnosis.remarks import HarmonicsAlike, remarks
+from diagnosis.residual.partial_residuals import partial
 from matstd.console import say
 from report.words import remark_sentence, verdict_sentence
 from twin.effects.periodic import Harmonic
@@ -149,6 +150,9 @@ def test_a_worm_is_found_where_targets_resolve_it():
     (effect,) = found.found
     assert effect.name == "periodic(ECC)"
     assert effect.tuning["harmonic"] == 45.0
+    drawn = partial(found.fit, effect)
+    assert drawn.driver == ("C_deg", pytest.approx(8.0))
+    assert 0.0 <= drawn.x.min() < drawn.x.max() <= 8.0
 
 
 def test_harmonics_that_even_targets_confuse_are_listed():

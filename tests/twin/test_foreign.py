@@ -155,6 +155,9 @@ def test_a_screw_that_warms_over_the_cycles(tmp_path):
     true = {"amplitude": 24.0, "cycles": 1.5, "high_end": 24.0, "low_end": 0.0}
     assert within(told["axis-warming(X,V_cycles_done_1)"], true)
     assert within(told["backlash(X)"], {"amplitude": 1.5})
+    # an effect that was found does not hide itself
+    smallest = {d.effect.name: d.size for d in result.detectable}
+    assert 0.1 * UM < smallest["backlash(X)"] < 0.4 * UM
 
 
 WAYS = ("up", "down")
