@@ -250,20 +250,22 @@ def _scores(effects: EffectSet, pool: Signatures, E: Array, g: Array, share: flo
 
 def _principal(S: Array, g: Array) -> tuple[Array, Array]:
     """Eigenvalues of S (V, k, k) and squared parts of g (V, k) along its eigenvectors."""
+    if S.shape[1] == 1:
+        return np.maximum(S[:, 0], 0.0), g**2
     values, vectors = np.linalg.eigh(S)
     return np.maximum(values, 0.0), np.einsum("vij,vi->vj", vectors, g) ** 2
 
 
 def _scaled_evidence(effects: EffectSet, values: Array, along: Array) -> tuple[Array, Array]:
     """Log evidence (V,) at the likeliest scale (V,)."""
-    tried = []
-    for scale in SCALES:
-        wide = scale * scale * values
-        drop = (scale * scale * along / (1.0 + wide)).sum(axis=1)
-        log_det = effects.log_det + np.log1p(wide).sum(axis=1)
-        tried.append(log_evidence(effects.complement, effects.objective - drop, log_det))
+    scales = np.array(SCALES)
+    squares = np.square(scales)[:, None, None]
+    wide = squares * values
+    drop = (squares * along / (1.0 + wide)).sum(axis=2)
+    log_det = effects.log_det + np.log1p(wide).sum(axis=2)
+    tried = log_evidence(effects.complement, effects.objective - drop, log_det)
     best = np.argmax(tried, axis=0)
-    return np.max(tried, axis=0), np.array(SCALES)[best]
+    return np.max(tried, axis=0), scales[best]
 
 
 def addition(effects: EffectSet, effect: Effect) -> tuple[float, float]:

@@ -190,7 +190,7 @@ class Search:
         self.complement = pool.complement
         self.fixed = fixed
         self.progress = progress
-        self._scores: dict[tuple[tuple[int, float], ...], Scores] = {}
+        self._known: dict[tuple[tuple[int, float], ...], tuple[Scores, list[int]]] = {}
         self._products: dict[int, Array] = {}
 
     def evaluate(self, members: Iterable[Member]) -> EffectSubset:
@@ -203,8 +203,7 @@ class Search:
 
     def member(self, chosen: EffectSubset, variant: int) -> Member:
         """A variant as an addition to a set, at its likeliest scale there."""
-        scale = float(self.scores(chosen).scale[variant])
-        owner = int(self.pool.owner[variant])
+        scale, owner = float(self.scores(chosen).scale[variant]), int(self.pool.owner[variant])
         return Member(variant, owner, self.pool.variants[variant], scale)
 
     def name_of(self, variant: int) -> str:
@@ -212,20 +211,25 @@ class Search:
         return self.pool.names[self.pool.owner[variant]]
 
     def scores(self, chosen: EffectSubset) -> Scores:
-        """Scores of all variants as additions to a set, computed once."""
+        """Scores of all variants as additions to a set."""
+        return self._scored(chosen)[0]
+
+    def _scored(self, chosen: EffectSubset) -> tuple[Scores, list[int]]:
+        """The same, with the best variant of every candidate, most evidence first; made once."""
         key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
-        if key not in self._scores:
-            self._scores[key] = score_all(chosen.effects, self.pool, self._inside(chosen))
-        return self._scores[key]
+        if key not in self._known:
+            scores = score_all(chosen.effects, self.pool, self._inside(chosen))
+            order = np.argsort(-scores.evidence, kind="stable")
+            _, first = np.unique(self.pool.owner[order], return_index=True)
+            self._known[key] = scores, order[np.sort(first)].tolist()
+        return self._known[key]
 
     def _inside(self, chosen: EffectSubset) -> Array:
         """Inner products of a set's columns with all signatures, (K, M).
 
         Those of a variant are made once: a long run has few variants that are ever members.
         """
-        rows = [np.zeros((0, self.pool.C.shape[1]))]
-        if self.fixed is not None:
-            rows.append(self._fixed_product)
+        rows = [self._fixed_product]
         for m in chosen.members:
             if m.variant not in self._products:
                 self._products[m.variant] = self.pool.columns_of(m.variant).T @ self.pool.C
@@ -234,18 +238,14 @@ class Search:
 
     @cached_property
     def _fixed_product(self) -> Array:
-        """The same of the columns that are in every set."""
-        assert self.fixed is not None
-        return np.asarray(self.fixed.T @ self.pool.C)
+        """The same of the columns that are in every set, if there are any."""
+        C = self.pool.C
+        return np.zeros((0, C.shape[1])) if self.fixed is None else np.asarray(self.fixed.T @ C)
 
     def ranking(self, chosen: EffectSubset) -> list[int]:
         """Best variant of every candidate that is not in a set, most evidence first."""
-        evidence = self.scores(chosen).evidence
-        order = np.argsort(-evidence, kind="stable")
         taken = {m.candidate for m in chosen.members}
-        _, first = np.unique(self.pool.owner[order], return_index=True)
-        ranked = order[np.sort(first)]
-        return [int(v) for v in ranked if int(self.pool.owner[v]) not in taken]
+        return [v for v in self._scored(chosen)[1] if int(self.pool.owner[v]) not in taken]
 
     def additions(self, chosen: EffectSubset) -> list[int]:
         """The same without what would hold a member."""

@@ -14,6 +14,10 @@ TOLD = 4
 """Changes of one run that are told in a sentence, the largest over the travel first."""
 
 
+NEARLY = 3.0
+"""Standard uncertainties from which a change that does not pass is told all the same."""
+
+
 def change_sentences(trend: Trend) -> list[str]:
     """A sentence for every run but the first: what changed into it, or what would have shown."""
     names = [run.name for run in trend.runs]
@@ -25,7 +29,8 @@ def change_sentences(trend: Trend) -> list[str]:
         between = f"from {names[earlier]} to {names[i]}"
         rows = changed_rows(trend, i)
         if i not in trend.changed:
-            out.append(f"{between} nothing of the geometry changed{_would_have(trend.rows, i)}")
+            nothing = f"nothing of the geometry changed{_clearest(trend.rows, i)}"
+            out.append(f"{between} {nothing}{_would_have(trend.rows, i)}")
         elif not rows:
             out.append(f"{between} the geometry changed{_alone(trend, i)}")
         else:
@@ -80,6 +85,18 @@ def _changed(row: GeometryRow, run: int) -> str:
 
 def _last(course: Sequence[Estimate | None]) -> Estimate | None:
     return next((e for e in reversed(course) if e is not None), None)
+
+
+def _clearest(rows: Sequence[GeometryRow], run: int) -> str:
+    """What nearly changed: a reader who expects it shall see it before it is denied."""
+    steps = [(row, row.steps[run - 1]) for row in rows]
+    near = [(abs(s.value) / s.u, row, s) for row, s in steps if s is not None and s.u > 0.0]
+    clear, row, step = max(near, key=lambda one: one[0], default=(0.0, None, None))
+    if clear <= NEARLY or row is None or step is None:
+        return ""
+    return (
+        f" beyond chance, though {quantity_name(row)} may have, by {estimate_words(step, row.unit)}"
+    )
 
 
 def _would_have(rows: Sequence[GeometryRow], run: int) -> str:
