@@ -117,7 +117,7 @@ def reported(
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
     out = list(_inner(fit, effect, wider, without_tangent or {}))
-    if getattr(effect, "is_shrunk", False):
+    if getattr(effect, "is_shrunk", False) or getattr(effect, "is_tensor", False):
         out.append(explained_rms(fit, effect, theta, covariance))
     elif getattr(effect, "is_curve", False):
         out += curve_sizes(fit, effect)
@@ -152,7 +152,8 @@ def _sines(effect: Overtones, theta: Array, covariance: Array) -> Iterator[Repor
 def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
     """Deviation that an effect of many parameters explains, root mean square over the rows used.
 
-    Of parameters that share what they know neither one nor their length means anything.
+    Of parameters that share what they know, and of the entries of a tensor, neither one nor their
+    length means anything.
     """
     C = columns([effect], fit.run.touches)[fit.used]
     explained = C @ theta

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 from made_up import made_up
 
+from diagnosis.fit.describe import Role, reported
 from diagnosis.fit.identification import fit_run
 from diagnosis.remarks.run_remarks import LoadTooSmall, ShortBeam, remarks
 from report.words.remark_words import remark_sentence
 from twin.library.catalogue import parse_effect
-from twin.model.model import Model
+from twin.model.model import Model, columns
 from twin.record.run import Run
 from twin.units import UM
 
@@ -49,6 +50,16 @@ def test_known_loads_do():
     left = (fit.theta[rows] - theta[1:]) / np.sqrt(np.diag(fit.covariance)[rows])
     assert np.sqrt(np.mean(left**2)) < 1.6
     assert np.diag(fit.covariance)[rows][0] < (0.5 * theta[1]) ** 2
+
+
+def test_a_compliance_is_told_by_what_it_explains():
+    """Some of its entries are known by belief alone; its size is known all the same."""
+    fit, theta = fitted(300.0, ["tool-point-stiffness(X,Y)"])
+    effect = next(e for e in fit.effects if e.kind == "tool-point-stiffness")
+    size = next(r for r in reported(fit, effect) if r.role is Role.SIZE)
+    bent = columns([effect], fit.run.touches)[fit.used] @ theta
+    assert size.quantity == "rms"
+    assert abs(size.value - np.sqrt(np.mean(bent**2)) / UM) < 3.0 * size.u < 1.0
 
 
 def test_a_beam_that_is_too_short_is_told():

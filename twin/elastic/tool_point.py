@@ -29,6 +29,8 @@ class ToolPointStiffness:
     axes: tuple[str, ...]
 
     kind = "tool-point-stiffness"
+    is_tensor = True
+    """Told as a whole: its entries one by one depend on what the zero of a bar takes up."""
 
     @property
     def name(self) -> str:
