@@ -24,8 +24,9 @@ from twin.thermal.drive_columns import OWN, PROGRESS, is_own, own_column
 from twin.thermal.thermal_lag import LONGEST, SHORTEST, STEPS
 from twin.units import MINUTE, UM
 
-FASTEST, SLOWEST = 0.3, 3.0
-"""Time constants that are scanned without times: in cycles, and in lengths of the test."""
+FASTEST, SLOWEST = 0.3, 1.0
+"""Time constants that are scanned without times: in cycles, and in lengths of the test. What is
+slower is a straight line, which needs no time constant and has no size to settle at."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ class AxisWarming:
         return np.maximum(own_column(touches, self.clock.removeprefix(OWN)), 0.0)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The time constant, evenly spaced in its logarithm, up to three times the run."""
+        """The time constant, evenly spaced in its logarithm, up to that of the run."""
         spent = float(np.ptp(self._clock(touches))) if len(touches) else 1.0
         if self.clock:
             grid = np.geomspace(FASTEST, SLOWEST * max(spent, 1.0), STEPS)
