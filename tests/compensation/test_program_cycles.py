@@ -237,6 +237,8 @@ def test_holes_of_klartext(frame, known, head, tmp_path):
         ("RND R2", "RND between no motion right behind it"),
         ("L X+10\nRND R2\nL X+20", "motions that go straight on"),
         ("L X+10\nRND R20\nL Y+20", "motions that are too short for it"),
+        ("L X+10\nRND R2\nL X+10\nL Y+20", "motions that are too short for it"),
+        ("L X+10\nRND R0\nL Y+20", "RND between motions by nothing"),
         ("L X+10\nCHF 2\nL Y+20 Z-3", "motions that do not stay in X and Y"),
         ("CC X+5 Y+0\nCP IPA+90 DR-", "IPA and DR of one sign"),
         ("LP PR+5 PA+0", "CC with two of X, Y and Z before it"),
