@@ -13,6 +13,9 @@ from twin.units import DEG
 RADIUS, OVERHANG = 3.0, 60.0
 """Of the finishing ball-end mill, and how far it stands out of its holder: 10 D, mm."""
 
+LONGER = (80.0, 100.0, 120.0)
+"""Overhangs that are tried where the usual one is too short, mm."""
+
 CUTTERS = (20.0, 16.0, 12.0, 10.0, 8.0, 6.0)
 """Diameters of ball-end mills, mm."""
 
@@ -35,6 +38,7 @@ class Cutting:
         upright: Share of them that the finishing cutter reaches from above.
         tilted: Share that it reaches with its axis tilted by 45 degrees at most.
         out_of_reach: Features with a point that it does not reach at all.
+        overhang: The least with which it reaches everything, mm; infinite if none of `LONGER` does.
         cutter: Largest ball-end mill for every face, its diameter, mm; 0 where none fits.
         radius: Least concave radius of every face, the untrimmed spline included, mm.
     """
@@ -43,6 +47,7 @@ class Cutting:
     upright: float
     tilted: float
     out_of_reach: tuple[str, ...]
+    overhang: float
     cutter: dict[str, float]
     radius: dict[str, float]
 
@@ -54,27 +59,40 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
     """
     name, points, normals = _surface(standard, details)
     centre = points + (RADIUS + 0.01) * normals
-    reached = is_free(standard, centre, np.array([0.0, 0.0, 1.0]))
-    upright = float(reached.mean())
-    for tilt, turn in product(TILTS, np.arange(_AZIMUTHS) * 2.0 * np.pi / _AZIMUTHS):
-        left = np.flatnonzero(~reached)
-        if not len(left):
-            break
-        across = np.sin(tilt)
-        axis = np.array([across * np.cos(turn), across * np.sin(turn), np.cos(tilt)])
-        reached[left] = is_free(standard, centre[left], axis)
+    upright = is_free(standard, centre, np.array([0.0, 0.0, 1.0]))
+    reached = upright | _tilted(standard, centre, ~upright, OVERHANG)
+    left, overhang = ~reached, OVERHANG
+    for longer in LONGER:
+        if left.any():
+            overhang = longer
+            left &= ~_tilted(standard, centre, left, overhang)
     radius = {patch.name: untrimmed_radius(patch) for patch in standard.patches}
     kinds = [n.split()[-1] if " " in n else n[:2] for n in name]
     return Cutting(
         points={kind: kinds.count(kind) for kind in sorted(set(kinds))},
-        upright=upright,
+        upright=float(upright.mean()),
         tilted=float(reached.mean()),
         out_of_reach=tuple(sorted(set(name[~reached].tolist()))),
+        overhang=float("inf") if left.any() else overhang,
         cutter={
             n: next((d for d in CUTTERS if d <= 2 * _SHARE * r), 0.0) for n, r in radius.items()
         },
         radius=radius,
     )
+
+
+def _tilted(standard: Standard, centre: Array, wanted: np.ndarray, overhang: float) -> np.ndarray:
+    """Which of the wanted places the finishing cutter reaches, its axis upright or tilted, (N,)."""
+    reached = np.zeros(len(centre), dtype=bool)
+    for tilt, turn in product((0.0, *TILTS), np.arange(_AZIMUTHS) * 2.0 * np.pi / _AZIMUTHS):
+        left = np.flatnonzero(wanted & ~reached)
+        if not len(left):
+            break
+        if tilt or not turn:
+            across = np.sin(tilt)
+            axis = np.array([across * np.cos(turn), across * np.sin(turn), np.cos(tilt)])
+            reached[left] = is_free(standard, centre[left], axis, overhang)
+    return reached
 
 
 def untrimmed_radius(patch: FreeformPatch) -> float:
@@ -135,15 +153,19 @@ def _walls(patch: FreeformPatch, top: float) -> list[tuple[str, Array, Array]]:
     return out
 
 
-def is_free(standard: Standard, centre: Array, axis: Array) -> np.ndarray:
+def is_free(
+    standard: Standard, centre: Array, axis: Array, overhang: float = OVERHANG
+) -> np.ndarray:
     """Whether shank, holder and nose of a tool keep out of all bodies, (N,)."""
     side = np.cross(axis, [0.0, 1.0, 0.0] if abs(axis[1]) < 0.9 else [1.0, 0.0, 0.0])
     side /= np.linalg.norm(side)
     other = np.cross(axis, side)
     free = np.ones(len(centre), dtype=bool)
-    pieces = [(RADIUS, OVERHANG, RADIUS, 8.0)]
-    ends = [*(begin for begin, _ in _HOLDER[1:]), _LONG]
-    pieces += [(low, high, r, 12.0) for (low, r), high in zip(_HOLDER, ends, strict=True)]
+    pieces = [(RADIUS, overhang, RADIUS, 8.0)]
+    ends, out = [*(begin for begin, _ in _HOLDER[1:]), _LONG], overhang - OVERHANG
+    pieces += [
+        (low + out, high + out, r, 12.0) for (low, r), high in zip(_HOLDER, ends, strict=True)
+    ]
     for low, high, radius, step in pieces:
         heights = np.linspace(low, high, int((high - low) / step) + 2)
         count = max(8, int(2.0 * np.pi * radius / 12.0))

@@ -48,6 +48,7 @@ def write_making(path: Path, making: Making) -> None:
         "reached_upright": cutting.upright,
         "reached_tilted_45_deg": cutting.tilted,
         "out_of_reach": list(cutting.out_of_reach),
+        "overhang_for_all_mm": cutting.overhang if cutting.overhang < 1e6 else None,
         "faces": {
             face: {
                 "least_concave_radius_mm": radius if radius < 1e6 else None,

@@ -10,7 +10,7 @@ from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
 from artefact.compare import Rival
 from artefact.reach import standing_remarks
 from artefact.worth import Criterion, touch_curve
-from cad_out.making import FIRST_MODE, ROUGHNESS, SAG, FaceHint, Making
+from cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
 from report.pages.page import digits, write_page
@@ -188,18 +188,28 @@ def _making(made: Making) -> list[tuple[str, str]]:
     told = f"; beyond {SAG / UM:g} µm: {', '.join(often)}" if often else ""
     told += "; taken off by evaluations ([sag] of standard.toml)"
     cutters = ", ".join(f"{face} Ø{d:g}" for face, d in cutting.cutter.items())
-    beyond = f", not at all: {', '.join(cutting.out_of_reach)}" if cutting.out_of_reach else ""
+    beyond = _out_of_reach(cutting)
     return [
         (
             "ball-end mill of 6 mm, 10 D out of its holder",
             f"reaches {100 * cutting.upright:.0f} % of the surface from above, "
-            f"{100 * cutting.tilted:.0f} % tilted by 45° at most{beyond}",
+            f"{np.floor(1000 * cutting.tilted) / 10:g} % tilted by 45° at most{beyond}",
         ),
         ("largest ball-end mill of a face, mm", cutters),
         ("first mode on rigid screws", f"{stiff.first_mode:.0f} Hz{mode}"),
         ("sag from upright to lying on its side", f"{name} {sag / UM:.2f} µm at most{told}"),
         *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
     ]
+
+
+def _out_of_reach(cutting: Cutting) -> str:
+    """What the finishing cutter does not reach, and how far out of its holder it would."""
+    if not cutting.out_of_reach:
+        return ""
+    enough = f"{cutting.overhang:g} mm out of its holder it reaches all"
+    none = "no overhang that was tried reaches all: design lower posts"
+    words = enough if np.isfinite(cutting.overhang) else none
+    return f", not at all: {', '.join(cutting.out_of_reach)}; {words}"
 
 
 def _milling(hint: FaceHint) -> str:

@@ -46,12 +46,23 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
         "effect_title": effect_title,
         "percent": percent,
         "p_value": p_value,
+        "opening": opening,
         "unbroken": unbroken,
         "with_contents": with_contents,
     }
     environment.globals |= {"signed": signed, "picture": picture, "versions": versions}
     write_whole(path, in_own_unit(environment.get_template(template).render(**content)))
     write_tables(path)
+
+
+def opening(words: str) -> str:
+    """Words at the beginning of a sentence; names of columns keep their small letter.
+
+    Example:
+        >>> opening("touches scatter"), opening("time_s is 0")
+        ('Touches scatter', 'time_s is 0')
+    """
+    return words if "_" in words.split(" ", 1)[0] else words[:1].upper() + words[1:]
 
 
 def unbroken(words: str) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnosis.fit import Fit
 from diagnosis.residual import Region, Structure, has_poses, rank_variables
+from report.numbers import span
 from report.pages.page import p_value
 from report.plots import (
     draw_normal_plot,
@@ -17,7 +18,7 @@ from report.plots import (
 )
 from report.words import microns, region_words, stated_noise, structure_words
 from twin.frames import Array
-from twin.record import Run
+from twin.record import Run, Touches
 from twin.units import UM
 
 FIRST = 12
@@ -144,15 +145,23 @@ def gross_rows(fit: Fit) -> list[dict[str, Any]]:
     ]
 
 
+def _extent(t: Touches) -> str:
+    """At how many poses and in what time the touches were made, as far as either says something."""
+    poses = len(np.unique(np.column_stack([t.setup, t.pose]), axis=0))
+    table = "" if t.chain.is_serial_arm else "table "
+    at = f" at {poses} {table}pose{'s' if poses != 1 else ''}" if t.chain.rotary_axes else ""
+    time = float(np.ptp(t.time))
+    return f"{at} in {span(time)}" if time > 0.0 else at
+
+
 def setting(run: Run, fit: Fit) -> dict[str, Any]:
     """What was run, in numbers for the head and the foot of a page."""
     t = run.touches
     return {
         "chain": t.chain,
         "touches": len(run),
-        "poses": len(np.unique(np.column_stack([t.setup, t.pose]), axis=0)),
+        "extent": _extent(t),
         "setups": len(np.unique(t.setup)),
-        "hours": float(np.ptp(t.time)) / 3600.0,
         "stated": microns(stated_noise(run)),
         "scatter": microns(stated_noise(run) * fit.noise.factor),
         "fingerprint": run.fingerprint,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
-from diagnosis.fit import Fit
+from diagnosis.fit import MIN_POSES, Fit
 from diagnosis.regression import BoolArray
 from diagnosis.residual import Partial, Seen, binned, partial
 from report.effects import effect_cell, effect_title
@@ -92,8 +92,12 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
 
 
 def _held_words(diagnosis: Diagnosis) -> str:
-    by_file = bool(diagnosis.fit.test_rows.any())
-    return "rows held out by the file" if by_file else "held out, one table pose after the other"
+    if diagnosis.fit.test_rows.any():
+        return "rows held out by the file"
+    t = diagnosis.fit.run.touches
+    poses = len(np.unique(np.column_stack([t.setup, t.pose])[diagnosis.fit.used], axis=0))
+    what = "pose" if t.chain.is_serial_arm else "table pose" if t.chain.rotary_axes else "place"
+    return f"held out, one {what if poses >= MIN_POSES else 'block'} after the other"
 
 
 def _step_words(step: Step) -> str:

@@ -47,22 +47,22 @@ def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> Non
     Args:
         path: PNG.
         fits: One model, seen in space and from above; or two models of the same run with a title
-            each, such as before and after.
+            each, such as before and after. What lies in a plane is seen from above alone.
     """
     drawn = figure(4.2, layout=None)  # what lays out by itself cuts axes in space
     limit = robust_limit(np.concatenate([f.residual[f.used] / UM for _, f in fits]))
+    lies = bool(np.ptp(fits[0][1].run.touches.point[:, 2]) < EXTENT)  # a bed or plate is all seen
     for (title, fit), left in zip(fits, (0.0, 0.435), strict=False):
+        if lies:
+            width = 0.36 if len(fits) > 1 else 0.76
+            marks = _from_above(drawn, (left + 0.07, 0.13, width, 0.78), fit, limit, title)
+            continue
         ax = drawn.add_axes((left, 0.03, 0.43, 0.9), projection="3d")
         marks = _points(ax, fit, limit, fit.run.touches.point)
         _standing(ax, fit.run.touches)
         ax.set_title(title, fontsize=10, color=INK, y=0.86)
-    if len(fits) == 1:
-        flat = drawn.add_axes((0.54, 0.13, 0.33, 0.78))
-        _points(flat, fits[0][1], limit, fits[0][1].run.touches.point[:, :2])
-        flat.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
-        flat.set_title("from above", fontsize=10, color=INK)
-        plain(flat)
-        _name_features(flat, fits[0][1].run.touches)
+    if len(fits) == 1 and not lies:
+        _from_above(drawn, (0.54, 0.13, 0.33, 0.78), fits[0][1], limit, "from above")
     bar = drawn.colorbar(marks, cax=drawn.add_axes((0.905, 0.14, 0.014, 0.72)), extend="both")
     bar.set_label("residual in µm (positive: outside)", fontsize=9)
     bar.ax.tick_params(labelsize=8.5)
@@ -70,6 +70,19 @@ def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> Non
         handles = drawn.axes[0].get_legend_handles_labels()
         drawn.legend(*handles, loc="lower left", fontsize=8.5, frameon=False)
     save(drawn, path)
+
+
+def _from_above(
+    drawn: Any, place: tuple[float, float, float, float], fit: Fit, limit: float, title: str
+) -> Any:
+    """Touches in x and y of the standard."""
+    flat = drawn.add_axes(place)
+    marks = _points(flat, fit, limit, fit.run.touches.point[:, :2])
+    flat.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
+    flat.set_title(title, fontsize=10, color=INK)
+    plain(flat)
+    _name_features(flat, fit.run.touches)
+    return marks
 
 
 def _name_features(ax: Any, touches: Touches) -> None:

@@ -10,7 +10,7 @@ from artefact.body.freeform import graph_patch
 from artefact.body.standard import Base
 from artefact.layout.post import post_stiffness
 from cad_out.details.detail_list import details_of
-from cad_out.making.cutting import cutting_of, untrimmed_radius
+from cad_out.making.cutting import OVERHANG, cutting_of, untrimmed_radius
 from cad_out.making.hexahedron import CORNERS, cube
 from cad_out.making.hints import hints_of, step_over
 from cad_out.making.making_file import Making, write_making
@@ -80,6 +80,7 @@ def test_a_cutter_reaches_open_pillars_and_not_the_floor_of_a_deep_slot(upright)
     found = cutting_of(upright, details)
     assert found.tilted == 1.0
     assert found.out_of_reach == ()
+    assert found.overhang == OVERHANG
     flat = np.zeros((4, 4))
     walls = tuple(
         graph_patch(f"FF{i}", pose(t=np.array([x, 0.0, 160.0])), (20.0, 40.0), flat, (3, 3), 150.0)
@@ -89,6 +90,9 @@ def test_a_cutter_reaches_open_pillars_and_not_the_floor_of_a_deep_slot(upright)
     found = cutting_of(slot, details_of(slot))
     assert found.upright < found.tilted < 1.0
     assert {"FF1 wall", "FF2 wall"} <= set(found.out_of_reach)
+    # tilted by 45 degrees along the slot of 80 mm, a holder of 27 mm is out of it at its middle
+    # where (overhang - 13.5) / sqrt 2 > 40, from 70 mm on
+    assert found.overhang == 80.0
 
 
 def test_the_largest_cutter_fits_the_least_radius_beyond_the_trim(upright):

@@ -16,6 +16,7 @@ def made(mode, sag, out_of_reach=()):
         upright=0.7,
         tilted=1.0 if not out_of_reach else 0.9,
         out_of_reach=out_of_reach,
+        overhang=80.0 if out_of_reach else 60.0,
         cutter={"FF1": 16.0},
         radius={"FF1": 12.0},
     )
@@ -56,4 +57,6 @@ def test_what_is_beyond_a_limit_is_named():
     assert rows["milling FF1 with 6 mm"].endswith(
         "no single tilt of the axis up to 45° reaches all of it"
     )
-    assert next(iter(rows.values())).endswith("not at all: FF1 wall")
+    assert next(iter(rows.values())).endswith(
+        "90 % tilted by 45° at most, not at all: FF1 wall; 80 mm out of its holder it reaches all"
+    )
