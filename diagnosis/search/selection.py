@@ -24,6 +24,7 @@ from diagnosis.evidence import (
     quiet,
     score_all,
 )
+from diagnosis.search.instants import p_by_instants
 from diagnosis.search.nested import would_hold
 from twin.frames import Array
 from twin.model import Effect
@@ -313,17 +314,16 @@ class Search:
 
     def verified(self, others: EffectSubset, whole: EffectSubset, member: Member) -> Verified:
         """Tests of one member, given the set without it and the set with it."""
-        scores = self.scores(others)
-        ratio = whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300)
         density = whole.effects.held_out_log_density - others.effects.held_out_log_density
         count = len(self.complement.u)
         changed = (others.effects.residual - whole.effects.residual)[:count] ** 2
         touches = float(changed.sum()) ** 2 / max(float(changed @ changed), 1e-300)
+        p = max(self.scores(others).p[member.variant], p_by_instants(others.effects, whole.effects))
         return Verified(
             member=member,
-            p_value=self.corrected(member.candidate, float(scores.p[member.variant])),
+            p_value=self.corrected(member.candidate, p),
             evidence=float(whole.effects.evidence - others.effects.evidence),
-            held_out=ratio,
+            held_out=whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300),
             density=float(density),
             touches=touches,
         )
