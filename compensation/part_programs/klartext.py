@@ -23,7 +23,7 @@ from compensation.part_programs.motion import Corner, Motion
 from twin.frames import Array
 
 ENDING = ".H"
-COMMENT = "; {}"
+OPENS = re.compile("BEGIN", re.IGNORECASE)
 _DECIMALS = 4
 """Steps in which the control takes coordinates: 0.1 µm, 0.0001 degrees."""
 
@@ -162,6 +162,11 @@ def _tool(number: int, block: str, match: re.Match[str], reading: Reading, modes
     reading.tool, reading.more_radius = tool, float(more[1]) * reading.unit if more else 0.0
     length = reading.lengths.get(tool, reading.frame.datum.length)
     reading.switch(False, length + (float(added[1]) * reading.unit if added else 0.0))
+
+
+def comment(text: str) -> str:
+    """A remark."""
+    return f"; {text}"
 
 
 def begin() -> list[str]:

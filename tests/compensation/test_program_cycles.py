@@ -106,6 +106,7 @@ def test_linuxcnc_drills_the_same_holes(frame, known, head, tmp_path):
     )
     assert "G91 G28 Z0\nG90" in done.text
     assert "G98 G83 X39.98" in done.text
+    assert done.text.startswith("%\nO1234 (A PLATE)\n(matstd model: 0123456789ab)\n")
     assert "Q5" in done.text
 
 
