@@ -16,7 +16,8 @@ from cad_out.triangles.delaunay import Sheet, apart, circumcircles
 from twin.frames import Array
 
 _LEAST_SINE = np.sin(np.deg2rad(20.0))  # of a chart's angles: what Ruppert's refinement reaches
-_LEAST = 0.02  # mm, no piece of an edge is halved below twice this
+_LEAST = 0.02  # mm, nothing is refined for its angles below twice this
+_SHORTEST = 1e-4  # mm, of pieces that are halved until they are sides of triangles
 _ONE_PLACE = 1e-3  # mm: ends of two sides that are one corner and lie so near are one place
 _ROUNDS = 60  # 15 to 25 are usual
 _ENOUGH = 0.8  # of the chord: points between those that are looked at here lie a little farther
@@ -189,13 +190,21 @@ class _Points:
         edge.ids = np.array([first, *new, last])
 
     def halve(self, edge: Edge, pieces: list[int]) -> None:
-        """Put a point into the middle of pieces of an edge, unless they are short already."""
+        """Put a point into pieces of an edge, in the middle or near it.
+
+        The first and the last piece are cut at a power of two from the edge's end: two edges that
+        meet at an acute angle there get pieces of one length and stop asking each other for more.
+        """
         low, high = self.xyz[edge.ids[:-1]], self.xyz[edge.ids[1:]]
-        long = np.linalg.norm(high - low, axis=1) > 2.0 * _LEAST
-        which = np.array([piece for piece in pieces if long[piece]], dtype=int)
+        length = np.linalg.norm(high - low, axis=1)
+        which = np.array([piece for piece in pieces if length[piece] > _SHORTEST], dtype=int)
         if not len(which):
             return
-        middle = 0.5 * (edge.t[which] + edge.t[which + 1])
+        share = np.full(len(which), 0.5)
+        rounded = 2.0 ** np.round(np.log2(0.5 * length[which])) / length[which]
+        share[which == len(length) - 1] = 1.0 - rounded[which == len(length) - 1]
+        share[which == 0] = rounded[which == 0]
+        middle = (1.0 - share) * edge.t[which] + share * edge.t[which + 1]
         new = np.arange(len(which)) + len(self.xyz)
         self.xyz = np.concatenate([self.xyz, edge.at(middle)])
         edge.t = np.insert(edge.t, which + 1, middle)
@@ -245,12 +254,14 @@ def _improve(
     ends_xyz = points.xyz[outline.ids[ends]]
     may = np.linalg.norm(ends_xyz[:, 1] - ends_xyz[:, 0], axis=1) > 2.0 * _LEAST
     sheet = Sheet(places, ends)
-    if (sheet.lost & may).any():
-        return outline.pieces(sheet.lost & may), False
+    if sheet.lost.any():
+        return outline.pieces(sheet.lost), False
     face.triangles, face.outline = sheet.triangles, outline.ids
     if (sheet.seen_wide & may).any():
         return outline.pieces(sheet.seen_wide & may), False
     corner, worst = places[face.triangles], _LEAST_SINE / np.maximum(sheet.sines(), 1e-12)
+    side = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).min(axis=1)
+    worst[side < 2.0 * _LEAST] = 0.0
     if not face.is_flat:
         xyz = np.concatenate([points.xyz[outline.ids], face.point(face.inner)])
         sags = _sags(face, corner, xyz[face.triangles])

@@ -6,7 +6,7 @@ import numpy as np
 
 from compensation.part_programs.language import Reading
 from compensation.part_programs.motion import Arc, Corner, Item, Motion, angle_between
-from compensation.part_programs.radius import Element, cuts
+from compensation.part_programs.radius import NEAR, Element, cuts
 from twin.frames import Array
 
 SMOOTH = 1e-6
@@ -46,9 +46,13 @@ def _cut(corner: Corner, before: Motion, after: Motion, reading: Reading) -> tup
     others = [k for k in range(len(before.end)) if k not in plane]
     moved = np.array([m.end - m.start for m in (before, after)])[:, others]
     in_plane = all(m.arc is None or list(m.arc.plane) == plane for m in (before, after))
+    if corner.size < NEAR:
+        raise _refused(reading, corner, "motions by nothing")
     if before.tcpm or before.is_rapid or not in_plane or np.abs(moved).max(initial=0.0) > 0.0:
         raise _refused(reading, corner, "motions that do not stay in X and Y")
     a, b = (Element(m, m.start[plane], m.end[plane], 0.0) for m in (before, after))
+    if any(e.arc is None and np.linalg.norm(e.end - e.start) < NEAR for e in (a, b)):
+        raise _refused(reading, corner, "motions that are too short for it")
     turn = _turn(a, b)
     if abs(turn) < SMOOTH:
         raise _refused(reading, corner, "motions that go straight on")

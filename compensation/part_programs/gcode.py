@@ -14,7 +14,9 @@ from compensation.part_programs.motion import Arc, Cycle, Motion
 from twin.frames import Array
 
 ENDING = ".ngc"
-COMMENT = "; {}"
+OPENS = re.compile(r"%|O\d+|(?:\([^)]*\)|;.*)?\s*\Z", re.IGNORECASE)
+"""Blocks that stay before all others: some controls look for the program's number there."""
+
 _DECIMALS = 5
 """Of a length in mm, and of an angle in degrees: 10 nm, and 9 nm at half a metre."""
 
@@ -176,6 +178,11 @@ def _arc(number: int, end: Array, other: dict[str, float], reading: Reading, mod
         named = [other.get(_CENTRES[letter], 0.0) * reading.unit for letter in modes.plane]
         centre = np.array(named) + (0.0 if modes.centres_absolute else reading.at[plane])
     return checked_arc(reading, number, plane, end, centre, positive, int(other.get("P", 1)))
+
+
+def comment(text: str) -> str:
+    """A remark in brackets, which every control takes, without others inside."""
+    return f"({text.translate(str.maketrans('()', '[]'))})"
 
 
 def begin() -> list[str]:

@@ -23,7 +23,7 @@ from compensation.part_programs.motion import Corner, Motion
 from twin.frames import Array
 
 ENDING = ".H"
-COMMENT = "; {}"
+OPENS = re.compile("BEGIN", re.IGNORECASE)
 _DECIMALS = 4
 """Steps in which the control takes coordinates: 0.1 µm, 0.0001 degrees."""
 
@@ -164,6 +164,11 @@ def _tool(number: int, block: str, match: re.Match[str], reading: Reading, modes
     reading.switch(False, length + (float(added[1]) * reading.unit if added else 0.0))
 
 
+def comment(text: str) -> str:
+    """A remark."""
+    return f"; {text}"
+
+
 def begin() -> list[str]:
     """Nothing has to stand before a compensated program."""
     return []
@@ -205,8 +210,19 @@ def lines(
     return out
 
 
+def _defined_once(blocks: list[str]) -> Iterator[str]:
+    """Blocks without definitions of a cycle that is defined so already."""
+    last = ""
+    for block in blocks:
+        if klartext_cycles.is_hole(block):
+            if block == last:
+                continue
+            last = block
+        yield block
+
+
 def listed(blocks: list[str], path: Path) -> str:
     """The whole file, blocks numbered and the program named after it."""
     named = [re.sub(r"\A(BEGIN|END) PGM \S+", rf"\1 PGM {path.stem.upper()}", b) for b in blocks]
-    text = "\n".join(f"{k} {block}" for k, block in enumerate(named))
+    text = "\n".join(f"{k} {block}" for k, block in enumerate(_defined_once(named)))
     return text.replace("\n", "\r\n") + "\r\n"

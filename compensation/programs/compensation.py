@@ -342,9 +342,8 @@ def _text(path: _Path, head: Header, which: IntArray, share: Array, written: Arr
             own = slice(begins[number], begins[number + 1])
             blocks += language.lines(item, axes, rows[own], parts[own])
             number += 1
-    told = [language.COMMENT.format(text) for text in head.lines()]
-    start = 1 if blocks and blocks[0].upper().startswith(("BEGIN", "%")) else 0
-    blocks[start:start] = [*told, *language.begin()]
+    start = next(k for k, block in enumerate(blocks) if not language.OPENS.match(block))
+    blocks[start:start] = [*map(language.comment, head.lines()), *language.begin()]
     return str(language.listed(blocks, path.program.path))
 
 

@@ -4,6 +4,8 @@ An arm that leaves play in its joints, or bends in a way that no effect has, is 
 its own in every pose, which the rows of the pose all show. They are not so many independent
 observations, and an effect that follows a few hundred poses by chance explains three times as many
 rows. So how much the explained part scatters is taken from instant to instant, not from row to row.
+Only where every instant is held out by itself: stretches of a log that are held out as a whole say
+how far an effect reaches, and what noise remembers from one instant to the next is another matter.
 """
 
 import numpy as np
@@ -36,7 +38,8 @@ def p_by_instants(others: EffectSet, whole: EffectSet) -> float:
     first = np.flatnonzero(begins)
     added = whole.A.shape[1] - others.A.shape[1]
     freedom = len(first) - added
-    if len(first) > (1.0 - SHARED) * len(q) or freedom < 1:
+    is_shared = len(first) <= (1.0 - SHARED) * len(q)
+    if not is_shared or freedom < 1 or len(first) > len(space.groups):
         return 0.0
     D = whole.A - others.A @ others.coefficients(whole.A) if others.A.shape[1] else whole.A
     error = whole.held_out.error

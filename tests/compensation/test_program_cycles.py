@@ -106,6 +106,7 @@ def test_linuxcnc_drills_the_same_holes(frame, known, head, tmp_path):
     )
     assert "G91 G28 Z0\nG90" in done.text
     assert "G98 G83 X39.98" in done.text
+    assert done.text.startswith("%\nO1234 (A PLATE)\n(matstd model: 0123456789ab)\n")
     assert "Q5" in done.text
 
 
@@ -219,6 +220,10 @@ def test_holes_of_klartext(frame, known, head, tmp_path):
     np.testing.assert_allclose(np.array(surfaces) - 15.0, bottoms, atol=1e-4)
     assert np.linalg.norm(done.after[rows], axis=1).max() < 0.15 * UM
     assert done.text.count("DEPTH {of the hole}") == done.text.count("M99") == 6
+    twice = program(f"{START}{DRILL}L X+20 Y+10 FMAX M99\nL X+20 FMAX M99\n", frame, tmp_path)
+    text = compensated(twice, known, head).text
+    assert text.count("CYCL DEF 200") == 1
+    assert text.count("M99") == 2
     assert "M89" not in done.text
     assert re.search(r"L X-19\.\S+ Y-20\.\S+ FMAX M99 M8|L X-20\.\S+ Y-\S+ FMAX M99 M8", done.text)
 
@@ -237,6 +242,8 @@ def test_holes_of_klartext(frame, known, head, tmp_path):
         ("RND R2", "RND between no motion right behind it"),
         ("L X+10\nRND R2\nL X+20", "motions that go straight on"),
         ("L X+10\nRND R20\nL Y+20", "motions that are too short for it"),
+        ("L X+10\nRND R2\nL X+10\nL Y+20", "motions that are too short for it"),
+        ("L X+10\nRND R0\nL Y+20", "RND between motions by nothing"),
         ("L X+10\nCHF 2\nL Y+20 Z-3", "motions that do not stay in X and Y"),
         ("CC X+5 Y+0\nCP IPA+90 DR-", "IPA and DR of one sign"),
         ("LP PR+5 PA+0", "CC with two of X, Y and Z before it"),

@@ -276,7 +276,7 @@ def test_linuxcnc_takes_what_is_written(done, tmp_path):
 
 def test_words_stay_with_their_motion(done):
     text = done["part.ngc"].text
-    assert text.startswith("%\n; matstd model: 0123456789ab\n")
+    assert text.startswith("%\n(a contour)\n(matstd model: 0123456789ab)\n")
     order = ["M3 S8000", "M8 F500 G1", "F1500 G1", "(helix of two turns)", "M9 G0", "M30"]
     places = [text.index(word) for word in order]
     assert places == sorted(places)

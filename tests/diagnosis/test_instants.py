@@ -19,7 +19,8 @@ def chance(rng, shared, planted=0.0):
     residual = noise + planted * column
     left = residual - column * (column @ residual) / (column @ column)
     touches = SimpleNamespace(q=pose[:, None].astype(float), time=np.zeros(len(pose)))
-    space = SimpleNamespace(touches=touches, used=np.ones(len(pose), dtype=bool))
+    groups = tuple(np.split(np.arange(len(pose)), POSES))
+    space = SimpleNamespace(touches=touches, used=np.ones(len(pose), dtype=bool), groups=groups)
     others = SimpleNamespace(A=np.zeros((len(pose), 0)), residual=residual)
     held_out = SimpleNamespace(error=left)
     return p_by_instants(
@@ -42,6 +43,6 @@ def test_what_is_really_there_stands_clear() -> None:
 
 def test_rows_that_stand_alone_have_no_say() -> None:
     touches = SimpleNamespace(q=np.arange(9.0)[:, None], time=np.zeros(9))
-    space = SimpleNamespace(touches=touches, used=np.ones(9, dtype=bool))
+    space = SimpleNamespace(touches=touches, used=np.ones(9, dtype=bool), groups=(np.arange(9),))
     A = np.zeros((9, 1))
     assert p_by_instants(SimpleNamespace(A=A[:, :0]), SimpleNamespace(A=A, complement=space)) == 0.0
