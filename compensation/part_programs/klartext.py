@@ -210,8 +210,19 @@ def lines(
     return out
 
 
+def _defined_once(blocks: list[str]) -> Iterator[str]:
+    """Blocks without definitions of a cycle that is defined so already."""
+    last = ""
+    for block in blocks:
+        if klartext_cycles.is_hole(block):
+            if block == last:
+                continue
+            last = block
+        yield block
+
+
 def listed(blocks: list[str], path: Path) -> str:
     """The whole file, blocks numbered and the program named after it."""
     named = [re.sub(r"\A(BEGIN|END) PGM \S+", rf"\1 PGM {path.stem.upper()}", b) for b in blocks]
-    text = "\n".join(f"{k} {block}" for k, block in enumerate(named))
+    text = "\n".join(f"{k} {block}" for k, block in enumerate(_defined_once(named)))
     return text.replace("\n", "\r\n") + "\r\n"

@@ -41,14 +41,19 @@ class Hole(NamedTuple):
     feed: float
 
 
+def is_hole(block: str) -> bool:
+    """Whether a block defines one of these cycles."""
+    number = _DEFINED.match(block.upper())
+    return number is not None and number[1] in HOLES
+
+
 def defined(line: int, block: str, reading: Reading) -> Hole:
     """A cycle by its definition.
 
     Raises:
         BadFile: Another cycle, numbers that are missing.
     """
-    number = _DEFINED.match(block.upper())
-    if number is None or number[1] not in HOLES:
+    if not is_hole(block):
         known = ", ".join(HOLES)
         expected = f"cycles 7, 9, 13, 32, 247 and holes ({known}); others are resolved before"
         raise reading.refusal(line, repr(" ".join(block.split()[:4])), expected)

@@ -220,6 +220,10 @@ def test_holes_of_klartext(frame, known, head, tmp_path):
     np.testing.assert_allclose(np.array(surfaces) - 15.0, bottoms, atol=1e-4)
     assert np.linalg.norm(done.after[rows], axis=1).max() < 0.15 * UM
     assert done.text.count("DEPTH {of the hole}") == done.text.count("M99") == 6
+    twice = program(f"{START}{DRILL}L X+20 Y+10 FMAX M99\nL X+20 FMAX M99\n", frame, tmp_path)
+    text = compensated(twice, known, head).text
+    assert text.count("CYCL DEF 200") == 1
+    assert text.count("M99") == 2
     assert "M89" not in done.text
     assert re.search(r"L X-19\.\S+ Y-20\.\S+ FMAX M99 M8|L X-20\.\S+ Y-\S+ FMAX M99 M8", done.text)
 
