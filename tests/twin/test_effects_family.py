@@ -53,7 +53,7 @@ def carried_by_rotary(chain, axis):
 
 
 RUNS = {label: made_up(label) for label in MACHINES} | {"arm": arm_poses()}
-WITHOUT_A_BALL = ["position-table", "axis-warming", "jump"]
+WITHOUT_A_BALL = ["position-table", "axis-warming"]
 ALL = [
     (label, e)
     for label, touches in RUNS.items()
@@ -63,6 +63,9 @@ ALL = [
         *proposals(replace(touches, instrument=Instrument.LASER), WITHOUT_A_BALL),
         *proposals(on_a_path(touches), ["servo-lag"]),
         field(touches),  # weighed against what is proposed
+        parse_effect(
+            f"jump(E{touches.chain.linear_axes[0]}{touches.chain.linear_axes[0]})", touches.chain
+        ),
         *elastic(touches),  # sections are the user's
     )
 ]

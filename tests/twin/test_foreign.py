@@ -18,6 +18,7 @@ from twin.foreign.circle import read_circle
 from twin.foreign.points import linear_machine, points_run, read_points
 from twin.foreign.positioning import PositioningTest, read_positioning
 from twin.foreign.serial_arm import arm_from_dh
+from twin.library.catalogue import parse_effect
 from twin.library.ordinary import ordinary_model
 from twin.record.copies import without_copies
 from twin.record.touches import at_poses
@@ -187,7 +188,9 @@ def test_counts_that_an_encoder_lost_are_a_jump_of_its_axis():
         line=np.arange(320),
         time=time,
     )
-    result = diagnose(positioning_run(test, one_axis_machine("X", target), 0.05 * UM))
+    chain = one_axis_machine("X", target)
+    named = [parse_effect("jump(EXX)", chain)]
+    result = diagnose(positioning_run(test, chain, 0.05 * UM), named=named)
     told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
     assert set(told) == {"jump(EXX)", "backlash(X)"}
     assert within(told["jump(EXX)"], {"amplitude": 0.6, "instant": 20.25})
