@@ -42,6 +42,10 @@ stated distributions, and the prior is widened."""
 CLEARLY = 3.0
 """Log evidence that a smaller factor must gain, 20 : 1."""
 
+RELEASED = 1.0
+"""Log evidence that one error must gain to be left to its class: some of seventy gain less by
+chance, and would take what a weak effect does."""
+
 
 def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
     """The prior with the factors under which a run is most likely.
@@ -98,7 +102,7 @@ def _released(
         left = max(square - float(half[:, -1] @ half[:, -1]), 0.0) + PRIOR_DOF
         gains = [_gain(K, k, left, count, of, 1.0 - factor[of[0]] ** 2) for of in errors]
         best = int(np.argmax(gains)) if gains else 0
-        if not gains or gains[best] <= 0.0:
+        if not gains or gains[best] < RELEASED:
             return factor
         factor[errors[best]] = 1.0
 
