@@ -112,13 +112,17 @@ def test_the_place_is_found_within_its_uncertainty(log, small, chain, golden):
     )
 
 
-def test_a_place_outside_the_spread_is_not_found_and_few_touches_are_refused(
-    log, small, chain, golden
-):
+def test_few_touches_are_refused(log, small, chain, golden):
     (part,) = read_log(log, chain.rotary_axes)
     balls, rng = ball_centres(part, chain), np.random.default_rng(0)
     with pytest.raises(NotEnoughData, match="8 touches of a search, expected at least 9"):
         find_standard(small, golden.setup(), balls[:8], 3.0, rng, SPREAD)
+
+
+@pytest.mark.slow
+def test_a_place_outside_the_spread_is_not_found(log, small, chain, golden):
+    (part,) = read_log(log, chain.rotary_axes)
+    balls, rng = ball_centres(part, chain), np.random.default_rng(0)
     spoilt = balls + np.random.default_rng(2).normal(0.0, 4.0, balls.shape) * [0.0, 0.0, 1.0]
     with pytest.raises(NotEnoughData, match="no place within the spread fits"):
         find_standard(small, golden.setup(), spoilt, 3.0, rng, SPREAD)

@@ -174,6 +174,7 @@ def told(run, name, *inner):
     return [r for r in remarks(fit) if isinstance(r, HarmonicsAlike)]
 
 
+@pytest.mark.slow
 def test_a_worm_is_found_at_uneven_targets_and_its_look_alikes_are_told():
     """Eight uneven targets tell 72 waves a turn from 2 to 400; six leave dozens that may be it."""
     (effect,) = diagnose(turned_at(uneven(8), 72)).found
