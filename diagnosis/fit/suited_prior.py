@@ -42,7 +42,7 @@ stated distributions, and the prior is widened."""
 CLEARLY = 3.0
 """Log evidence that a smaller factor must gain, 20 : 1."""
 
-RELEASED = 2.0
+RELEASED = 1.0
 """Log evidence that one error must gain to be left to its class: some of seventy gain less by
 chance, and would take what a weak effect does."""
 
