@@ -43,7 +43,9 @@ DRAWING = {"matplotlib", "pyvista", "vtk"}
 # The kernel's own files name forty of its classes each; they are imported inside functions only.
 KERNEL = {
     f"cad_out/build/{name}.py"
-    for name in ["assembly", "exchange", "faces", "pmi", "primitives", "reader", "solid", "xcaf"]
+    for name in (
+        ["assembly", "exchange", "faces", "letters", "pmi", "primitives", "reader", "solid", "xcaf"]
+    )
 }
 MAX_FILES = 16
 MAX_LINES = 400
