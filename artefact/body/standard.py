@@ -221,7 +221,7 @@ class Standard:
         return distance
 
     def holds(self, points: Array, depth: float) -> Mask:
-        """Whether points (N, 3) lie that deep, mm, or deeper in the standard, holes filled, (N,)."""
+        """Whether points (N, 3) lie so deep, mm, or deeper in the standard, holes filled, (N,)."""
         held = np.zeros(len(points), dtype=bool)
         for body in self.bodies.values():
             middle, reach = body.hull

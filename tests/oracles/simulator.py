@@ -13,7 +13,6 @@ from simulator_experiment import LENGTH, RADIUS, STATED_NOISE, pose_about_z
 from simulator_machine import tip, tip_per_linear
 from simulator_surface import foot, surface_point, turn
 
-
 MET = 1e-10
 """Distance of ball and surface, mm, that counts as none: a ten thousandth of the last digit."""
 
