@@ -25,7 +25,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from scipy.interpolate import NdBSpline
 
 from cad_out.build.faces import faces_of, is_closed, is_valid, shells_of, solids_of, volume
-from cad_out.build.pmi import notes_of_label, read_tolerances
+from cad_out.build.pmi import notes_of_label, read_signs, read_tolerances
 from cad_out.build.xcaf import name_of, new_document, settings
 from cad_out.details import Tolerance
 from cad_out.triangles import (
@@ -66,6 +66,7 @@ class Reread:
         names: Of faces.
         tolerances: Geometrical tolerances with their datums.
         notes: General notes of all parts.
+        signs: Of what is drawn, the length of its lines and their centre of mass, mm.
     """
 
     solids: int
@@ -77,6 +78,7 @@ class Reread:
     names: tuple[str, ...]
     tolerances: tuple[Tolerance, ...]
     notes: tuple[str, ...]
+    signs: dict[str, tuple[float, float, float, float]]
 
 
 def read_step(path: Path) -> Reread:
@@ -113,6 +115,7 @@ def read_step(path: Path) -> Reread:
         names=tuple(sorted(names)),
         tolerances=tuple(read_tolerances(document)),
         notes=tuple(notes),
+        signs=read_signs(document),
     )
 
 

@@ -51,6 +51,8 @@ _GLYPHS = {
     "+": "13 33/22 24",
     ".": "20 21",
     "/": "00 46",
+    "Ø": "10 01 05 16 36 45 41 30 10/00 46",
+    "±": "04 44/22 26/01 41",
     "_": "00 40",
     " ": "",
 }
@@ -63,10 +65,17 @@ def strokes(text: str) -> list[Array]:
     """Polylines (N, 2) of a line of capitals that begins at the origin; others are boxes."""
     out = []
     for k, letter in enumerate(text.upper()):
-        for line in filter(None, _GLYPHS.get(letter, _UNKNOWN).split("/")):
-            places = np.array([[float(place[0]), float(place[1])] for place in line.split()])
-            out.append(places + np.array([ADVANCE * k, 0.0]))
+        glyph = _GLYPHS.get(letter, _UNKNOWN)
+        out += [places + np.array([ADVANCE * k, 0.0]) for places in lines(glyph)]
     return out
+
+
+def lines(glyph: str) -> list[Array]:
+    """Polylines (N, 2) of one glyph, its strokes as places "xy" parted by slashes."""
+    return [
+        np.array([[float(place[0]), float(place[1])] for place in line.split()])
+        for line in filter(None, glyph.split("/"))
+    ]
 
 
 def width(text: str) -> float:
