@@ -7,7 +7,8 @@ makeability measures them.
 
 from cad_out.details.annotations import annotations_of
 from cad_out.details.detail_list import Details, details_of
-from cad_out.details.lettering import DEPTH, LINE, Lettering
+from cad_out.details.dot_font import CUTTER, DEPTH, DOT
+from cad_out.details.lettering import Lettering
 from cad_out.details.mounting import (
     BALL,
     RELIEF,
@@ -19,16 +20,15 @@ from cad_out.details.mounting import (
 )
 from cad_out.details.places import Bore, Side, datum_touches
 from cad_out.details.seats import Seat, glue_gap
-from cad_out.details.stroke_font import HEIGHT, strokes
 from cad_out.details.tolerances import BALL_SIZE, DATUMS, Tolerance, notes_of, tolerances_of
 
 __all__ = [
     "BALL",
     "BALL_SIZE",
+    "CUTTER",
     "DATUMS",
     "DEPTH",
-    "HEIGHT",
-    "LINE",
+    "DOT",
     "RELIEF",
     "RELIEF_RADIUS",
     "SCREW",
@@ -46,6 +46,5 @@ __all__ = [
     "glue_gap",
     "notes_of",
     "relief_profile",
-    "strokes",
     "tolerances_of",
 ]

@@ -11,7 +11,6 @@ import numpy as np
 from artefact.body import Standard, outline_distance
 from cad_out.details.detail_list import Details
 from cad_out.details.places import plan_room
-from cad_out.details.stroke_font import HEIGHT, lines, strokes, width
 from cad_out.details.tolerances import BALL_SIZE, DATUMS, Tolerance, tolerances_of
 from twin.frames import Array
 
@@ -22,14 +21,34 @@ _ARROW, _SLIM = 4.0, 0.25  # mm, and half its width over its length
 _ASIDE = ((0.0, 8.0, 0.0), (8.0, 0.0, 0.0))
 """From the arrow on a datum's face to the triangle on it, mm, and that on side B."""
 
-_SIGNS = {
+_GLYPHS = {
     "flatness": "01 31 45 15 01",
     "parallelism": "01 25/21 45",
     "perpendicularity": "01 41/21 25",
     "position": "12 14 25 34 32 21 12/03 43/20 26",
     "profile": "02 14 25 34 42 02",
+    "A": "00 26 40/12 32",
+    "B": "00 06 36 45 44 33 03/33 42 41 30 00",
+    "C": "45 36 16 05 01 10 30 41",
+    "S": "01 10 30 41 42 33 13 04 05 16 36 45",
+    "Ø": "10 01 05 16 36 45 41 30 10/00 46",
+    "±": "04 44/22 26/01 41",
+    "0": "10 01 05 16 36 45 41 30 10",
+    "1": "14 26 20",
+    "2": "05 16 36 45 44 00 40",
+    "3": "05 16 36 45 44 33 13/33 42 41 30 10 01",
+    "4": "30 36 02 42",
+    "5": "46 06 03 33 42 41 30 10 01",
+    "6": "45 36 16 05 01 10 30 41 42 33 13 02",
+    "7": "06 46 10",
+    "8": "13 04 05 16 36 45 44 33 13/13 02 01 10 30 41 42 33",
+    "9": "01 10 30 41 45 36 16 05 04 13 33 44",
+    ".": "20 21",
+    " ": "",
 }
-"""Of ISO 1101, on the grid of the letters."""
+"""Signs of ISO 1101 and letters: strokes as places "xy" on a grid of 4 by 6, parted by slashes."""
+
+_WIDE, _HIGH, _NEXT = 4.0, 6.0, 5.6  # of a glyph, and from one to the next, in its grid
 
 
 class _Sign(NamedTuple):
@@ -104,11 +123,8 @@ def _place(standard: Standard, details: Details, face: str) -> Array:
 
 def _drawn(sign: _Sign, edge: Array, side: float) -> list[Array]:
     """A sign whose frame ends at a place, on the side of it that looks away from the plate."""
-    scale = _LETTER / HEIGHT
-    widths = [
-        _CELL if cell in _SIGNS else max(_CELL, scale * width(cell) + _LETTER)
-        for cell in sign.cells
-    ]
+    cells = [_written(cell) for cell in sign.cells]
+    widths = [max(_CELL, wide + _LETTER) for _, wide in cells]
     x = edge[0] - (sum(widths) if side < 0.0 else 0.0)
     low, high = edge[1] - 0.5 * _CELL, edge[1] + 0.5 * _CELL
     walls = x + np.cumsum([0.0, *widths])
@@ -120,14 +136,24 @@ def _drawn(sign: _Sign, edge: Array, side: float) -> list[Array]:
         first += [np.array([[wall, low], [wall, high]]) for wall in walls[1:-1]]
         foot = edge
     ink = []
-    for left, wide, cell in zip(walls, widths, sign.cells, strict=False):
-        drawn = lines(_SIGNS[cell]) if cell in _SIGNS else strokes(cell)
-        inked = scale * (width(cell) if cell not in _SIGNS else 4.0)
-        corner = np.array([left + 0.5 * (wide - inked), edge[1] - 0.5 * _LETTER])
-        ink += [corner + scale * line for line in drawn]
+    for left, wide, (drawn, long) in zip(walls, widths, cells, strict=False):
+        corner = np.array([left + 0.5 * (wide - long), edge[1] - 0.5 * _LETTER])
+        ink += [corner + line for line in drawn]
     leader = np.array([foot, foot - [side * _LANDING, 0.0], sign.at[:2]])
     flat = [first[0], leader, *first[1:], *ink, _head(leader, sign.end)]
     return [np.round(np.column_stack([line, np.full(len(line), sign.at[2])]), 6) for line in flat]
+
+
+def _written(cell: str) -> tuple[list[Array], float]:
+    """Strokes (N, 2) of a sign or of a line of letters from the origin on, and how long it is."""
+    glyphs = [cell] if cell in _GLYPHS else list(cell)
+    drawn = [
+        np.array([[float(at[0]) + k * _NEXT, float(at[1])] for at in stroke.split()])
+        for k, glyph in enumerate(glyphs)
+        for stroke in filter(None, _GLYPHS[glyph].split("/"))
+    ]
+    scale = _LETTER / _HIGH
+    return [scale * stroke for stroke in drawn], scale * ((len(glyphs) - 1) * _NEXT + _WIDE)
 
 
 def _rectangle(left: float, right: float, low: float, high: float) -> Array:

@@ -10,11 +10,10 @@ import pytest
 
 from artefact.body.solids import BLEND
 from cad_out.details.detail_list import details_of
-from cad_out.details.lettering import LINE
+from cad_out.details.dot_font import DOT
 from cad_out.details.mounting import RELIEF
 from cad_out.details.places import plan_room
 from cad_out.details.seats import glue_gap, seat_of
-from cad_out.details.stroke_font import HEIGHT, strokes
 from cad_out.details.tolerances import Tolerance, notes_of
 from cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
 from cad_out.verify.part21 import read_entities, read_instances
@@ -63,7 +62,7 @@ def test_lettering_stands_clear_of_bodies_holes_and_each_other(upright):
     assert named - {""} == features
     top, boxes = upright.base.thickness, []
     for line in details.lettering:
-        ink = np.concatenate(strokes(line.text)) * line.height / HEIGHT
+        ink = line.dots
         where = apply(line.T_artefact_text, np.column_stack([ink, np.zeros(len(ink))]))
         if np.allclose(where[:, 2], top):
             assert plan_room(upright, where[:, :2]).min() > 1.0
@@ -73,7 +72,7 @@ def test_lettering_stands_clear_of_bodies_holes_and_each_other(upright):
             assert where[:, 2].min() > RELIEF
     for k, (low, high) in enumerate(boxes):
         for a, b in boxes[:k]:
-            assert (np.maximum(low - b, a - high) > LINE).any()
+            assert (np.maximum(low - b, a - high) > 2.0 * DOT).any()
 
 
 def test_heavy_standards_are_lifted_beside_their_centre_of_mass(upright):
