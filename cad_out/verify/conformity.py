@@ -10,7 +10,7 @@ import numpy as np
 
 from artefact.body import BLEND, Standard
 from cad_out.build import FACTS, STEP, run_kernel
-from cad_out.details import BALL, Details, Screw, Tolerance, details_of, notes_of, tolerances_of
+from cad_out.details import BALL, Details, Screw, details_of
 from cad_out.meshes import (
     aspects,
     chord_errors,
@@ -29,7 +29,7 @@ from cad_out.verify.part21 import (
     read_faces,
     read_instances,
 )
-from cad_out.verify.part21_tolerances import read_notes, read_tolerances
+from cad_out.verify.untold import untold
 from twin.errors import NotBuildable
 from twin.files import write_whole
 from twin.frames import Array
@@ -80,7 +80,7 @@ class Conformity:
         names: Faces that carry a name in the file.
         missing: Faces that should and do not.
         missing_details: What of the workshop's additions found no room, in words.
-        untold: Tolerances and notes that not both readers find as they were meant.
+        untold: Tolerances, notes and drawn signs that not both readers find as they were meant.
         face_deviation: Largest distance from the design by face, without any CAD kernel.
         area_error: Of every patch's trimmed face in the mesh against the design, relative.
         is_watertight: Of the STL file, by trimesh.
@@ -254,7 +254,7 @@ def measure(
         names=tuple(sorted(named)),
         missing=tuple(name for name in face_names(standard, details) if name not in named),
         missing_details=details.missing,
-        untold=_untold(standard, details, entities, found),
+        untold=untold(standard, details, entities, found),
         face_deviation=face_deviations(standard, faces),
         area_error=area_errors(standard, face_areas(corners, triangles, owner)),
         is_watertight=is_watertight(corners, triangles),
@@ -269,21 +269,6 @@ def measure(
         step_bytes=(folder / STEP).stat().st_size,
         stl_bytes=stl.stat().st_size,
     )
-
-
-def _untold(
-    standard: Standard, details: Details, entities: dict[int, str], found: dict[str, Any]
-) -> tuple[str, ...]:
-    """Tolerances and notes that the text's reader or the kernel's does not find."""
-    of_kernel = {Tolerance(*values) for values in found["tolerances"]}
-    both = of_kernel & set(read_tolerances(entities))
-    wanted = tolerances_of(standard, details)
-    lost = [f"{t.kind} of {t.face}" for t in wanted if t not in both]
-    notes = set(found["notes"]) & set(read_notes(entities))
-    lost += [
-        f"note {n}" for n, note in enumerate(notes_of(standard, details), 1) if note not in notes
-    ]
-    return tuple(lost)
 
 
 def _is_upright(standard: Standard) -> bool:
