@@ -4,7 +4,7 @@
 
 Machine, ball, blank, set-up, workspace, criterion and limits are drawn at random, sensible or not.
 Wanted: each is designed with its CAD, or refused with one line and exit code 2 before any CAD; no
-traceback, nothing that runs beyond ten minutes.
+traceback, nothing that runs beyond ten minutes or takes more than 2 GiB.
 """
 
 import platform
@@ -13,6 +13,7 @@ import tempfile
 import time
 import tomllib
 from pathlib import Path
+from resource import RUSAGE_CHILDREN, getrusage
 from subprocess import TimeoutExpired, run
 
 import numpy as np
@@ -81,6 +82,20 @@ def project(seed: int) -> str:
     return text_of(table) + "\n"
 
 
+def outcome(file: Path, folder: str) -> tuple[str, str]:
+    """What became of a project, and the last line it was told with."""
+    command = [sys.executable, "-m", "matstd", "design", str(file), "-o", folder]
+    try:
+        done = run(command, capture_output=True, text=True, timeout=LONGEST, check=False)
+    except TimeoutExpired:
+        return "FAILED", f"ran beyond {LONGEST:.0f} s"
+    lines = [line for line in (done.stderr.strip() or done.stdout).splitlines() if line.strip()]
+    end = {0: "designed", 2: "refused"}.get(done.returncode, "FAILED")
+    if end == "refused" and any("Traceback" in line for line in lines):
+        end = "FAILED"
+    return end, lines[-1] if lines else ""
+
+
 def main() -> None:
     """Design them, a line each, and what became of all."""
     given = [int(v) for v in sys.argv[1:]]
@@ -91,32 +106,17 @@ def main() -> None:
         for seed in range(first, first + count):
             file = Path(folder) / f"{seed}.toml"
             file.write_text(project(seed), encoding="utf-8")
-            command = [
-                sys.executable,
-                "-m",
-                "matstd",
-                "design",
-                str(file),
-                "-o",
-                f"{folder}/{seed}",
-            ]
+            before = getrusage(RUSAGE_CHILDREN).ru_utime
             start = time.perf_counter()
-            try:
-                done = run(command, capture_output=True, text=True, timeout=LONGEST, check=False)
-                code, lines = done.returncode, (done.stderr.strip() or done.stdout).splitlines()
-            except TimeoutExpired:
-                code, lines = -1, [f"ran beyond {LONGEST:.0f} s"]
-            end = {0: "designed", 2: "refused"}.get(code, "FAILED")
-            end = (
-                "FAILED" if end == "refused" and any("Traceback" in line for line in lines) else end
-            )
+            end, last = outcome(file, f"{folder}/{seed}")
+            wall = time.perf_counter() - start
+            used = getrusage(RUSAGE_CHILDREN).ru_utime - before
             ends[end] += 1
-            last = next((line for line in reversed(lines) if line.strip()), "")
             name = MACHINES[seed % len(MACHINES)]
-            print(
-                f"{seed:3d} {name}: {end}, {time.perf_counter() - start:.0f} s; {last}", flush=True
-            )
-    print(", ".join(f"{number} {end}" for end, number in ends.items()))
+            print(f"{seed:3d} {name}: {end}, {wall:.0f} s ({used:.0f} s user); {last}", flush=True)
+    most = getrusage(RUSAGE_CHILDREN).ru_maxrss / 2**20
+    told = ", ".join(f"{number} {end}" for end, number in ends.items())
+    print(f"{told}; at most {most:.2f} GiB in one process")
     if ends["FAILED"]:
         sys.exit(1)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 Progress = Callable[[str, int, int], None]
 """Told what is being done, how much of it is done and how much there is."""
@@ -33,3 +34,25 @@ def one_blas_thread() -> Iterator[None]:
 
     with threadpool_limits(1, user_api="blas"):
         yield
+
+
+def compiled_loop(function: Callable[..., None], **options: Any) -> Callable[..., None] | None:
+    """A loop compiled by numba (the extra `fast`), or None without numba.
+
+    What is compiled is kept beside the file, or in the user's cache, for the next process: a second
+    or two of every loop.
+
+    Args:
+        function: Of a module, loops over arrays.
+        options: Of `numba.njit`.
+    """
+    try:
+        from numba import njit
+    except ImportError:
+        return None
+    options |= {"nogil": True, "error_model": "numpy"}
+    try:
+        made: Callable[..., None] = njit(cache=True, **options)(function)
+    except RuntimeError:  # no folder to keep it in
+        made = njit(**options)(function)
+    return made

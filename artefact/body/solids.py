@@ -162,7 +162,9 @@ class Column:
         middle, half_height = 0.5 * (self.top - patch.depth), 0.5 * (self.top + patch.depth)
         beyond = np.column_stack([sideways, np.abs(local[:, 2] - middle) - half_height])
         box = np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
-        near = np.flatnonzero(box < 2.0 * (self.top + np.abs(half).max()))
+        # no lid is lower than its lowest pole: where the box is farther even from that, it counts
+        most = (local[:, 2] - patch.heights.min()) * self.steepest
+        near = np.flatnonzero((box < 2.0 * (self.top + np.abs(half).max())) & (box < most))
         uv = np.clip(local[near, :2], -half, half)
         over = (local[near, 2] - patch.height(uv)) * self.steepest
         box[near] = np.maximum(box[near], over)

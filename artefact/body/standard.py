@@ -10,7 +10,7 @@ import numpy as np
 from artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
 from artefact.body.freeform import FreeformPatch
 from artefact.body.known import Known
-from artefact.body.patch import Surface
+from artefact.body.patch import Mask, Surface
 from artefact.body.sag import Sag
 from artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
 from twin.errors import ShapeMismatch
@@ -219,6 +219,15 @@ class Standard:
         """Distance of points (N, 3) from the standard, (N,), mm; never too large, holes filled."""
         distance: Array = np.min([body.distance(points) for body in self.bodies.values()], axis=0)
         return distance
+
+    def holds(self, points: Array, depth: float) -> Mask:
+        """Whether points (N, 3) lie so deep, mm, or deeper in the standard, holes filled, (N,)."""
+        held = np.zeros(len(points), dtype=bool)
+        for body in self.bodies.values():
+            middle, reach = body.hull
+            near = np.flatnonzero(((points - middle) ** 2).sum(axis=1) < reach**2)
+            held[near] |= body.distance(points[near]) <= -depth
+        return held
 
     def volume(self, step: float = 4.0) -> float:
         """Estimate of the volume on a grid of cells, mm^3; about 1 % at the default step."""

@@ -1,6 +1,6 @@
 """The standard as products: its body, every ball, every size of screw, and where each stands."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -13,7 +13,17 @@ from artefact.body import DatumSphere, Material, Standard
 from cad_out.build.faces import faces_of, solids_of, volume
 from cad_out.build.primitives import boolean, cone, point
 from cad_out.build.solid import Solid, build_solid
-from cad_out.details import BALL, SCREW, Details, Screw, Tolerance, notes_of, tolerances_of
+from cad_out.details import (
+    BALL,
+    SCREW,
+    Details,
+    Screw,
+    Tolerance,
+    annotations_of,
+    notes_of,
+    tolerances_of,
+)
+from twin.frames import Array
 
 COLOURS = {
     "FF": (0.13, 0.40, 0.75),
@@ -44,6 +54,7 @@ class Product:
         tolerances: Of its named faces.
         notes: General ones.
         diameter: Of a ball, mm.
+        drawn: Signs of the tolerances, datums and sizes, polylines (N, 3) in mm by their names.
     """
 
     name: str
@@ -56,6 +67,7 @@ class Product:
     tolerances: tuple[Tolerance, ...] = ()
     notes: tuple[str, ...] = ()
     diameter: float | None = None
+    drawn: dict[str, list[Array]] = field(default_factory=dict)
 
     @cached_property
     def volume(self) -> float:
@@ -75,7 +87,7 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
     size are one part that is there several times.
     """
     solid = build_solid(standard, details)
-    here = (0.0, 0.0, 0.0)
+    here, drawn = (0.0, 0.0, 0.0), annotations_of(standard, details)
     found = [
         Product(
             name=body_name(standard),
@@ -87,6 +99,7 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
             places=(("BODY", here),),
             tolerances=tolerances_of(standard, details),
             notes=notes_of(standard, details),
+            drawn=drawn,
         )
     ]
     for sphere in standard.spheres:
@@ -100,6 +113,7 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
             colour=COLOURS["SPH"],
             places=((sphere.name, here),),
             diameter=2.0 * sphere.radius,
+            drawn=drawn,
         )
         found.append(made)
     for kind in details.screws:

@@ -18,7 +18,7 @@ from OCP.XSControl import XSControl_WorkSession
 
 from artefact.body import Standard
 from cad_out.build.assembly import COLOURS, Product
-from cad_out.build.pmi import add_diameter, add_notes, add_tolerances
+from cad_out.build.pmi import add_diameter, add_notes, add_tolerances, settle_drawing
 from cad_out.build.settled import (
     with_descriptions,
     with_settled_order,
@@ -31,6 +31,9 @@ from twin.versions import versions
 
 TIME_STAMP = "2000-01-01T00:00:00"
 """In every STEP file: the same standard gives the same bytes."""
+
+_WHITE, _BLACK = (f"DRAUGHTING_PRE_DEFINED_COLOUR('{c}')" for c in ("white", "black"))
+"""Ink of the kernel, unseen on paper, and ours."""
 
 _SETTINGS = {
     "write.step.schema": 5,  # AP242
@@ -84,10 +87,12 @@ def write_step(path: Path, products: Sequence[Product], standard: Standard, orig
         raise NotBuildable(
             f"standard '{standard.name}': the CAD kernel cannot translate it to STEP"
         )
+    settle_drawing(writer.ChangeWriter().Model())
     _write_header(writer.ChangeWriter().Model(), standard, origin)
     if writer.Write(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise NotBuildable(f"{path}: the CAD kernel cannot write the STEP file")
-    whole = with_descriptions(path.read_text(encoding="utf-8"), products)
+    whole = path.read_text(encoding="utf-8").replace(_WHITE, _BLACK)
+    whole = with_descriptions(whole, products)
     materials = {product.material for product in products}  # the kernel writes each once
     whole = with_units_of_density(without_runout_zones(whole), len(materials))
     path.write_text(with_settled_order(whole), encoding="utf-8")
@@ -133,9 +138,10 @@ def _part(document: Any, shapes: Any, product: Product) -> Any:
         text("POSITIVE_RATIO_MEASURE"),
     )
     XCAFDoc_Volume.Set_s(label, product.volume)
-    add_tolerances(document, faces, product.tolerances)
+    add_tolerances(document, faces, product.tolerances, product.drawn)
     if product.diameter is not None:
-        add_diameter(document, faces[product.name], product.diameter)
+        sign = f"{product.name} diameter"
+        add_diameter(document, faces[product.name], product.diameter, sign, product.drawn)
     if product.notes:
         add_notes(label, product.notes)
     return label

@@ -125,7 +125,7 @@ def named_faces(wanted: Named, solid: Any) -> dict[str, Any]:
         if name is not None and name in named and name.startswith("FF"):
             raise NotBuildable(f"standard '{wanted.standard.name}': {name} is cut into pieces")
         # Of several pieces of one plane the largest carries the name.
-        if name is not None and (name not in named or _area(face) > _area(named[name])):
+        if name is not None and (name not in named or area(face) > area(named[name])):
             named[name] = face
     missing = sorted(set(wanted.names) - set(named))
     if missing:
@@ -207,7 +207,8 @@ def centre(face: Any) -> Array:
     return _coordinates(properties.CentreOfMass())
 
 
-def _area(face: Any) -> float:
+def area(face: Any) -> float:
+    """Area of a face, mm^2."""
     properties = GProp_GProps()
     BRepGProp.SurfaceProperties_s(face, properties)
     return float(properties.Mass())
@@ -215,3 +216,10 @@ def _area(face: Any) -> float:
 
 def _coordinates(p: Any) -> Array:
     return np.array([p.X(), p.Y(), p.Z()])
+
+
+def length(edge: Any) -> float:
+    """Length of an edge, mm."""
+    properties = GProp_GProps()
+    BRepGProp.LinearProperties_s(edge, properties)
+    return float(properties.Mass())

@@ -24,7 +24,7 @@ from artefact.body import Base
 from cad_out.build.faces import solids_of
 from cad_out.details import Bore
 from twin.errors import NotBuildable
-from twin.frames import Array, apply
+from twin.frames import Array
 
 _SAME = 1e-7  # mm: two points or radii are one
 
@@ -96,30 +96,6 @@ def turned(x: float, y: float, profile: Sequence[tuple[float, ...]]) -> Any:
     face = BRepBuilderAPI_MakeFace(wire.Wire()).Face()
     axis = gp_Ax1(gp_Pnt(float(x), float(y), 0.0), gp_Dir(0.0, 0.0, 1.0))
     return BRepPrimAPI_MakeRevol(face, axis).Shape()
-
-
-def raised(loops: Sequence[Array], T: Array, low: float, high: float) -> Any:
-    """Prism over a plane figure.
-
-    Args:
-        loops: Corners (N, 2) of the outline, and of holes in it, mm.
-        T: Frame of the figure, its z out of the plane, shape (4, 4).
-        low: Height of the lower face along that z, mm.
-        high: Of the upper face, mm.
-    """
-    maker = None
-    for loop in loops:
-        corners = apply(T, np.column_stack([loop, np.full(len(loop), low)]))
-        wire = BRepBuilderAPI_MakeWire()
-        for begin, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            wire.Add(BRepBuilderAPI_MakeEdge(point(begin), point(end)).Edge())
-        if maker is None:
-            maker = BRepBuilderAPI_MakeFace(wire.Wire())
-        else:
-            maker.Add(wire.Wire())
-    assert maker is not None
-    way = (high - low) * T[:3, 2]
-    return BRepPrimAPI_MakePrism(maker.Face(), gp_Vec(*map(float, way))).Shape()
 
 
 def boolean(operation: Any, arguments: Sequence[Any], tools: Sequence[Any], what: str) -> Any:

@@ -24,8 +24,18 @@ from OCP.TopoDS import TopoDS
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from scipy.interpolate import NdBSpline
 
-from cad_out.build.faces import faces_of, is_closed, is_valid, shells_of, solids_of, volume
-from cad_out.build.pmi import notes_of_label, read_tolerances
+from cad_out.build.faces import (
+    area,
+    edges_of,
+    faces_of,
+    is_closed,
+    is_valid,
+    length,
+    shells_of,
+    solids_of,
+    volume,
+)
+from cad_out.build.pmi import notes_of_label, read_signs, read_tolerances
 from cad_out.build.xcaf import name_of, new_document, settings
 from cad_out.details import Tolerance
 from cad_out.triangles import (
@@ -62,10 +72,13 @@ class Reread:
         is_closed: All shells are.
         shells: Of all solids.
         volume: Of all solids, mm^3.
+        least_face: Area of the smallest face, mm^2.
+        least_edge: Length of the shortest edge, mm.
         products: How often each product is there, by name.
         names: Of faces.
         tolerances: Geometrical tolerances with their datums.
         notes: General notes of all parts.
+        signs: Of what is drawn, the length of its lines and their centre of mass, mm.
     """
 
     solids: int
@@ -73,10 +86,13 @@ class Reread:
     is_closed: bool
     shells: int
     volume: float
+    least_face: float
+    least_edge: float
     products: dict[str, int]
     names: tuple[str, ...]
     tolerances: tuple[Tolerance, ...]
     notes: tuple[str, ...]
+    signs: dict[str, tuple[float, float, float, float]]
 
 
 def read_step(path: Path) -> Reread:
@@ -109,10 +125,13 @@ def read_step(path: Path) -> Reread:
         is_closed=all(is_closed(solid) for solid in solids),
         shells=sum(len(shells_of(solid)) for solid in solids),
         volume=sum(volume(solid) for solid in solids),
+        least_face=min(area(face) for solid in solids for face in faces_of(solid)),
+        least_edge=min(length(edge) for solid in solids for edge in edges_of(solid)),
         products=counted,
         names=tuple(sorted(names)),
         tolerances=tuple(read_tolerances(document)),
         notes=tuple(notes),
+        signs=read_signs(document),
     )
 
 

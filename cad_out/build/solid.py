@@ -92,11 +92,7 @@ def build_solid(standard: Standard, details: Details) -> Solid:
     if tools:
         body = boolean(BRepAlgoAPI_Cut(), [body], tools, "drilling the holes")
     plain = _finished(body, standard.name)
-    letters = engraved(details.lettering)
-    solid = plain
-    if letters:
-        body = boolean(BRepAlgoAPI_Cut(), [plain], letters, "engraving")
-        solid = _finished(body, standard.name)
+    solid = _finished(engraved(plain, details.lettering), standard.name)
     wanted = Named(standard, details, surfaces)
     return Solid(solid, plain, named_faces(wanted, solid), named_faces(wanted, plain))
 

@@ -5,8 +5,10 @@ holes, thermometer pocket, lettering. The kernel builds them, the drawing shows 
 makeability measures them.
 """
 
+from cad_out.details.annotations import annotations_of
 from cad_out.details.detail_list import Details, details_of
-from cad_out.details.lettering import DEPTH, LINE, Lettering
+from cad_out.details.dot_font import CUTTER, DEPTH, DOT
+from cad_out.details.lettering import Lettering
 from cad_out.details.mounting import (
     BALL,
     RELIEF,
@@ -18,16 +20,15 @@ from cad_out.details.mounting import (
 )
 from cad_out.details.places import Bore, Side, datum_touches
 from cad_out.details.seats import Seat, glue_gap
-from cad_out.details.stroke_font import HEIGHT, strokes
 from cad_out.details.tolerances import BALL_SIZE, DATUMS, Tolerance, notes_of, tolerances_of
 
 __all__ = [
     "BALL",
     "BALL_SIZE",
+    "CUTTER",
     "DATUMS",
     "DEPTH",
-    "HEIGHT",
-    "LINE",
+    "DOT",
     "RELIEF",
     "RELIEF_RADIUS",
     "SCREW",
@@ -39,11 +40,11 @@ __all__ = [
     "Seat",
     "Side",
     "Tolerance",
+    "annotations_of",
     "datum_touches",
     "details_of",
     "glue_gap",
     "notes_of",
     "relief_profile",
-    "strokes",
     "tolerances_of",
 ]

@@ -50,7 +50,7 @@ def details_of(standard: Standard) -> Details:
     pocket = thermometer_pocket(standard, sides["THERMO"], lifting)
     bores = (*lifting, *([pocket] if pocket else []))
     lettering, nameless = lettering_of(standard, sides, bores)
-    missing = [f"a number beside {name}" for name in nameless]
+    missing = [f"lettering of {name}" for name in nameless]
     missing += ["lifting holes"] if mass > HEAVY and not lifting else []
     missing += [] if pocket else ["a pocket for a thermometer"]
     return Details(

@@ -6,17 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.body import BLEND, DatumSphere, FreeformPatch, Standard, outline_distance
+from cad_out.details.dot_font import LARGE, SMALL, dots, size
 from cad_out.details.places import Bore, Side, plan_room
-from cad_out.details.stroke_font import HEIGHT, width
 from twin.frames import Array, pose
 
-DEPTH = 0.3
-"""Of an engraved line, mm."""
-
-LINE = 0.5
-"""Its width, mm."""
-
-_SMALL, _LARGE, _LEAST = 4.0, 7.0, 2.0  # mm, heights of letters
+_OF_SIDE = 0.37  # of the plate's thickness, that letters on a side take: two lines have room
 _FREE = 1.5  # mm round a line of text
 _AWAY = 14.0  # mm from a body that its number may stand
 
@@ -28,23 +22,27 @@ class Lettering:
     Attributes:
         text: Capitals.
         T_artefact_text: Begin of the line; x along it, y up the letters, z out of the material.
-        height: Of the letters, mm.
+        rows: Of dots in a letter, `SMALL` or `LARGE`.
         of: Feature that it names; empty for the standard's own name.
     """
 
     text: str
     T_artefact_text: Array
-    height: float
+    rows: int
     of: str = ""
+
+    @property
+    def dots(self) -> Array:
+        """Middles of the dots in the frame of the text, (N, 2), mm."""
+        return dots(self.text, self.rows)
 
 
 def lettering_of(
     standard: Standard, sides: dict[str, Side], bores: Sequence[Bore]
 ) -> tuple[tuple[Lettering, ...], tuple[str, ...]]:
-    """Every line of text, and the names of features for which there is no room."""
-    out = _on_sides(standard, sides, bores)
+    """Every line of text, and what finds no room: names of features, or the text itself."""
+    out, missing = _on_sides(standard, sides, bores)
     plate = _Plate(standard, list(bores))
-    missing = []
     for patch in standard.patches:
         line = _on_wall(standard, patch) or plate.beside(
             patch.name, patch.T_artefact_patch[:2, 3], float(np.hypot(*patch.half_size))
@@ -70,31 +68,32 @@ def _label(feature: str) -> str:
     return feature.removeprefix("SPH").removeprefix("DATUM_")
 
 
-def _on_sides(standard: Standard, sides: dict[str, Side], bores: Sequence[Bore]) -> list[Lettering]:
+def _on_sides(
+    standard: Standard, sides: dict[str, Side], bores: Sequence[Bore]
+) -> tuple[list[Lettering], list[str]]:
     thick = standard.base.thickness
-    large = min(_LARGE, 0.25 * thick)
-    name = f"{standard.name} {standard.serial}".strip()
     pocket = next((b.mouth[0] for b in bores if b.name == "THERMO"), None)
     aside = 0.0 if pocket is None else -18.0 if pocket >= 0.0 else 18.0
-    lines = [
-        ("NAME", name, 0.0, 0.56 * thick, ""),
-        ("NAME", "+X", 0.0, 0.18 * thick, ""),
-        ("THERMO", "+Y", (pocket or 0.0) + aside, 0.4 * thick, ""),
-        ("DATUM_B", "B", 0.0, 0.4 * thick, "DATUM_B"),
-        ("DATUM_C", "C", 0.0, 0.4 * thick, "DATUM_C"),
+    wanted = [
+        ("NAME", f"{standard.name} {standard.serial}".strip(), 0.0, 0.68 * thick, ""),
+        ("NAME", "+X", 0.0, 0.28 * thick, ""),
+        ("THERMO", "+Y", (pocket or 0.0) + aside, 0.5 * thick, ""),
+        ("DATUM_B", "B", 0.0, 0.5 * thick, "DATUM_B"),
+        ("DATUM_C", "C", 0.0, 0.5 * thick, "DATUM_C"),
     ]
-    return [_on_side(sides[s], text, at, z, large, of) for s, text, at, z, of in lines]
+    found = [_on_side(sides[s], text, at, z, thick, of) for s, text, at, z, of in wanted]
+    missing = [w[4] or w[1] for w, line in zip(wanted, found, strict=True) if line is None]
+    return [line for line in found if line], missing
 
 
-def _on_side(side: Side, text: str, at: float, z: float, height: float, of: str) -> Lettering:
-    """Text in the middle of a side or `at` beside it, smaller if it is too long."""
-    height = min(height, 1.7 * side.half_length / width(text) * HEIGHT)
+def _on_side(side: Side, text: str, at: float, z: float, thick: float, of: str) -> Lettering | None:
+    """Text in the middle of a side or `at` beside it, at a height, as large as there is room."""
     out = np.array([*side.normal, 0.0])
     along = np.cross([0.0, 0.0, 1.0], out)
-    middle = side.offset * out + at * np.abs(along)
+    middle = side.offset * out + at * np.abs(along) + [0.0, 0.0, z]
     R = np.column_stack([along, [0.0, 0.0, 1.0], out])
-    begin = middle - 0.5 * width(text) * height / HEIGHT * along + [0.0, 0.0, z]
-    return Lettering(text, pose(R, begin), height, of)
+    rows = _largest(text, [1.7 * side.half_length, _OF_SIDE * thick])
+    return None if rows is None else _around(text, R, middle, rows, of)
 
 
 def _on_wall(standard: Standard, patch: FreeformPatch) -> Lettering | None:
@@ -111,14 +110,22 @@ def _on_wall(standard: Standard, patch: FreeformPatch) -> Lettering | None:
     low = standard.base.thickness + BLEND + 1.0
     free = place[2] + float(patch.height(edge).min()) - 1.0 - low
     text = _label(patch.name)
-    room = 1.7 * half[1 - fixed] / width(text) * HEIGHT
-    height = float(min(_LARGE, free, room))
-    if height < _LEAST:
+    rows = _largest(text, [1.7 * half[1 - fixed], free])
+    if rows is None:
         return None
     R = np.column_stack([along, [0.0, 0.0, 1.0], out])
-    begin = np.array([*place[:2], low]) + out * half[fixed]
-    begin = begin - 0.5 * width(text) * height / HEIGHT * along
-    return Lettering(text, pose(R, begin), height, patch.name)
+    middle = np.array([*place[:2], low + 0.5 * size(text, rows)[1]]) + out * half[fixed]
+    return _around(text, R, middle, rows, patch.name)
+
+
+def _largest(text: str, room: Sequence[float]) -> int | None:
+    """Rows of dots of the largest letters that a width and a height have room for, mm."""
+    return next((rows for rows in (LARGE, SMALL) if np.all(size(text, rows) <= room)), None)
+
+
+def _around(text: str, R: Array, middle: Array, rows: int, of: str) -> Lettering:
+    """A line of text round its middle."""
+    return Lettering(text, pose(R, middle - R[:, :2] @ (0.5 * size(text, rows))), rows, of)
 
 
 class _Plate:
@@ -136,17 +143,16 @@ class _Plate:
         text = _label(feature)
         angle = np.arange(48) * (2.0 * np.pi / 48)
         ray = np.column_stack([np.sin(angle), -np.cos(angle)])
-        for height in (_SMALL, 0.75 * _SMALL):
-            half = 0.5 * height / HEIGHT * np.array([width(text), HEIGHT])
-            distance = widest + half.max() + np.arange(1.0, far, 1.5)
-            places = np.round(middle + (distance[:, None, None] * ray).reshape(-1, 2), 1)
-            good = np.flatnonzero(self._is_free(places, half))
-            if len(good):
-                at = places[good[0]]
-                self.taken.append((at, half))
-                top = self.standard.base.thickness
-                return Lettering(text, pose(t=np.array([*(at - half), top])), height, feature)
-        return None
+        half = 0.5 * size(text, SMALL)
+        distance = widest + half.max() + np.arange(1.0, far, 1.5)
+        places = np.round(middle + (distance[:, None, None] * ray).reshape(-1, 2), 1)
+        good = np.flatnonzero(self._is_free(places, half))
+        if not len(good):
+            return None
+        at = places[good[0]]
+        self.taken.append((at, half))
+        on_top = np.array([*at, self.standard.base.thickness])
+        return _around(text, np.eye(3), on_top, SMALL, feature)
 
     def _is_free(self, places: Array, half: Array) -> Array:
         t = np.linspace(-1.0, 1.0, 7)

@@ -176,6 +176,5 @@ def is_free(
         if not len(left):
             break
         places = (centre[left, None] + offsets).reshape(-1, 3)
-        room = standard.distance(places).reshape(len(left), -1).min(axis=1)
-        free[left] = room > -_SLACK
+        free[left] = ~standard.holds(places, _SLACK).reshape(len(left), -1).any(axis=1)
     return free

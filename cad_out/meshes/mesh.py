@@ -263,11 +263,13 @@ def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndar
     owner = np.full(len(triangles), "", dtype="<U32")
     surfaces: tuple[FreeformPatch | DatumSphere, ...] = (*standard.patches, *standard.spheres)
     for surface in surfaces:
-        near = np.flatnonzero(np.abs(_distance(surface, middle)) < _ON_SURFACE)
+        near = np.arange(len(middle))
         if isinstance(surface, FreeformPatch):
             # So near the face the foot point is next to the point straight below.
+            near = near[surface.contains(apply(surface.T_patch_artefact, middle)[:, :2])]
+        near = near[np.abs(_distance(surface, middle[near])) < _ON_SURFACE]
+        if isinstance(surface, FreeformPatch):
             uv = apply(surface.T_patch_artefact, middle[near])[:, :2]
-            near, uv = near[surface.contains(uv)], uv[surface.contains(uv)]
         else:
             uv = surface.project(middle[near])
         alike = np.einsum("ni,ni->n", facing[near], surface.normal(uv)) > _ALIKE

@@ -10,7 +10,7 @@ import numpy as np
 
 from artefact.body import BLEND, Standard
 from cad_out.build import FACTS, STEP, run_kernel
-from cad_out.details import BALL, Details, Screw, Tolerance, details_of, notes_of, tolerances_of
+from cad_out.details import BALL, Details, Screw, details_of
 from cad_out.meshes import (
     aspects,
     chord_errors,
@@ -21,16 +21,15 @@ from cad_out.meshes import (
     mesh_volume,
     read_stl,
 )
+from cad_out.verify.face_figures import area_errors, face_deviations
 from cad_out.verify.part21 import (
     Instance,
-    SphereFace,
-    SplineFace,
     file_unit_is_millimetre,
     read_entities,
     read_faces,
     read_instances,
 )
-from cad_out.verify.part21_tolerances import read_notes, read_tolerances
+from cad_out.verify.untold import untold
 from twin.errors import NotBuildable
 from twin.files import write_whole
 from twin.frames import Array
@@ -45,6 +44,10 @@ VOLUME_LIMIT = 1e-7
 AREA_LIMIT = 1e-3
 """Relative: a face that a neighbour's column cuts into, or that is trimmed elsewhere, is found."""
 
+LEAST_FACE, LEAST_EDGE = 1.0, 0.5
+"""Smallest face, mm^2, and shortest edge, mm, of an upright standard: what is smaller is a sliver,
+which whoever programs the cutting or meshes the body stumbles over."""
+
 SHARP_LIMIT = 0.1
 """Length of sharp inner edges on an upright standard, mm."""
 
@@ -53,7 +56,6 @@ ASPECT_LIMIT = 20.0
 warn, and far from where 32-bit corners (15 nm at 400 mm) turn the normals of an STL."""
 
 _SHARP = 0.6  # rad between two triangles; those of a blend are half as far apart
-_SAMPLES = 61  # points along each side of a face that is compared
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,10 +74,13 @@ class Conformity:
         volume: Of body and balls as read, mm^3.
         volume_built: Of them as built, mm^3.
         mass: Of body and balls, kg; the screws stay with the table.
+        least_face: Area of the smallest face, mm^2.
+        least_edge: Length of the shortest edge, mm.
+        is_upright: All pillars and posts stand upright and are blended.
         names: Faces that carry a name in the file.
         missing: Faces that should and do not.
         missing_details: What of the workshop's additions found no room, in words.
-        untold: Tolerances and notes that not both readers find as they were meant.
+        untold: Tolerances, notes and drawn signs that not both readers find as they were meant.
         face_deviation: Largest distance from the design by face, without any CAD kernel.
         area_error: Of every patch's trimmed face in the mesh against the design, relative.
         is_watertight: Of the STL file, by trimesh.
@@ -102,6 +107,9 @@ class Conformity:
     volume: float
     volume_built: float
     mass: float
+    least_face: float
+    least_edge: float
+    is_upright: bool
     names: tuple[str, ...]
     missing: tuple[str, ...]
     missing_details: tuple[str, ...]
@@ -169,6 +177,14 @@ class Conformity:
                 self.sharp <= SHARP_LIMIT,
                 f"{self.sharp:.1f} mm of inner edges without a radius of {BLEND:g} mm",
             ),
+            (
+                self.least_face >= LEAST_FACE or not self.is_upright,
+                f"a face of {self.least_face:.2g} mm^2, limit {LEAST_FACE:g} mm^2",
+            ),
+            (
+                self.least_edge >= LEAST_EDGE or not self.is_upright,
+                f"an edge of {self.least_edge:.2g} mm, limit {LEAST_EDGE:g} mm",
+            ),
             (bulge <= 1e-3, f"the mesh has {bulge:.1e} less or more volume than the solid"),
             (
                 chord <= self.chord + NM,
@@ -232,12 +248,15 @@ def measure(
         volume=volume,
         volume_built=sum(v for name, v in made.items() if name not in screws),
         mass=standard.material.density * (volume - balls) + BALL.density * balls,
+        least_face=found["least_face"],
+        least_edge=found["least_edge"],
+        is_upright=_is_upright(standard),
         names=tuple(sorted(named)),
         missing=tuple(name for name in face_names(standard, details) if name not in named),
         missing_details=details.missing,
-        untold=_untold(standard, details, entities, found),
+        untold=untold(standard, details, entities, found),
         face_deviation=face_deviations(standard, faces),
-        area_error=_area_errors(standard, face_areas(corners, triangles, owner)),
+        area_error=area_errors(standard, face_areas(corners, triangles, owner)),
         is_watertight=is_watertight(corners, triangles),
         mesh_volume=mesh_volume(corners, triangles),
         manifold_volume=manifold_volume(corners, triangles),
@@ -252,25 +271,15 @@ def measure(
     )
 
 
-def _untold(
-    standard: Standard, details: Details, entities: dict[int, str], found: dict[str, Any]
-) -> tuple[str, ...]:
-    """Tolerances and notes that the text's reader or the kernel's does not find."""
-    of_kernel = {Tolerance(*values) for values in found["tolerances"]}
-    both = of_kernel & set(read_tolerances(entities))
-    wanted = tolerances_of(standard, details)
-    lost = [f"{t.kind} of {t.face}" for t in wanted if t not in both]
-    notes = set(found["notes"]) & set(read_notes(entities))
-    lost += [
-        f"note {n}" for n, note in enumerate(notes_of(standard, details), 1) if note not in notes
-    ]
-    return tuple(lost)
+def _is_upright(standard: Standard) -> bool:
+    """Whether all pillars and posts are blended; those that lean are not."""
+    everything = {*(p.name for p in standard.patches), *(s.name for s in standard.spheres)}
+    return bool(standard.blended) and standard.blended >= everything
 
 
 def _sharp(standard: Standard, details: Details, corners: Array, triangles: np.ndarray) -> float:
     """Length of sharp inner edges outside bores, mm; 0 where columns lean and have no blends."""
-    everything = {*(p.name for p in standard.patches), *(s.name for s in standard.spheres)}
-    if not standard.blended or standard.blended < everything:
+    if not _is_upright(standard):
         return 0.0
     middle, length = inner_folds(corners, triangles, _SHARP)
     inside = np.zeros(len(middle), dtype=bool)
@@ -306,48 +315,6 @@ def _displaced(
     )
 
 
-def face_deviations(
-    standard: Standard, faces: dict[str, SplineFace | SphereFace | None]
-) -> dict[str, float]:
-    """Largest distance of every patch and sphere in the file from its design, mm.
-
-    Patches are compared point by point at equal parameters: the file's spline by scipy, the
-    design by its own formula. A face that is missing or of another kind counts as infinitely far.
-    """
-    deviations = {}
-    for patch in standard.patches:
-        face, (a, b) = faces.get(patch.name), patch.half_size
-        if not isinstance(face, SplineFace):
-            deviations[patch.name] = np.inf
-            continue
-        axes = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
-        uv = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
-        apart = np.linalg.norm(face.points(uv) - patch.point(uv), axis=1)
-        deviations[patch.name] = float(apart.max())
-    for sphere in standard.spheres:
-        face = faces.get(sphere.name)
-        if not isinstance(face, SphereFace):
-            deviations[sphere.name] = np.inf
-            continue
-        apart = np.linalg.norm(face.centre - sphere.centre) + abs(face.radius - sphere.radius)
-        deviations[sphere.name] = float(apart)
-    return deviations
-
-
-def _area_errors(standard: Standard, areas: dict[str, float]) -> dict[str, float]:
-    """Relative difference between the area of a face's triangles and that of its design."""
-    errors = {}
-    for patch in standard.patches:
-        nodes, weights = np.polynomial.legendre.leggauss(40)
-        a, b = patch.half_size
-        u, v = np.meshgrid(a * nodes, b * nodes, indexing="ij")
-        j = patch.jet(np.column_stack([u.ravel(), v.ravel()]))
-        weight = a * b * np.outer(weights, weights).ravel()
-        area = float(weight @ np.sqrt(1.0 + j.hu**2 + j.hv**2))
-        errors[patch.name] = abs(areas.get(patch.name, 0.0) / area - 1.0)
-    return errors
-
-
 def write_conformity(path: Path, conformity: Conformity) -> None:
     """Every figure and every limit as JSON; what could not be measured is null."""
     limits = {
@@ -356,6 +323,8 @@ def write_conformity(path: Path, conformity: Conformity) -> None:
         "area_error": AREA_LIMIT,
         "chord_error_mm": conformity.chord,
         "sharp_mm": SHARP_LIMIT,
+        "least_face_mm2": LEAST_FACE,
+        "least_edge_mm": LEAST_EDGE,
         "aspect": ASPECT_LIMIT,
     }
     table = {

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
 
 from diagnosis.drift.record import DriftRecord, is_speed
 from twin.frames import Array
@@ -49,6 +48,8 @@ def followed(record: DriftRecord, drive: str, poles: tuple[float, ...]) -> Array
     values = record.columns([drive])[:, 0]
     if not poles:
         return values
+    from scipy.signal import lfilter  # half a second, that only who follows lags shall wait for
+
     denominator = np.poly(poles)
     gain = [denominator.sum()]
     out = np.empty_like(values)

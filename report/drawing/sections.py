@@ -3,7 +3,7 @@
 import numpy as np
 
 from artefact.body import BLEND, Standard
-from cad_out.details import DEPTH, LINE, RELIEF, Details, glue_gap
+from cad_out.details import CUTTER, DEPTH, RELIEF, Details, glue_gap
 from report.drawing.sheet import THIN, WIDE, Sheet, View
 from twin.units import DEG
 
@@ -83,7 +83,10 @@ def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -
 
 def engraving_words() -> str:
     """How lettering is made."""
-    return f"Lettering {DEPTH:g} deep, {LINE:g} wide, single strokes; never on a datum's touches."
+    return (
+        f"Lettering: dots {DEPTH:g} deep, ball-ended cutter Ø{2.0 * CUTTER:g}; "
+        "never on a datum's touches."
+    )
 
 
 def _ratio(scale: float) -> str:

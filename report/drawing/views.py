@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from artefact.body import DatumSphere, FreeformPatch, Standard
-from cad_out.details import HEIGHT, RELIEF, Details, strokes
+from cad_out.details import DOT, RELIEF, Details
 from report.drawing.sheet import THIN, WIDE, Sheet, View
 from twin.frames import Array, apply
 
@@ -32,9 +32,8 @@ def draw_top(sheet: Sheet, view: View, standard: Standard, details: Details) -> 
     _hole_names(sheet, view, standard, details)  # last, so that nothing higher hides one
     for line in details.lettering:
         if line.T_artefact_text[2, 2] > 0.5:
-            for stroke in strokes(line.text):
-                ink = np.column_stack([stroke * line.height / HEIGHT, np.zeros(len(stroke))])
-                sheet.line(view.at(apply(line.T_artefact_text, ink)[:, :2]), 0.13)
+            for dot in apply(line.T_artefact_text, np.pad(line.dots, ((0, 0), (0, 1)))):
+                sheet.circle(view.at(dot[:2])[0], view.scale * DOT, 0.13)
 
 
 def _holes(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:

@@ -1,14 +1,16 @@
 """Compiled loops of the Monte Carlo (the extra `fast`): counting lengths, finding worst poses.
 
 `sensitivity.montecarlo.lengths` has both in numpy, which is the reference; nothing here is needed
-to run. What is compiled is kept beside the file, or in the user's cache, for the next process.
+to run.
 """
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+
+from twin.compute import compiled_loop
 
 MACHINES_A_BLOCK = 64
 """Machines whose lengths lie side by side: a pass over the poses takes them all at once."""
@@ -29,23 +31,9 @@ class Kernels(NamedTuple):
 @lru_cache(maxsize=1)
 def compiled() -> Kernels | None:
     """The kernels, or None without numba."""
-    try:
-        from numba import njit
-    except ImportError:
-        return None
-
-    def made(function: Any) -> Any:
-        options = {
-            "nogil": True,
-            "error_model": "numpy",
-            "fastmath": {"reassoc", "contract", "nsz"},
-        }
-        try:
-            return njit(cache=True, **options)(function)
-        except RuntimeError:  # no folder to keep it in
-            return njit(**options)(function)
-
-    return Kernels(made(_count), made(_worst))
+    relaxed = {"reassoc", "contract", "nsz"}
+    tally, worst = (compiled_loop(f, fastmath=relaxed) for f in (_count, _worst))
+    return None if tally is None or worst is None else Kernels(tally, worst)
 
 
 def _count(d, width, limit, line, index, sums, histogram, size):  # type: ignore[no-untyped-def]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sensitivity.first_order import jacobian_by_parameter
 from sensitivity.montecarlo import seed_words
 from sensitivity.population import Population, coefficients, draw, shape_columns
-from twin.compute import blocks, one_blas_thread
+from twin.compute import blocks, compiled_loop, one_blas_thread
 from twin.errors import DesignError, ShapeMismatch
 from twin.frames import Array
 
@@ -165,31 +165,27 @@ def _squares(columns: Array, d: Array, step: Array, sums: Array) -> None:
 @lru_cache(maxsize=1)
 def _compiled() -> Kernel | None:
     """The same compiled, or None without numba."""
-    try:
-        from numba import njit
-    except ImportError:
-        return None
+    return compiled_loop(_squares_in_loops, fastmath=True)
 
-    def squares(columns, d, step, sums):  # type: ignore[no-untyped-def]
-        draws = d.shape[2]
-        for n in range(columns.shape[0]):
-            dx, dy, dz = d[n, 0], d[n, 1], d[n, 2]
-            size = np.sqrt(dx * dx + dy * dy + dz * dz)
-            each = step[n if step.shape[0] > 1 else 0]
-            for p in range(each.shape[0]):
-                jx, jy, jz = columns[n, p, 0], columns[n, p, 1], columns[n, p, 2]
-                change = each[p]
-                total, fourth = np.float32(0.0), np.float32(0.0)
-                for s in range(draws):
-                    x = dx[s] + jx * change[s]
-                    y = dy[s] + jy * change[s]
-                    z = dz[s] + jz * change[s]
-                    off = np.sqrt(x * x + y * y + z * z) - size[s]
-                    square = off * off
-                    total += square
-                    fourth += square * square
-                sums[0, n, p] = total
-                sums[1, n, p] = fourth
 
-    kernel: Kernel = njit(nogil=True, error_model="numpy", fastmath=True)(squares)
-    return kernel
+def _squares_in_loops(columns, d, step, sums):  # type: ignore[no-untyped-def]
+    """What `_squares` does, in single precision and machine by machine."""
+    draws = d.shape[2]
+    for n in range(columns.shape[0]):
+        dx, dy, dz = d[n, 0], d[n, 1], d[n, 2]
+        size = np.sqrt(dx * dx + dy * dy + dz * dz)
+        each = step[n if step.shape[0] > 1 else 0]
+        for p in range(each.shape[0]):
+            jx, jy, jz = columns[n, p, 0], columns[n, p, 1], columns[n, p, 2]
+            change = each[p]
+            total, fourth = np.float32(0.0), np.float32(0.0)
+            for s in range(draws):
+                x = dx[s] + jx * change[s]
+                y = dy[s] + jy * change[s]
+                z = dz[s] + jz * change[s]
+                off = np.sqrt(x * x + y * y + z * z) - size[s]
+                square = off * off
+                total += square
+                fourth += square * square
+            sums[0, n, p] = total
+            sums[1, n, p] = fourth

@@ -25,7 +25,8 @@ from cad_out.meshes.mesh import (
     owners,
     read_stl,
 )
-from cad_out.verify.conformity import ASPECT_LIMIT, FACE_LIMIT, face_deviations, face_names
+from cad_out.verify.conformity import ASPECT_LIMIT, FACE_LIMIT, face_names
+from cad_out.verify.face_figures import face_deviations
 from cad_out.verify.part21 import SphereFace, SplineFace, read_faces
 from twin.errors import BadFile, NotBuildable
 from twin.units import NM, UM

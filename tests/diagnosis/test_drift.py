@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sklearn.linear_model import Ridge
 
 from diagnosis.drift.arx import ArxInputs, arx, coefficients
 from diagnosis.drift.beams import Beam, beam_estimate, read_beams
@@ -90,6 +89,8 @@ def test_the_coefficients_of_an_arx_law_are_those_of_its_equation(planted):
 
 
 def test_ridge_is_that_of_scikit_learn(planted):
+    from sklearn.linear_model import Ridge
+
     rows = np.arange(100, 300)
     law = fitted(planted, at_once(planted), [rows], 0.03)
     Z = (planted.drive - planted.drive[rows].mean(axis=0)) / planted.drive[rows].std(axis=0)
@@ -98,6 +99,8 @@ def test_ridge_is_that_of_scikit_learn(planted):
 
 
 def test_the_weight_of_a_ridge_is_the_best_of_refitted_blocks(planted):
+    from sklearn.linear_model import Ridge
+
     parts = blocks(np.arange(280), 4)
     law = ridge(planted, at_once(planted), parts)
     y = planted.displacement / UM

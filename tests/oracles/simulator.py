@@ -13,6 +13,9 @@ from simulator_experiment import LENGTH, RADIUS, STATED_NOISE, pose_about_z
 from simulator_machine import tip, tip_per_linear
 from simulator_surface import foot, surface_point, turn
 
+MET = 1e-10
+"""Distance of ball and surface, mm, that counts as none: a ten thousandth of the last digit."""
+
 
 @dataclass
 class Run:
@@ -77,7 +80,10 @@ def probe(e, hidden, noise, digits=True):
         errors, other = collected(e, q, hidden, state)
         ball, grown = ball_in_standard(e, q, errors, other)
         x, y, distance = foot(true_pads, e.pad, ball, place)
-        lift, place = lift - (distance * grown - RADIUS - other.get("bias", 0.0) - noise), (x, y)
+        left = distance * grown - RADIUS - other.get("bias", 0.0) - noise
+        lift, place = lift - left, (x, y)
+        if np.abs(left).max() < MET:
+            break
     return recorded(e, q, digits)
 
 

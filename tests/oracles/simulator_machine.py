@@ -81,8 +81,13 @@ def read_machine(text):
     return Machine(text, axes, np.array(tables["workpiece"]["origin"], dtype=float))
 
 
+IDENTITY = np.eye(4)
+
+
 def eye(n):
-    return np.tile(np.eye(4), (n, 1, 1))
+    out = np.empty((n, 4, 4))
+    out[:] = IDENTITY
+    return out
 
 
 def shifted(v):

@@ -8,6 +8,10 @@ HALF = 18.0
 """Half the side of the touched rectangle of a pad, mm."""
 
 
+NEXT_TO_NONE = 1e-9
+"""Step of a Newton iteration, mm, after which the next would be below the last digit."""
+
+
 @dataclass
 class Pads:
     """M pads; the height over each one's own plane is a quadratic plus a wave.
@@ -101,6 +105,9 @@ def foot(pads, index, ball, start):
         gx, gy = dx + dz * hx, dy + dz * hy
         axx, axy, ayy = 1 + hx * hx - dz * hxx, hx * hy - dz * hxy, 1 + hy * hy - dz * hyy
         det = axx * ayy - axy * axy
-        x, y = x + (ayy * gx - axy * gy) / det, y + (axx * gy - axy * gx) / det
+        step_x, step_y = (ayy * gx - axy * gy) / det, (axx * gy - axy * gx) / det
+        x, y = x + step_x, y + step_y
+        if max(np.abs(step_x).max(), np.abs(step_y).max()) < NEXT_TO_NONE:
+            break
     point, normal = surface_point(pads, index, x, y)
     return x, y, np.einsum("ni,ni->n", ball - point, normal)
