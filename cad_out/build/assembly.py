@@ -1,19 +1,31 @@
 """The standard as products: its body, every ball, every size of screw, and where each stands."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from OCP.BRep import BRep_Builder
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
 from OCP.gp import gp_Ax2, gp_Dir
 from OCP.ShapeCustom import ShapeCustom
+from OCP.TopoDS import TopoDS_Shell
 
 from artefact.body import DatumSphere, Material, Standard
 from cad_out.build.faces import faces_of, solids_of, volume
 from cad_out.build.primitives import boolean, cone, point
 from cad_out.build.solid import Solid, build_solid
-from cad_out.details import BALL, SCREW, Details, Screw, Tolerance, notes_of, tolerances_of
+from cad_out.details import (
+    BALL,
+    SCREW,
+    Details,
+    Screw,
+    Tolerance,
+    annotations_of,
+    notes_of,
+    tolerances_of,
+)
+from twin.frames import Array
 
 COLOURS = {
     "FF": (0.13, 0.40, 0.75),
@@ -36,26 +48,28 @@ class Product:
     Attributes:
         name: Of the part.
         about: What it is.
-        shape: Its solid.
+        shape: Its solid, or a shell of one face.
         faces: Named faces of it.
-        material: What it is made of.
+        material: What it is made of; none of a face by itself.
         colour: Of its nameless faces.
         places: Name and place of every instance, mm; the body and the balls stand where they are.
         tolerances: Of its named faces.
         notes: General ones.
         diameter: Of a ball, mm.
+        drawn: Signs of the tolerances, datums and sizes, polylines (N, 3) in mm by their names.
     """
 
     name: str
     about: str
     shape: Any
     faces: dict[str, Any]
-    material: Material
+    material: Material | None
     colour: tuple[float, float, float]
     places: tuple[tuple[str, tuple[float, float, float]], ...]
     tolerances: tuple[Tolerance, ...] = ()
     notes: tuple[str, ...] = ()
     diameter: float | None = None
+    drawn: dict[str, list[Array]] = field(default_factory=dict)
 
     @cached_property
     def volume(self) -> float:
@@ -63,9 +77,14 @@ class Product:
         return volume(self.shape)
 
 
-def body_name(standard: Standard) -> str:
-    """Of the body as a product."""
-    return f"{standard.name} {standard.serial}".strip() + " BODY"
+def colour_of(face: str) -> tuple[float, float, float] | None:
+    """Of a face by its role, if it has one."""
+    return next((c for start, c in COLOURS.items() if face.startswith(start)), None)
+
+
+def whole_name(standard: Standard) -> str:
+    """Name and serial number."""
+    return f"{standard.name} {standard.serial}".strip()
 
 
 def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Product, ...]]:
@@ -75,10 +94,10 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
     size are one part that is there several times.
     """
     solid = build_solid(standard, details)
-    here = (0.0, 0.0, 0.0)
+    here, drawn = (0.0, 0.0, 0.0), annotations_of(standard, details)
     found = [
         Product(
-            name=body_name(standard),
+            name=f"{whole_name(standard)} BODY",
             about="Body, made to drawing",
             shape=solid.shape,
             faces=solid.faces,
@@ -87,6 +106,7 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
             places=(("BODY", here),),
             tolerances=tolerances_of(standard, details),
             notes=notes_of(standard, details),
+            drawn=drawn,
         )
     ]
     for sphere in standard.spheres:
@@ -100,6 +120,7 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
             colour=COLOURS["SPH"],
             places=((sphere.name, here),),
             diameter=2.0 * sphere.radius,
+            drawn=drawn,
         )
         found.append(made)
     for kind in details.screws:
@@ -114,6 +135,26 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
         )
         found.append(made)
     return solid, tuple(found)
+
+
+def face_products(solid: Solid) -> tuple[Product, ...]:
+    """Every named face of the body as a part, for programs that show names of parts alone."""
+    found = []
+    for name, face in solid.plain_faces.items():
+        shell, builder = TopoDS_Shell(), BRep_Builder()
+        builder.MakeShell(shell)
+        builder.Add(shell, face)
+        made = Product(
+            name=name,
+            about="Face of the body, by itself",
+            shape=shell,
+            faces={name: face},
+            material=None,
+            colour=colour_of(name) or _BODY,
+            places=((name, (0.0, 0.0, 0.0)),),
+        )
+        found.append(made)
+    return tuple(found)
 
 
 def ball(sphere: DatumSphere) -> tuple[Any, dict[str, Any]]:

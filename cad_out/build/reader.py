@@ -35,7 +35,7 @@ from cad_out.build.faces import (
     solids_of,
     volume,
 )
-from cad_out.build.pmi import notes_of_label, read_tolerances
+from cad_out.build.pmi import notes_of_label, read_signs, read_tolerances
 from cad_out.build.xcaf import name_of, new_document, settings
 from cad_out.details import Tolerance
 from cad_out.triangles import (
@@ -78,6 +78,7 @@ class Reread:
         names: Of faces.
         tolerances: Geometrical tolerances with their datums.
         notes: General notes of all parts.
+        signs: Of what is drawn, the length of its lines and their centre of mass, mm.
     """
 
     solids: int
@@ -91,6 +92,7 @@ class Reread:
     names: tuple[str, ...]
     tolerances: tuple[Tolerance, ...]
     notes: tuple[str, ...]
+    signs: dict[str, tuple[float, float, float, float]]
 
 
 def read_step(path: Path) -> Reread:
@@ -129,6 +131,7 @@ def read_step(path: Path) -> Reread:
         names=tuple(sorted(names)),
         tolerances=tuple(read_tolerances(document)),
         notes=tuple(notes),
+        signs=read_signs(document),
     )
 
 

@@ -5,6 +5,7 @@ holes, thermometer pocket, lettering. The kernel builds them, the drawing shows 
 makeability measures them.
 """
 
+from cad_out.details.annotations import annotations_of
 from cad_out.details.detail_list import Details, details_of
 from cad_out.details.dot_font import CUTTER, DEPTH, DOT
 from cad_out.details.lettering import Lettering
@@ -39,6 +40,7 @@ __all__ = [
     "Seat",
     "Side",
     "Tolerance",
+    "annotations_of",
     "datum_touches",
     "details_of",
     "glue_gap",

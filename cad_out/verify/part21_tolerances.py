@@ -1,8 +1,11 @@
-"""Geometrical tolerances, sizes and notes of a STEP file, read from its text alone."""
+"""Geometrical tolerances, notes and drawn signs of a STEP file, read from its text alone."""
 
 import re
 
+import numpy as np
+
 from cad_out.details import Tolerance
+from twin.frames import Array
 
 _KINDS = {
     "FLATNESS": "flatness",
@@ -56,3 +59,34 @@ def read_notes(entities: dict[int, str]) -> list[str]:
         if match is not None:
             notes[int(match[1])] = match[2]
     return [notes[number] for number in sorted(notes)]
+
+
+def read_signs(entities: dict[int, str]) -> dict[str, list[Array]]:
+    """What is drawn for tolerances, datums and sizes: polylines (N, 3), mm, by name.
+
+    Only signs that belong to a statement and to a drawing with a context are found.
+    """
+    drawings = set()
+    for key, entity in entities.items():
+        if entity.startswith("DRAUGHTING_MODEL(") and entity.split("),")[-1].startswith("#"):
+            drawings.add(key)
+    found = {}
+    for entity in entities.values():
+        if not entity.startswith("DRAUGHTING_MODEL_ITEM_ASSOCIATION("):
+            continue
+        said, drawing, callout = (int(r) for r in _REFERENCE.findall(entity))
+        if said not in entities or drawing not in drawings:
+            continue
+        name = entities[callout].split("'")[1]
+        at = callout
+        while not entities[at].startswith("TESSELLATED_CURVE_SET("):
+            at = int(_REFERENCE.findall(entities[at])[-1])
+        points, curves = entities[at].split(",", 2)[1:]
+        listed = entities[int(points.lstrip("#"))].split(",", 2)[2]
+        numbers = np.array(re.findall(r"-?\d+\.\d*(?:E[+-]?\d+)?", listed), dtype=float)
+        corners = numbers.reshape(-1, 3)
+        found[name] = [
+            corners[np.array(curve.split(","), dtype=int) - 1]
+            for curve in re.findall(r"\(([\d,]+)\)", curves)
+        ]
+    return found

@@ -2,6 +2,7 @@
 
 import zipfile
 from dataclasses import replace
+from itertools import pairwise
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,8 +16,9 @@ from cad_out.details.places import plan_room
 from cad_out.details.seats import glue_gap, seat_of
 from cad_out.details.tolerances import Tolerance, notes_of
 from cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
-from cad_out.verify.part21 import read_entities, read_instances
-from cad_out.verify.part21_tolerances import read_notes, read_tolerances
+from cad_out.verify.part21 import read_entities, read_faces, read_instances
+from cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances
+from cad_out.verify.untold import untold
 from twin.errors import NotBuildable
 from twin.frames import apply, pose
 
@@ -165,3 +167,73 @@ def test_tolerances_datums_and_notes_are_in_the_text(upright, built):
     # a letter exchanged is a tolerance lost
     other = {k: e.replace(",'C')", ",'D')") if "DATUM(" in e else e for k, e in entities.items()}
     assert Tolerance("FF2", "profile", 0.05, "ABC") not in read_tolerances(other)
+
+
+def test_signs_are_drawn_in_planes_beside_the_plate_and_point_at_their_faces(upright, built):
+    """From the file's text: where leaders end by hand, room between frames, ink in one plane."""
+    entities = read_entities(built[0] / "standard.step")
+    signs = read_signs(entities)
+    said = {f"{t.face} {t.kind}" for t in read_tolerances(entities)}
+    balls = {f"{sphere.name} diameter" for sphere in upright.spheres}
+    assert set(signs) == said | balls | {"datum A", "datum B", "datum C"}
+    ends = {name: sign[1][-1] for name, sign in signs.items()}
+    (patch, *_), (ball, *_), base = upright.patches, upright.spheres, upright.base
+    off = ends["FF1 profile"] - patch.T_artefact_patch[:3, 3]
+    height = patch.height(off[None, :2])[0]  # an upright patch: its own x and y are the body's
+    assert off[2] == pytest.approx(height, abs=1e-6)
+    assert np.linalg.norm(ends["SPH1 diameter"] - ball.centre) == pytest.approx(ball.radius)
+    assert np.linalg.norm(ends["SPH1_SEAT position"] - ball.centre) == pytest.approx(ball.radius)
+    assert ends["datum A"][2] == ends["DATUM_A flatness"][2] == base.thickness
+    assert ends["datum B"][1] == ends["DATUM_B perpendicularity"][1] == -base.half_size[1]
+    assert ends["datum C"][0] == -base.half_size[0]
+    assert ends["SEAT1 parallelism"][2] == 0.0
+    frames = []
+    for sign in signs.values():
+        assert np.ptp(np.concatenate(sign)[:, 2]) == 0.0
+        low, high = sign[0].min(axis=0)[:2], sign[0].max(axis=0)[:2]
+        assert np.abs([low[0], high[0]]).min() > base.half_size[0] + 20.0
+        frames.append((low, np.maximum(high, low + 10.0)))
+    for k, (low, high) in enumerate(frames):
+        assert all((np.maximum(low - b, a - high) > 2.0).any() for a, b in frames[:k])
+
+
+def test_a_sign_that_is_lost_is_told(upright, built):
+    entities = read_entities(built[0] / "standard.step")
+    details = details_of(upright)
+    kernel = {name: _length_and_middle(s) for name, s in read_signs(entities).items()}
+    found = {
+        "tolerances": [tuple(t) for t in read_tolerances(entities)],
+        "notes": read_notes(entities),
+        "signs": kernel,
+    }
+    assert untold(upright, details, entities, found) == ()
+    kernel["FF1 profile"] = [1.0, 0.0, 0.0, 0.0]
+    without = "DRAUGHTING_CALLOUT('datum A'"
+    entities = {k: e.replace(without, "DRAUGHTING_CALLOUT(''") for k, e in entities.items()}
+    assert set(untold(upright, details, entities, found)) == {
+        "sign of FF1 profile",
+        "sign of datum A",
+    }
+
+
+def _length_and_middle(strokes):
+    """By loops over the pieces of every line."""
+    length, middle = 0.0, np.zeros(3)
+    for stroke in strokes:
+        for begin, end in pairwise(stroke):
+            length += np.linalg.norm(end - begin)
+            middle = middle + np.linalg.norm(end - begin) * 0.5 * (begin + end)
+    return [length, *middle / length]
+
+
+def test_every_face_of_the_body_is_a_part_in_a_file_of_its_own(upright, built):
+    """What programs without names of faces show; the same surface as in the whole standard."""
+    entities = read_entities(built[0] / "standard-faces.step")
+    parts, body = read_instances(entities), set(built[1].names) - {s.name for s in upright.spheres}
+    assert set(parts) == {part.product for part in parts.values()} == body
+    assert not any("MANIFOLD_SOLID_BREP(" in entity for entity in entities.values())
+    alone = read_faces(built[0] / "standard-faces.step", entities)
+    whole = read_faces(built[0] / "standard.step")
+    assert set(alone) == body
+    for patch in upright.patches:
+        assert np.array_equal(alone[patch.name].poles, whole[patch.name].poles)
