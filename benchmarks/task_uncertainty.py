@@ -1,6 +1,7 @@
 """What the stated uncertainty of a measuring task covers: new places of workpieces, new machines.
 
     python benchmarks/task_uncertainty.py OUT PROJECT.toml [--machines N] [--visits N] [--first N]
+        [--store FOLDER]
 
 OUT is a folder that `matstd design` made of the project. The emitted programs probe every machine
 on the exact twin in several visits, the standard clamped anew and with calibration errors, the
@@ -8,10 +9,14 @@ model is identified from the balls of the first, and U is evaluated from the fac
 are measured on the same machine that have nothing of the standard but its datum balls: points
 anywhere in the box of the faces, normals of the slopes of its touches in any azimuth, table poses
 between those probed. Wanted: 93 to 97 % of the results, corrected by b, within U of the truth.
+
+A machine takes 8 s of processor. With `--store` what it measured is kept and read by later calls:
+many machines can be done in pieces, and U is computed of all of them with the code that is there.
 """
 
 import argparse
-from dataclasses import replace
+import hashlib
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +26,8 @@ from artefact.brief import Project, Task, read_project
 from artefact.certify import like_task, misplaced, on_faces
 from artefact.worth import Calibration
 from diagnosis.fit import Prior, fit_run
-from matstd.stages.budgets import CLAMPED, PLAIN, budgets
+from diagnosis.task import Visits, task_uncertainty
+from matstd.stages.budgets import CLAMPED, PLAIN, places_of
 from matstd.stages.design import _twin
 from probe_paths.campaign import check_moves, visits
 from probe_paths.control import ReadProgram, read_program
@@ -34,6 +40,16 @@ from twin.record import Run, Touches
 
 RESULTS = 400  # on workpieces, a machine
 LEARNT = "with the identified model"
+NAMES = (PLAIN, LEARNT)
+_KEYS = ("deviation", "face", "pose", "region", "shared")
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Visits to one machine, and its errors on workpieces in mm, placed and corrected alike."""
+
+    visits: Visits
+    wrong: Array
 
 
 def workpieces(run: Run, standard: Standard, rng: np.random.Generator) -> Touches:
@@ -103,8 +119,8 @@ def machine(
     programs: tuple[ReadProgram, ...],
     number: int,
     rng: np.random.Generator,
-) -> dict[str, tuple[float, float, float, float]]:
-    """Coverage corrected and not, U and rms error, by what corrects the results."""
+) -> dict[str, Measured]:
+    """What one machine's visits found, and its errors on workpieces, by what corrects results."""
     truth = drawn_errors(project.population, rng)
     true, twin = misplaced(standard, known, rng), _twin(project, truth)
     stands = [
@@ -119,18 +135,48 @@ def machine(
         PLAIN: None,
         LEARNT: (fit.model, Prior(fit.theta[:count], np.zeros((count, count)))),
     }
-    found, _ = budgets(runs, standard, known, Task(), models)
+    found = places_of(runs, standard, known, Task(), models)
     pieces = workpieces(runs[0], standard, rng)
     wrong = errors_of(truth, runs[0], pieces, standard, models, project.noise, rng)
-    return {
-        name: (
-            float(np.mean(np.abs(wrong[name] - one.bias) <= one.U)),
-            float(np.mean(np.abs(wrong[name]) <= one.U_uncorrected)),
-            one.U / 1e-3,
-            float(np.sqrt(np.mean(wrong[name] ** 2))) / 1e-3,
-        )
-        for name, one in found.items()
-    }
+    return {name: Measured(seen, wrong[name]) for name, seen in found.items()}
+
+
+def stored(path: Path, of: str) -> dict[str, Measured]:
+    """What an earlier call measured on a machine."""
+    with np.load(path) as table:
+        if str(table["of"]) != of:
+            raise SystemExit(f"{path}: of another standard, project or number of visits")
+        return {
+            name: Measured(
+                Visits(*(table[f"{name} {key}"] for key in _KEYS)), table[f"{name} wrong"]
+            )
+            for name in NAMES
+        }
+
+
+def store(path: Path, of: str, found: dict[str, Measured]) -> None:
+    """Keep what was measured; whole or not at all."""
+    table = {"of": np.array(of)}
+    for name, one in found.items():
+        table |= {f"{name} {key}": np.asarray(getattr(one.visits, key)) for key in _KEYS}
+        table[f"{name} wrong"] = one.wrong
+    beside = path.with_suffix(".part")
+    with beside.open("wb") as file:
+        np.savez_compressed(file, **table)
+    beside.replace(path)
+
+
+def covered(one: Measured) -> Array:
+    """Coverage corrected by b and not, U and rms error in µm."""
+    found = task_uncertainty(one.visits)
+    return np.array(
+        [
+            np.mean(np.abs(one.wrong - found.bias) <= found.U),
+            np.mean(np.abs(one.wrong) <= found.U_uncorrected),
+            found.U / 1e-3,
+            np.sqrt(np.mean(one.wrong**2)) / 1e-3,
+        ]
+    )
 
 
 def main() -> None:
@@ -141,26 +187,53 @@ def main() -> None:
     parser.add_argument("--machines", type=int, default=200)
     parser.add_argument("--visits", type=int, default=10)
     parser.add_argument("--first", type=int, default=0, help="number of the first machine")
+    parser.add_argument(
+        "--store", type=Path, help="folder for what every machine measured; it is done once"
+    )
     args = parser.parse_args()
     project = read_project(args.project)
     standard = read_standard(args.out / "standard.toml")
     paths = sorted((args.out / "programs").glob("*_[0-9]*.H"))
-    programs = tuple(read_program(path, project.chain) for path in paths)
-    for program in programs:  # once for all machines
-        check_moves(program, standard, project.chain)
-    rows = []
+    texts = [p.read_bytes() for p in (args.project, args.out / "standard.toml", *paths)]
+    of = hashlib.sha256(b"".join([*texts, str(args.visits).encode()])).hexdigest()
+    programs: tuple[ReadProgram, ...] = ()
+    rows: dict[str, list[Array]] = {name: [] for name in NAMES}
     for k in range(args.first, args.first + args.machines):
-        rng = np.random.default_rng([project.seed, k])
-        rows.append(machine(project, standard, Calibration(), programs, args.visits, rng))
-        for name, row in rows[-1].items():
-            print(f"{k} {name}: " + " ".join(f"{x:.3f}" for x in row), flush=True)
-    for name in rows[0]:
-        cover, plain, U, wrong = np.array([row[name] for row in rows]).T
-        print(
-            f"{name}: {len(rows)} machines, U {np.median(U):.2f} µm (median), errors "
-            f"{np.sqrt(np.mean(wrong**2)):.2f} µm rms; within U {100 * cover.mean():.1f} % "
-            f"(corrected by b), {100 * plain.mean():.1f} % (not corrected)"
-        )
+        file = args.store / f"machine-{k:04d}.npz" if args.store else None
+        if file and file.exists():
+            found = stored(file, of)
+        else:
+            programs = programs or checked(paths, standard, project)
+            rng = np.random.default_rng([project.seed, k])
+            found = machine(project, standard, Calibration(), programs, args.visits, rng)
+            if file:
+                file.parent.mkdir(parents=True, exist_ok=True)
+                store(file, of, found)
+        for name, one in found.items():
+            rows[name].append(covered(one))
+            print(f"{k} {name}: " + " ".join(f"{x:.3f}" for x in rows[name][-1]), flush=True)
+    for name, table in rows.items():
+        print(f"{name}: {summary(np.array(table))}")
+
+
+def checked(paths: list[Path], standard: Standard, project: Project) -> tuple[ReadProgram, ...]:
+    """The programs, read and checked once for all machines."""
+    programs = tuple(read_program(path, project.chain) for path in paths)
+    for program in programs:
+        check_moves(program, standard, project.chain)
+    return programs
+
+
+def summary(table: Array) -> str:
+    """Coverage of all machines together, with its standard uncertainty from their spread."""
+    cover, plain, U, wrong = table.T
+    u = np.std(table[:, :2], axis=0, ddof=1) / np.sqrt(len(table)) if len(table) > 1 else [1.0, 1.0]
+    return (
+        f"{len(table)} machines, U {np.median(U):.2f} µm (median), errors "
+        f"{np.sqrt(np.mean(wrong**2)):.2f} µm rms; within U {100 * cover.mean():.1f} "
+        f"± {100 * u[0]:.1f} % (corrected by b), {100 * plain.mean():.1f} ± {100 * u[1]:.1f} % "
+        "(not corrected)"
+    )
 
 
 if __name__ == "__main__":

@@ -44,6 +44,12 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
                 f"{', '.join(chain.rotary_axes) or 'none'}"
             )
     face = on_faces(standard, touches)
+    if not face.any():
+        raise DesignError(
+            f"no touch on a freeform face of standard '{standard.name}', which has "
+            f"{', '.join(patch.name for patch in standard.patches) or 'none'}: nothing is known of "
+            f"task '{task.name}'"
+        )
     asked = [
         ("slope_deg", DEG, np.arccos(np.clip(touches.normal[:, 2], -1.0, 1.0)), task.slope),
         ("curvature_1_m", 1e-3, curvature(standard, touches), task.curvature),
@@ -56,15 +62,13 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
         met = (values >= low - _EDGE) & (values <= high + _EDGE)
         like &= met
         there = values[face] / unit
-        if len(there):
-            told.append(
-                f"{key} {int((met & face).sum())} (they have {there.min():.3g} to "
-                f"{there.max():.3g})"
-            )
+        told.append(
+            f"{key} {int((met & face).sum())} (they have {there.min():.3g} to {there.max():.3g})"
+        )
     if not like.any():
         raise DesignError(
             f"task '{task.name}': none of {int(face.sum())} touches on freeform faces is like it; "
-            f"within its ranges are: {', '.join(told) or 'none'}"
+            f"within its ranges are: {', '.join(told)}"
         )
     return like
 

@@ -35,6 +35,7 @@ class Visits:
             features, (n, J), mm.
         face: Feature of every place, (J,).
         pose: Table pose of every place, (J,).
+        region: Of the machine, by the half of its range that every linear axis is in there, (J,).
         shared: Deviation per standard uncertainty of everything that the calibration leaves
             unknown, the datum features included, (J, Q), mm.
         lost: Places that not every visit has.
@@ -44,6 +45,7 @@ class Visits:
     deviation: Array
     face: Labels
     pose: np.ndarray
+    region: np.ndarray
     shared: Array
     lost: int = 0
     gross: int = 0
@@ -101,6 +103,7 @@ def visits_of(
         deviation=deviation[:, kept],
         face=first.feature[mine],
         pose=first.pose[mine],
+        region=_region(first[mine]),
         shared=_placed_columns(runs[0], is_datum[0], calibration)[mine],
         lost=int((~there).sum()),
         gross=int(far.sum()),
@@ -133,6 +136,13 @@ def _placed_columns(run: Run, is_datum: BoolArray, calibration: Array) -> Array:
     S = columns(setup_errors(run.touches), run.touches)
     placed = np.linalg.lstsq(S[is_datum], calibration[is_datum], rcond=1e-9)[0]
     return np.asarray(calibration - S @ placed)
+
+
+def _region(touches: Touches) -> np.ndarray:
+    """Number of the part of the machine where a touch is, one of eight for three linear axes."""
+    linear = [touches.chain.axis_index(name) for name in touches.chain.linear_axes]
+    q = touches.q[:, linear]
+    return np.asarray((q > 0.5 * (q.min(axis=0) + q.max(axis=0))) @ 2 ** np.arange(len(linear)))
 
 
 def _apart(touches: Touches, rows: np.ndarray) -> np.ndarray:

@@ -37,6 +37,22 @@ def budgets(
 ) -> tuple[dict[str, TaskUncertainty], Visits]:
     """Budgets of a task without and with models, and the visits that the last rests upon.
 
+    Arguments and errors as of `places_of`.
+    """
+    seen = places_of(runs, standard, known, task, models)
+    found = {name: task_uncertainty(one, task.u_w) for name, one in seen.items()}
+    return found, list(seen.values())[-1]
+
+
+def places_of(
+    runs: Sequence[Run],
+    standard: Standard,
+    known: Calibration,
+    task: Task,
+    models: Mapping[str, tuple[Model, Prior] | None],
+) -> dict[str, Visits]:
+    """What several visits found at the places of a task, without and with models.
+
     Args:
         runs: Visits to one standard.
         standard: As calibrated.
@@ -62,9 +78,8 @@ def budgets(
     out = {}
     for name, model in models.items():
         what, estimates = (None, None) if model is None else model
-        seen = visits_of(runs, wanted, [~f for f in faces], columns, what, estimates)
-        out[name] = task_uncertainty(seen, task.u_w)
-    return out, seen
+        out[name] = visits_of(runs, wanted, [~f for f in faces], columns, what, estimates)
+    return out
 
 
 def virtual_budgets(

@@ -1,6 +1,12 @@
 """Calibration of a standard and uncertainty of a task, in words and rows of tables."""
 
 from report.task.calibration_words import calibration_lines
-from report.task.task_words import budget_rows, decision_sentence, task_lines
+from report.task.task_words import budget_rows, decision_sentence, measured_sentence, task_lines
 
-__all__ = ["budget_rows", "calibration_lines", "decision_sentence", "task_lines"]
+__all__ = [
+    "budget_rows",
+    "calibration_lines",
+    "decision_sentence",
+    "measured_sentence",
+    "task_lines",
+]

@@ -10,6 +10,9 @@ from twin.units import UM
 FEW_VISITS = 10
 """Cycles that ISO 15530-3 asks for at least."""
 
+FEW_DOF = 5.0
+"""Degrees of freedom below which U owes a quarter of its size to what is not known of it."""
+
 
 def task_lines(
     budgets: Mapping[str, TaskUncertainty], tolerance: float | None, visits: Visits
@@ -25,6 +28,19 @@ def task_lines(
     if tolerance is not None:
         lines += [decision_sentence(name, one, tolerance) for name, one in budgets.items()]
     one = next(iter(budgets.values()))
+    if one.faces == 1:
+        lines.append(
+            "one face: U holds for workpieces where it stood; how the machine's errors differ "
+            "elsewhere is not in it"
+        )
+    if one.poses == 1:
+        lines.append("one table pose: U holds at it; what turning the table changes is not in it")
+    if (few := min(budgets.values(), key=lambda b: b.dof)).dof < FEW_DOF:
+        lines.append(
+            f"k is as large as {digits(few.k)}: {_count(one.faces, 'face')}, "
+            f"{_count(one.poses, 'table pose')} and {one.visits} visits hardly tell how far errors "
+            "differ; more of them make U smaller"
+        )
     if one.visits < FEW_VISITS:
         lines.append(
             f"{one.visits} visits; ISO 15530-3 asks for {FEW_VISITS} or more on different days, "
@@ -82,6 +98,18 @@ def budget_rows(budgets: Mapping[str, TaskUncertainty]) -> list[dict[str, Any]]:
         }
         for name, one in budgets.items()
     ]
+
+
+def measured_sentence(one: TaskUncertainty) -> str:
+    """How much a budget rests upon."""
+    return (
+        f"{one.places} places on {_count(one.faces, 'face')} at {_count(one.poses, 'table pose')} "
+        f"in {one.visits} visits"
+    )
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 def _um(value: float) -> str:

@@ -89,6 +89,9 @@ def test_the_high_face_is_told(place: Path, capsys: pytest.CaptureFixture[str]) 
     said = capsys.readouterr().out
     assert "ISO 15530-3 asks for 10" in said
     assert "u_w is 0" in said
+    assert "2 faces, 5 table poses and 3 visits hardly tell how far errors differ" in said
+    assert found["k"] > 5.0  # as good as one number tells of two faces
+    assert found["U_um"] == pytest.approx(found["k"] * found["u_um"], rel=1e-3)
 
 
 def test_a_page_tells_the_same(place: Path) -> None:
@@ -169,6 +172,25 @@ def test_too_little_and_the_same_twice(place: Path, capsys: pytest.CaptureFixtur
     assert code == 2
     assert "every visit once" in capsys.readouterr().err
     assert not (place / "u2.json").exists()
+
+
+def test_where_hardly_anything_was_touched(
+    place: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    files = []
+    for k, keep in enumerate(("FF1", "FF1", "none")):
+        text = (place / f"v{k}.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+        file = tmp_path / f"v{k}.csv"
+        kept = [line for line in text if "FF" not in line or keep in line]
+        file.write_text("".join(kept).replace("machine.toml", str(place / "machine.toml")))
+        files.append(str(file))
+    more = ["--standard", str(place / "standard.toml"), "-o", str(tmp_path / "u.json")]
+    assert main(["uncertainty", *files[:2], *more]) == 0
+    said = capsys.readouterr().out
+    assert "10 places on 1 face at 5 table poses in 2 visits" in said
+    assert "one face: U holds for workpieces where it stood" in said
+    assert main(["uncertainty", files[2], files[0], *more, "--force"]) == 2
+    assert "no touch on a freeform face of standard" in capsys.readouterr().err
 
 
 def test_a_run_of_another_standard(place: Path) -> None:

@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.inputs import is_learnt_from
     from matstd.stages.budgets import PLAIN, budgets
     from report.pages import write_uncertainty_page
-    from report.task import task_lines
+    from report.task import measured_sentence, task_lines
     from twin.files import read_run, refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
@@ -72,11 +72,7 @@ def run(args: argparse.Namespace) -> int:
         ]
     found, visits = budgets(runs, standard, Calibration(), task, models)
     write_uncertainty(args.output, task.name, found, task.tolerance)
-    first = next(iter(found.values()))
-    measured = (
-        f"{first.places} places on {first.faces} faces at {first.poses} table poses in "
-        f"{first.visits} visits"
-    )
+    measured = measured_sentence(next(iter(found.values())))
     lines = task_lines(found, task.tolerance, visits)
     if args.page:
         names = [(path, len(one)) for path, one in zip(args.run_files, runs, strict=True)]
