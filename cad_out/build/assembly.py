@@ -4,10 +4,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from OCP.BRep import BRep_Builder
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
 from OCP.gp import gp_Ax2, gp_Dir
 from OCP.ShapeCustom import ShapeCustom
+from OCP.TopoDS import TopoDS_Shell
 
 from artefact.body import DatumSphere, Material, Standard
 from cad_out.build.faces import faces_of, solids_of, volume
@@ -46,9 +48,9 @@ class Product:
     Attributes:
         name: Of the part.
         about: What it is.
-        shape: Its solid.
+        shape: Its solid, or a shell of one face.
         faces: Named faces of it.
-        material: What it is made of.
+        material: What it is made of; none of a face by itself.
         colour: Of its nameless faces.
         places: Name and place of every instance, mm; the body and the balls stand where they are.
         tolerances: Of its named faces.
@@ -61,7 +63,7 @@ class Product:
     about: str
     shape: Any
     faces: dict[str, Any]
-    material: Material
+    material: Material | None
     colour: tuple[float, float, float]
     places: tuple[tuple[str, tuple[float, float, float]], ...]
     tolerances: tuple[Tolerance, ...] = ()
@@ -75,9 +77,14 @@ class Product:
         return volume(self.shape)
 
 
-def body_name(standard: Standard) -> str:
-    """Of the body as a product."""
-    return f"{standard.name} {standard.serial}".strip() + " BODY"
+def colour_of(face: str) -> tuple[float, float, float] | None:
+    """Of a face by its role, if it has one."""
+    return next((c for start, c in COLOURS.items() if face.startswith(start)), None)
+
+
+def whole_name(standard: Standard) -> str:
+    """Name and serial number."""
+    return f"{standard.name} {standard.serial}".strip()
 
 
 def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Product, ...]]:
@@ -90,7 +97,7 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
     here, drawn = (0.0, 0.0, 0.0), annotations_of(standard, details)
     found = [
         Product(
-            name=body_name(standard),
+            name=f"{whole_name(standard)} BODY",
             about="Body, made to drawing",
             shape=solid.shape,
             faces=solid.faces,
@@ -128,6 +135,26 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
         )
         found.append(made)
     return solid, tuple(found)
+
+
+def face_products(solid: Solid) -> tuple[Product, ...]:
+    """Every named face of the body as a part, for programs that show names of parts alone."""
+    found = []
+    for name, face in solid.plain_faces.items():
+        shell, builder = TopoDS_Shell(), BRep_Builder()
+        builder.MakeShell(shell)
+        builder.Add(shell, face)
+        made = Product(
+            name=name,
+            about="Face of the body, by itself",
+            shape=shell,
+            faces={name: face},
+            material=None,
+            colour=colour_of(name) or _BODY,
+            places=((name, (0.0, 0.0, 0.0)),),
+        )
+        found.append(made)
+    return tuple(found)
 
 
 def ball(sphere: DatumSphere) -> tuple[Any, dict[str, Any]]:

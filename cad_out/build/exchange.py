@@ -16,8 +16,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool, XCAFDoc_Volume
 from OCP.XSControl import XSControl_WorkSession
 
-from artefact.body import Standard
-from cad_out.build.assembly import COLOURS, Product
+from cad_out.build.assembly import Product, colour_of
 from cad_out.build.pmi import add_diameter, add_notes, add_tolerances, settle_drawing
 from cad_out.build.settled import (
     with_descriptions,
@@ -58,13 +57,13 @@ class Origin:
     organisation: str
 
 
-def write_step(path: Path, products: Sequence[Product], standard: Standard, origin: Origin) -> None:
+def write_step(path: Path, products: Sequence[Product], name: str, origin: Origin) -> None:
     """Write AP242 in millimetres: an assembly, named and coloured faces, materials, volumes.
 
     Args:
         path: The file; written in one go by the kernel, so give a neighbour name.
         products: Of the assembly.
-        standard: For its name.
+        name: Of the whole.
         origin: For the header.
 
     Raises:
@@ -72,9 +71,9 @@ def write_step(path: Path, products: Sequence[Product], standard: Standard, orig
     """
     XCAFDoc_ShapeTool.SetAutoNaming_s(False)
     document = new_document()
-    _fill(document, products, part_name(standard))
+    _fill(document, products, name)
     settings(_SETTINGS)
-    if not Interface_Static.SetCVal_s("write.step.product.name", part_name(standard)):
+    if not Interface_Static.SetCVal_s("write.step.product.name", name):
         raise NotBuildable("the CAD kernel does not know its setting write.step.product.name")
     writer = STEPCAFControl_Writer(XSControl_WorkSession(), False)
     writer.SetColorMode(True)
@@ -84,16 +83,14 @@ def write_step(path: Path, products: Sequence[Product], standard: Standard, orig
     writer.SetDimTolMode(True)
     writer.SetMetadataMode(True)
     if not writer.Transfer(document):
-        raise NotBuildable(
-            f"standard '{standard.name}': the CAD kernel cannot translate it to STEP"
-        )
+        raise NotBuildable(f"'{name}': the CAD kernel cannot translate it to STEP")
     settle_drawing(writer.ChangeWriter().Model())
-    _write_header(writer.ChangeWriter().Model(), standard, origin)
+    _write_header(writer.ChangeWriter().Model(), name, origin)
     if writer.Write(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise NotBuildable(f"{path}: the CAD kernel cannot write the STEP file")
     whole = path.read_text(encoding="utf-8").replace(_WHITE, _BLACK)
     whole = with_descriptions(whole, products)
-    materials = {product.material for product in products}  # the kernel writes each once
+    materials = {p.material for p in products} - {None}  # the kernel writes each once
     whole = with_units_of_density(without_runout_zones(whole), len(materials))
     path.write_text(with_settled_order(whole), encoding="utf-8")
 
@@ -124,20 +121,21 @@ def _part(document: Any, shapes: Any, product: Product) -> Any:
     for name, face in product.faces.items():
         sub = faces[name] = shapes.AddSubShape(label, face)
         set_name(sub, name)
-        role = next((c for start, c in COLOURS.items() if name.startswith(start)), None)
+        role = colour_of(name)
         if role is not None:
             colours.SetColor(sub, _colour(role), surface)
-    # The kernel wants g/cm^3, whatever the length unit of the document.
     material = product.material
-    materials.SetMaterial(
-        label,
-        text(material.name),
-        text(f"thermal expansion {material.expansion:.6g} 1/K"),
-        material.density * 1e6,
-        text("density"),
-        text("POSITIVE_RATIO_MEASURE"),
-    )
-    XCAFDoc_Volume.Set_s(label, product.volume)
+    if material is not None:
+        # The kernel wants g/cm^3, whatever the length unit of the document.
+        materials.SetMaterial(
+            label,
+            text(material.name),
+            text(f"thermal expansion {material.expansion:.6g} 1/K"),
+            material.density * 1e6,
+            text("density"),
+            text("POSITIVE_RATIO_MEASURE"),
+        )
+        XCAFDoc_Volume.Set_s(label, product.volume)
     add_tolerances(document, faces, product.tolerances, product.drawn)
     if product.diameter is not None:
         sign = f"{product.name} diameter"
@@ -147,14 +145,9 @@ def _part(document: Any, shapes: Any, product: Product) -> Any:
     return label
 
 
-def part_name(standard: Standard) -> str:
-    """Name and serial number."""
-    return f"{standard.name} {standard.serial}".strip()
-
-
-def _write_header(model: Any, standard: Standard, origin: Origin) -> None:
+def _write_header(model: Any, name: str, origin: Origin) -> None:
     header = APIHeaderSection_MakeHeader(model)
-    header.SetName(text(part_name(standard)))
+    header.SetName(text(name))
     header.SetTimeStamp(text(TIME_STAMP))
     header.SetAuthorValue(1, text(in_ascii(origin.author)))
     header.SetOrganizationValue(1, text(in_ascii(origin.organisation)))

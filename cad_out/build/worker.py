@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from cad_out.build.solid import Solid
 
 STANDARD, STEP, MESH, FACTS = "standard.toml", "standard.step", "mesh.npz", "facts.json"
+FACES = "standard-faces.step"
 SCENES = ("standard.3mf", "standard.glb")
 """Names of the files through which the two processes speak."""
 
@@ -47,14 +48,16 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
         author: For the header of the STEP file.
         organisation: The same.
     """
-    from cad_out.build.assembly import products_of
+    from cad_out.build.assembly import face_products, products_of, whole_name
     from cad_out.build.exchange import Origin, write_step
 
     place = Path(folder)
     standard = read_standard(place / STANDARD)
     solid, products = products_of(standard, details_of(standard))
     design = hashlib.sha256((place / STANDARD).read_bytes()).hexdigest()
-    write_step(place / STEP, products, standard, Origin(design, author, organisation))
+    origin, name = Origin(design, author, organisation), whole_name(standard)
+    write_step(place / STEP, products, name, origin)
+    write_step(place / FACES, face_products(solid), f"{name} FACES", origin)
     mesh, farthest = _mesh(standard, solid, chord)
     np.savez(place / MESH, corners=mesh.corners, triangles=mesh.triangles, owner=mesh.owner)
     pieces = _pieces(standard, products, mesh)
@@ -67,7 +70,7 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
 
 def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list[Piece]:
     """Triangles of every product, the screws as coarse as a picture needs."""
-    from cad_out.build.assembly import COLOURS
+    from cad_out.build.assembly import colour_of
     from cad_out.build.reader import tessellate
 
     balls, out = {sphere.name for sphere in standard.spheres}, []
@@ -79,11 +82,8 @@ def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list
         else:
             corners, triangles, numbers = tessellate(product.shape, _SCREW_CHORD)
             mine = welded(corners, triangles, np.full(len(numbers), ""))
-        role = {
-            name: next((c for start, c in COLOURS.items() if name.startswith(start)), None)
-            for name in np.unique(mine.owner)
-        }
-        colours = [product.colour if role[name] is None else role[name] for name in mine.owner]
+        role = {name: colour_of(name) or product.colour for name in np.unique(mine.owner)}
+        colours = [role[name] for name in mine.owner]
         out.append(Piece(product.name, mine, np.array(colours), product.places))
     return out
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from artefact.body import BLEND, Standard
-from cad_out.build import FACTS, STEP, run_kernel
+from cad_out.build import FACES, FACTS, STEP, run_kernel
 from cad_out.details import BALL, Details, Screw, details_of
 from cad_out.meshes import (
     aspects,
@@ -78,10 +78,11 @@ class Conformity:
         least_edge: Length of the shortest edge, mm.
         is_upright: All pillars and posts stand upright and are blended.
         names: Faces that carry a name in the file.
-        missing: Faces that should and do not.
+        missing: Faces that should and do not, or are not parts in the file of single faces.
         missing_details: What of the workshop's additions found no room, in words.
         untold: Tolerances, notes and drawn signs that not both readers find as they were meant.
-        face_deviation: Largest distance from the design by face, without any CAD kernel.
+        face_deviation: Largest distance from the design by face, in both STEP files, without any
+            CAD kernel.
         area_error: Of every patch's trimmed face in the mesh against the design, relative.
         is_watertight: Of the STL file, by trimesh.
         mesh_volume: By the divergence theorem, mm^3.
@@ -229,13 +230,16 @@ def measure(
     found = json.loads((folder / FACTS).read_text(encoding="utf-8"))
     entities, details = read_entities(folder / STEP), details_of(standard)
     faces, instances = read_faces(folder / STEP, entities), read_instances(entities)
+    alone, wanted = read_faces(folder / FACES), face_names(standard, details)
+    apart = [face_deviations(standard, every) for every in (faces, faces | alone)]
     corners, triangles = read_stl(stl)
     named = set(faces) & set(found["names"])
     screws = {kind.name: kind for kind in details.screws}
     made = built["volumes"]
     bought = sum(len(kind.holes) * made[name] for name, kind in screws.items())
     volume = found["volume"] - bought
-    balls = sum(made[sphere.name] for sphere in standard.spheres)
+    balls = {sphere.name: made[sphere.name] for sphere in standard.spheres}
+    steel = sum(balls.values())
     return Conformity(
         solids=found["solids"],
         expected=1 + len(standard.spheres) + sum(len(kind.holes) for kind in screws.values()),
@@ -247,15 +251,18 @@ def measure(
         is_millimetre=file_unit_is_millimetre(folder / STEP),
         volume=volume,
         volume_built=sum(v for name, v in made.items() if name not in screws),
-        mass=standard.material.density * (volume - balls) + BALL.density * balls,
+        mass=standard.material.density * (volume - steel) + BALL.density * steel,
         least_face=found["least_face"],
         least_edge=found["least_edge"],
         is_upright=_is_upright(standard),
         names=tuple(sorted(named)),
-        missing=tuple(name for name in face_names(standard, details) if name not in named),
+        missing=(
+            *(name for name in wanted if name not in named),
+            *(f"{name} by itself" for name in wanted if name not in {*alone, *balls}),
+        ),
         missing_details=details.missing,
         untold=untold(standard, details, entities, found),
-        face_deviation=face_deviations(standard, faces),
+        face_deviation={name: max(one[name] for one in apart) for name in apart[0]},
         area_error=area_errors(standard, face_areas(corners, triangles, owner)),
         is_watertight=is_watertight(corners, triangles),
         mesh_volume=mesh_volume(corners, triangles),

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from artefact.body import Standard, write_standard
-from cad_out.build import FACTS, MESH, SCENES, STANDARD, STEP, run_kernel
+from cad_out.build import FACES, FACTS, MESH, SCENES, STANDARD, STEP, run_kernel
 from cad_out.meshes import Mesh, write_stl
 from cad_out.verify.conformity import Conformity, measure, refuse_faults, write_conformity
 from twin.errors import DesignError
@@ -53,7 +53,7 @@ def export_standard(
         conformity, _ = build_and_measure(standard, place, chord, author, organisation)
         refuse_faults(standard.name, conformity)
         write_conformity(place / CONFORMITY, conformity)
-        for name in (STEP, STL, *SCENES, CONFORMITY):
+        for name in (STEP, FACES, STL, *SCENES, CONFORMITY):
             (place / name).replace(out_dir / name)
     finally:
         shutil.rmtree(place, ignore_errors=True)

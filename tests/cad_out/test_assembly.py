@@ -16,7 +16,7 @@ from cad_out.details.places import plan_room
 from cad_out.details.seats import glue_gap, seat_of
 from cad_out.details.tolerances import Tolerance, notes_of
 from cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
-from cad_out.verify.part21 import read_entities, read_instances
+from cad_out.verify.part21 import read_entities, read_faces, read_instances
 from cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances
 from cad_out.verify.untold import untold
 from twin.errors import NotBuildable
@@ -224,3 +224,16 @@ def _length_and_middle(strokes):
             length += np.linalg.norm(end - begin)
             middle = middle + np.linalg.norm(end - begin) * 0.5 * (begin + end)
     return [length, *middle / length]
+
+
+def test_every_face_of_the_body_is_a_part_in_a_file_of_its_own(upright, built):
+    """What programs without names of faces show; the same surface as in the whole standard."""
+    entities = read_entities(built[0] / "standard-faces.step")
+    parts, body = read_instances(entities), set(built[1].names) - {s.name for s in upright.spheres}
+    assert set(parts) == {part.product for part in parts.values()} == body
+    assert not any("MANIFOLD_SOLID_BREP(" in entity for entity in entities.values())
+    alone = read_faces(built[0] / "standard-faces.step", entities)
+    whole = read_faces(built[0] / "standard.step")
+    assert set(alone) == body
+    for patch in upright.patches:
+        assert np.array_equal(alone[patch.name].poles, whole[patch.name].poles)

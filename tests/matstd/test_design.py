@@ -87,6 +87,7 @@ def test_every_file_is_there(made: Path) -> None:
     for name in (
         "standard.toml",
         "standard.step",
+        "standard-faces.step",
         "standard.stl",
         "standard.3mf",
         "standard.glb",
