@@ -13,7 +13,6 @@ import volume_by_hand
 import cad_out
 from artefact.body.datum import DatumSphere
 from cad_out.build import kernel
-from cad_out.build.exchange import in_ascii
 from cad_out.build.process import Ending, run_apart
 from cad_out.build.settled import with_units_of_density
 from cad_out.details.detail_list import details_of
@@ -99,6 +98,8 @@ def test_poles_and_knots_in_the_file_are_those_of_the_design(upright, built):
 
 
 def test_the_header_says_where_the_file_comes_from(upright, built):
+    from cad_out.build.exchange import in_ascii
+
     place, _, _ = built
     header = re.sub(r"\s*\n\s*", "", (place / "standard.step").read_text().split("ENDSEC;")[0])
     design = hashlib.sha256((place / "standard.toml").read_bytes()).hexdigest()
