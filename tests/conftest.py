@@ -3,9 +3,10 @@
 import os
 import sys
 from base64 import b64decode
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -44,6 +45,23 @@ LONGEST = (
 left to itself, xdist begins with the files of most tests."""
 
 
+TOGETHER = "tests/cad_out/"
+"""A folder whose files one worker has: the kernel takes two seconds to load, the standard that they
+share (`built`) eight to build."""
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """A file is one worker's, and so are those that belong together."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class TogetherScheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file: str = super()._split_scope(nodeid)
+            return TOGETHER if file.startswith(TOGETHER) else file
+
+    return TogetherScheduling(config, log)
+
+
 DOT = b64decode(
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
 )
@@ -65,16 +83,34 @@ def _no_lines_of_progress():
 
 
 @pytest.fixture
-def unrendered(monkeypatch: pytest.MonkeyPatch) -> None:
+def rendered_alone(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """A function (first words of names): from now on figures are rendered to these files alone."""
+
+    def only(*names: str) -> None:
+        from matplotlib.figure import Figure
+
+        render, texts = Figure.savefig, Figure.findobj
+
+        def save(figure: Figure, path: Path, **options: Any) -> None:
+            if path.name.removeprefix(".").startswith(names):
+                render(figure, path, **options)
+            else:
+                path.write_bytes(DOT)
+
+        monkeypatch.setattr(Figure, "savefig", save)
+        # to look for texts is to make every tick
+        monkeypatch.setattr(Figure, "findobj", texts if names else lambda *_: [])
+
+    return only
+
+
+@pytest.fixture
+def unrendered(rendered_alone: Callable[..., None]) -> None:
     """Figures are made, but not rendered: for who reads only the page around them.
 
     Rendering is most of the time of a page; `report/test_diagnosis_pictures` renders every kind.
     """
-
-    def dot(figure: object, path: Path, **_: object) -> None:
-        path.write_bytes(DOT)
-
-    monkeypatch.setattr("matplotlib.figure.Figure.savefig", dot)
+    rendered_alone()
 
 
 @contextmanager

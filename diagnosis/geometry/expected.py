@@ -8,14 +8,19 @@ from twin.effects import ComponentError
 from twin.frames import Array
 
 
-def expected_size(fit: Fit, weights: Array) -> float:
-    """Standard deviation before the run, as the axis or the class of the machine has it."""
+def expected_size(fit: Fit, weights: Array, stated: Array) -> float:
+    """Standard deviation before the run, as the axis or the class of the machine has it.
+
+    Args:
+        weights: Of the parameters, (P,).
+        stated: `stated_sizes` of the fit.
+    """
     part = slice(len(weights))
     sd = (weights / fit.prior.factor[part] / fit.widened) @ fit.prior.root[part, part]
-    return float(np.linalg.norm(sd * _stated(fit)))
+    return float(np.linalg.norm(sd * stated))
 
 
-def _stated(fit: Fit) -> Array:
+def stated_sizes(fit: Fit) -> Array:
     """What the machine file expects of every parameter over what its class has, (P,)."""
     out = np.ones(len(fit.model.parameters))
     for start, effect in geometric_effects(fit):

@@ -17,7 +17,7 @@ import numpy as np
 
 from diagnosis.fit import Fit, Prior, fit_run
 from diagnosis.geometry.changes import changed_since, of_first, since_first_run, standing, state
-from diagnosis.geometry.expected import expected_size
+from diagnosis.geometry.expected import expected_size, stated_sizes
 from diagnosis.geometry.functionals import functionals
 from diagnosis.geometry.quantities import Functional, Quantity
 from twin.frames import Array
@@ -204,7 +204,8 @@ def geometry_rows(fit: Fit, before: Prior | None = None) -> tuple[GeometryRow, .
     states = [state(fit.model, r) for r in range(len(fit.run.touches.runs) if has_course else 1)]
     # peaks are chosen between all states, so that choosing them favours none
     known = [L @ theta for L in states] + ([] if before is None else [_padded(before, len(theta))])
-    return tuple(_row(fit, one, states, before) for one in functionals(fit, np.mean(known, axis=0)))
+    stated, told = stated_sizes(fit), functionals(fit, np.mean(known, axis=0))
+    return tuple(_row(fit, one, states, before, stated) for one in told)
 
 
 def changed_runs(fit: Fit) -> tuple[int, ...]:
@@ -242,7 +243,9 @@ def _machine(fit: Fit) -> Array:
     return fit.theta[: len(fit.model.parameters)]
 
 
-def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | None) -> GeometryRow:
+def _row(
+    fit: Fit, one: Functional, states: Sequence[Array], before: Prior | None, stated: Array
+) -> GeometryRow:
     """One quantity of the last state, with its course over all of them."""
     machine = len(one.weights)
     every = np.stack([one.weights @ L for L in states])
@@ -269,7 +272,7 @@ def _row(fit: Fit, one: Functional, states: Sequence[Array], before: Prior | Non
         unit=one.unit,
         estimate=values[-1],
         lever=one.lever,
-        expected=expected_size(fit, one.weights),
+        expected=expected_size(fit, one.weights, stated),
         is_determined=is_known[-1],
         shared_with=() if is_known[-1] else _shared_with(fit, every[-1]),
         before=earlier,

@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 
-from cad_out.build.faces import area, faces_of, is_closed, is_valid, volume
-from cad_out.build.letters import engraved
-from cad_out.build.primitives import box
 from cad_out.details.dot_font import _GLYPHS, CUTTER, DEPTH, DOT, LARGE, SMALL, dots, size
 from cad_out.details.lettering import Lettering
 from twin.frames import pose
@@ -33,13 +30,22 @@ def test_an_f_points_up_and_to_the_right():
     assert at[:, 0].mean() < 0.5 * size("F", LARGE)[0]
 
 
+def engraved_cube(*lines):
+    """A cube of 20 mm; the kernel, which takes two seconds to load, is loaded here."""
+    from cad_out.build.letters import engraved
+    from cad_out.build.primitives import box
+
+    return engraved(box((0.0, 0.0, 0.0), (20.0, 20.0, 20.0)), lines)
+
+
 @pytest.mark.parametrize("rows", [SMALL, LARGE])
 @pytest.mark.parametrize("turn", [np.eye(3), [[0, 0, 1], [1, 0, 0], [0, 1, 0]]], ids=["top", "+x"])
 def test_dots_take_their_caps_away(turn, rows):
-    solid = box((0.0, 0.0, 0.0), (20.0, 20.0, 20.0))
+    from cad_out.build.faces import area, faces_of, is_closed, is_valid, volume
+
     R = np.array(turn, dtype=float)
     line = Lettering("A7", pose(R, R @ [1.0, 1.0, 20.0]), rows)
-    made = engraved(solid, [line])
+    made = engraved_cube(line)
     assert is_valid(made)
     assert is_closed(made)
     assert 8000.0 - volume(made) == pytest.approx(len(line.dots) * CAP, rel=1e-6)
@@ -47,10 +53,11 @@ def test_dots_take_their_caps_away(turn, rows):
 
 
 def test_a_line_that_leaves_its_face_is_cut_all_the_same():
-    solid = box((0.0, 0.0, 0.0), (20.0, 20.0, 20.0))
+    from cad_out.build.faces import is_closed, is_valid, volume
+
     beyond = Lettering("A7", pose(t=np.array([16.2, 5.0, 20.0])), LARGE)
     inside = Lettering("A", pose(t=np.array([5.0, 5.0, 20.0])), LARGE)
-    made = engraved(solid, [beyond, inside])
+    made = engraved_cube(beyond, inside)
     assert is_valid(made)
     assert is_closed(made)
     taken, all_of_it = 8000.0 - volume(made), (len(beyond.dots) + len(inside.dots)) * CAP

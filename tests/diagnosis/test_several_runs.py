@@ -235,8 +235,9 @@ def folder(tmp_path_factory):
 
 
 def test_the_command_tells_what_changed_and_saves_the_machine_as_it_is_now(
-    folder, tmp_path, capsys
+    folder, tmp_path, capsys, rendered_alone
 ) -> None:
+    rendered_alone("trend")
     files = [str(folder / f"{n}.csv") for n in ("spring", "autumn")]
     out = tmp_path / "out"
     assert main(["diagnose", *files, "--only", "backlash", "-o", str(out)]) == 0

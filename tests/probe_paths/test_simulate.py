@@ -23,14 +23,31 @@ MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
 """The golden programs' machine has the same travels and pivots."""
 
 
+def laid_out(place, programs, small):
+    (place / "programs").mkdir()
+    programs.write(place / "programs")
+    write_standard(place / "standard.toml", small)
+    shutil.copy(MACHINE, place / "machine.toml")
+    return place
+
+
 @pytest.fixture
 def folder(tmp_path, programs, small):
     """Programs, standard and machine as a design run leaves them."""
-    (tmp_path / "programs").mkdir()
-    programs.write(tmp_path / "programs")
-    write_standard(tmp_path / "standard.toml", small)
-    shutil.copy(MACHINE, tmp_path / "machine.toml")
-    return tmp_path
+    return laid_out(tmp_path, programs, small)
+
+
+@pytest.fixture(scope="module")
+def simulated_once(tmp_path_factory, programs, small):
+    place = laid_out(tmp_path_factory.mktemp("simulated"), programs, small)
+    assert command(place, "--logs", str(place / "logs")) == 0
+    return place
+
+
+@pytest.fixture
+def logged(simulated_once, tmp_path):
+    """The same with the logs of a simulation."""
+    return shutil.copytree(simulated_once, tmp_path / "logged")
 
 
 def command(folder, *more, programs=("MS_A_1", "MS_A_2", "MS_A_3")):
@@ -172,12 +189,11 @@ def test_logs_of_a_control_become_the_run_that_was_simulated(folder, capsys):
     assert "already exists" in capsys.readouterr().err
 
 
-def test_a_log_that_stopped_is_used_and_told(folder, capsys):
-    assert command(folder, "--logs", str(folder / "logs")) == 0
-    log = sorted((folder / "logs").iterdir())[-1]
+def test_a_log_that_stopped_is_used_and_told(logged, capsys):
+    log = sorted((logged / "logs").iterdir())[-1]
     lines = log.read_text(encoding="ascii").splitlines()
     log.write_text("\n".join(lines[:-6]) + "\n", encoding="ascii")
-    assert evaluated(folder) == 0
+    assert evaluated(logged) == 0
     assert "stopped after" in capsys.readouterr().out
 
 
@@ -185,23 +201,20 @@ def test_a_log_that_stopped_is_used_and_told(folder, capsys):
     ("more", "expected"),
     [(("--u-um", "0"), "expected an uncertainty"), (("--z", "tip"), "meaning of Z")],
 )
-def test_evaluate_refuses_in_one_line(folder, capsys, more, expected):
-    assert command(folder, "--logs", str(folder / "logs")) == 0
-    capsys.readouterr()
-    assert evaluated(folder, *more) == 2
+def test_evaluate_refuses_in_one_line(logged, capsys, more, expected):
+    assert evaluated(logged, *more) == 2
     message = capsys.readouterr().err
     assert expected in message
     assert message.count("\n") == 1
-    assert not (folder / "read" / "run.csv").exists()
+    assert not (logged / "read" / "run.csv").exists()
 
 
-def test_temperatures_by_the_clock_come_with_the_run(folder):
-    assert command(folder, "--logs", str(folder / "logs")) == 0
-    sensors = folder / "sensors.csv"
+def test_temperatures_by_the_clock_come_with_the_run(logged):
+    sensors = logged / "sensors.csv"
     rows = [f"{FIRST_MORNING + timedelta(minutes=k):%Y-%m-%dT%H:%M:%S},{20 + k}" for k in (0, 60)]
     sensors.write_text("\n".join(["clock,T_ram_degC", *rows]) + "\n", encoding="utf-8")
-    assert evaluated(folder, "--sensors", str(sensors)) == 0
-    touches = read_run(folder / "read" / "run.csv").touches
+    assert evaluated(logged, "--sensors", str(sensors)) == 0
+    touches = read_run(logged / "read" / "run.csv").touches
     started = np.round(touches.temperature["ram"] - 20.0 - touches.time / 60.0, 3)
     assert np.ptp(started) < 0.002  # a kelvin a minute from the start of the first program
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +58,7 @@ class ArtefactExpansion:
         """In the words of those who run machines."""
         return Title(f"expansion of the standard with {self.sensor}", "standard")
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Coefficient of expansion."""
         return (Parameter("amplitude", "1/K", 20e-6),)
@@ -87,7 +88,7 @@ class ArtefactSlip:
     name = "artefact-slip"
     title = Title("slip of the set-up", "standard")
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Displacement and rotation, table frame."""
         shifts = (Parameter(name, "mm", 10 * UM) for name in "XYZ")
@@ -146,7 +147,7 @@ class Drift:
     name = "drift"
     title = Title("drift of the set-up", "standard")
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Rates of displacement, table frame."""
         return tuple(Parameter(name, "mm/h", 5 * UM) for name in "XYZ")

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -50,7 +51,7 @@ class ArtefactForm:
         """In the words of those who run machines."""
         return Title(f"form of {self.patch}", "standard")
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Coefficients, by rising degree."""
         return tuple(

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -69,7 +70,7 @@ class Coupling:
         """In the words of those who run machines."""
         return Title(f"{self.symbol.title}, which changes with {self.other}", self.symbol.link)
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Peak amplitudes."""
         sd = 100 * URAD if self.symbol.is_angular else 10 * UM

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -64,7 +65,7 @@ class ComponentError:
         """In the words of those who run machines."""
         return Title(self.symbol.title, self.symbol.link)
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The peak amplitude."""
         return (Parameter("amplitude", self.symbol.unit, self.sd),)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,7 +39,7 @@ class LocationError:
         """In the words of those who run machines."""
         return Title(self.symbol.title, self.symbol.link)
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The constant."""
         return (Parameter("amplitude", self.symbol.unit, self.sd),)

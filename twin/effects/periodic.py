@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -71,7 +72,7 @@ class _Repeating:
         """In the words of those who run machines."""
         return Title(f"{self.symbol.title}, which repeats", self.symbol.link)
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Sine and cosine."""
         sd = 20 * URAD if self.symbol.is_angular else 3 * UM

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from twin.machine import Chain, Symbol
 from twin.model import (
@@ -60,7 +61,7 @@ class ThermalStatic:
         what = "tilt" if self.symbol.is_angular else "growth"
         return Title(f"{what} {self.symbol.motion} with {self.sensor}", self.symbol.link)
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The amplitude per kelvin."""
         return (Parameter("amplitude", f"{self.symbol.unit}/K", _usual(self.symbol)),)
@@ -104,7 +105,7 @@ class Follows:
         column = self.column.removesuffix("_1").replace("_", " ")
         return Title(f"{self.symbol.title} that follows {column}", self.symbol.link)
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The amplitude of a step."""
         return (Parameter("amplitude", self.symbol.unit, _usual(self.symbol)),)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -70,7 +71,7 @@ class ThermalLag:
         cause = {"": "switching on", SPINDLE: "the spindle speed"}.get(self.drive, self.drive)
         return Title(f"{what} {self.symbol.motion} after {cause}", self.symbol.link)
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The settled amplitude."""
         unit, sd = self.symbol.unit, 100 * URAD if self.symbol.is_angular else 30 * UM
