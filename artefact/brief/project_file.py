@@ -271,8 +271,17 @@ def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], pat
     if task.slope[0] > steepest * DEG:
         raise BadFile(file, "slope_deg", f"{task.slope[0] / DEG:g} and more",
                       f"some within limits.max_slope_deg = {steepest:g} of {path}")  # fmt: skip
+    sharpest = 2e3 / table.limits.min_concave_radius_mm  # waves bulge about as much as they dip
+    if task.curvature[0] * 1e3 > sharpest:
+        raise BadFile(file, "curvature_1_m", f"{task.curvature[0] * 1e3:g} and more",
+                      f"some up to {sharpest:.4g}, twice what limits.min_concave_radius_mm of "
+                      f"{path} allows")  # fmt: skip
     for letter, (low, high) in task.rotary.items():
-        key, (least, most) = f"poses.{letter}_deg", workspace.get(letter, (0.0, 0.0))
+        key = f"poses.{letter}_deg"
+        if letter not in workspace:
+            there = ", ".join(f"{axis}_deg" for axis in sorted(workspace) if axis in "ABC")
+            raise BadFile(file, key, "an axis that the machine has not", there or "no poses")
+        least, most = workspace[letter]
         if low > most or high < least:
             raise BadFile(file, key, f"{low / DEG:g} to {high / DEG:g}",
                           f"some of workspace.{letter} of {path}")  # fmt: skip

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from cad_out.build.process import run_apart
-from twin.errors import NotBuildable
+from twin.errors import DesignError, NotBuildable
 
 
 def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 400.0) -> None:
@@ -17,10 +17,13 @@ def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float 
 
     Raises:
         NotBuildable: The task refuses; or the kernel crashes, fails or takes too long.
+        DesignError: The folder takes no more.
     """
     ending = run_apart("cad_out.build.worker", task, folder, *arguments, timeout=timeout)
     if ending.refusal:
         raise NotBuildable(ending.refusal)
+    if ending.last_line.startswith("OSError: "):  # it could not even write down why
+        raise DesignError(f"{folder.parent}: cannot be written ({ending.last_line[9:]})")
     if not ending.is_good:
         raise NotBuildable(
             f"the CAD kernel {ending} (task '{task}'); nothing was written", exit_code=ending.code

@@ -13,7 +13,7 @@ import volume_by_hand
 import cad_out
 from artefact.body.datum import DatumSphere
 from cad_out.build import kernel
-from cad_out.build.process import run_apart
+from cad_out.build.process import Ending, run_apart
 from cad_out.build.settled import with_units_of_density
 from cad_out.details.detail_list import details_of
 from cad_out.meshes.mesh import (
@@ -27,7 +27,7 @@ from cad_out.meshes.mesh import (
 from cad_out.verify.conformity import ASPECT_LIMIT, FACE_LIMIT, face_names
 from cad_out.verify.face_figures import face_deviations
 from cad_out.verify.part21 import SphereFace, SplineFace, read_faces
-from twin.errors import BadFile, NotBuildable
+from twin.errors import BadFile, DesignError, NotBuildable
 from twin.units import NM, UM
 
 FILES = tuple(f"standard{end}" for end in ("-faces.step", ".3mf", ".glb", ".step", ".stl"))
@@ -276,6 +276,15 @@ def test_a_crash_of_the_kernel_is_one_clear_error(upright, tmp_path, monkeypatch
         cad_out.verify.export_standard(upright, tmp_path)
     assert "\n" not in str(caught.value)
     assert caught.value.facts["exit_code"] == -11
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_told_by_the_folder_that_is_full(upright, tmp_path, monkeypatch):
+    ending = Ending(1, "", "OSError: [Errno 28] No space left on device")
+    monkeypatch.setattr(kernel, "run_apart", lambda *_, **__: ending)
+    told = rf"^{tmp_path}: cannot be written \(\[Errno 28\] No space left on device\)$"
+    with pytest.raises(DesignError, match=told):
+        cad_out.verify.export_standard(upright, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 

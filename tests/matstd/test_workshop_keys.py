@@ -1,5 +1,7 @@
 """What stands in the workshop: its keys reach placement, plan and programs, or are refused."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import trimesh
@@ -18,6 +20,8 @@ from twin.frames import apply, inverse, pose, rotation
 from twin.machine.kinematics import table_to_tool
 from twin.record.touches import Setup
 from twin.units import DEG
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def project(folder, old="", new=""):
@@ -148,3 +152,21 @@ def test_boxes_cover_a_mesh_and_not_much_else(tmp_path):
     notch = apply(place, np.array([[60.0, 50.0, 7.5], [30.0, 30.0, 10.0], [50.0, 10.0, 30.0]]))
     outside = [s.plate.distance(apply(inverse(s.T_face_solid), notch)) for s in solids]
     assert np.min(outside, axis=0).min() > 4.0
+
+
+@pytest.mark.parametrize(
+    ("task", "told"),
+    [
+        ("slope_deg = [50.0, 60.0]", r"slope_deg: found 50 and more, expected some within limits"),
+        ("curvature_1_m = [900.0, 1000.0]", r"900 and more, expected some up to 166\.7, twice"),
+        ("[poses]\nA_deg = [-5.0, 5.0]", r"poses\.A_deg: found an axis .*, expected B_deg, C_deg"),
+        ("[poses]\nB_deg = [25.0, 29.0]", r"poses\.B_deg: found 25 to 29, expected some of work"),
+    ],
+)
+def test_a_task_out_of_reach_is_refused_with_the_project(tmp_path, task, told):
+    text = (EXAMPLES / "hsm600u.toml").read_text().replace("# task =", "task =")
+    (tmp_path / "task.toml").write_text(f'format = "task/1"\nname = "blade"\n{task}\n')
+    (tmp_path / "hsm600u-machine.toml").write_text((EXAMPLES / "hsm600u-machine.toml").read_text())
+    (tmp_path / "project.toml").write_text(text)
+    with pytest.raises(BadFile, match=told):
+        read_project(tmp_path / "project.toml")

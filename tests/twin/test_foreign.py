@@ -265,6 +265,10 @@ def test_names_and_units_of_columns():
         ("a,b\n0,1\n10,2\n", "a column of targets"),
         ("0,1\n10,2\n", "a line of column names"),
         ("no numbers\nat all\n", "no table of numbers"),
+        (
+            '<?xml version="1.0"?>\n<QIFDocument idMax="5">1 2</QIFDocument>\n',
+            "QIF, expected a table",
+        ),
         ("target_mm;deviation_um\n0,5;1.5\n10,5;2.5\n", "one decimal mark"),
         ("target_mm,cycle,deviation_um\n0,1.5,1\n10,2,2\n", "the number of a cycle"),
     ],

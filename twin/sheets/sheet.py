@@ -220,6 +220,9 @@ def _cell(value: object) -> str | float:
 def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
     """Rows of a text file, its numbers read."""
     text = read_any_text(path)
+    if text.lstrip().startswith("<?xml"):
+        kind = "QIF" if "<QIFDocument" in text[:4000] else "XML"
+        raise BadFile(path, "file", kind, "a table, text or workbook: export the points as such")
     counts = {s: _typical(text, s) for s in _SEPARATORS}
     separator = next((s for s in _SEPARATORS if counts[s] >= 1), "")
     rows = by_heights(path, text) or by_channels(text)
