@@ -53,8 +53,7 @@ class _Beside:
 _REBUILDS = 8  # choices of faces tried before giving up
 _STARTS = 80  # of the search for faces side by side
 
-_ROUNDS, _MORE = 4, 150  # of faces drawn where those drawn first hide touches; so many in each
-_HIDDEN = (0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.05, 0.1, 1.0)  # of the touches, by a face
+_HIDDEN = (0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 1.0)  # of the touches, that a face may hide
 _WAY, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that is looked at, in steps
 _POSES = 20  # at which touches on faces are looked at
 
@@ -187,51 +186,18 @@ class BodyChoice:
     ) -> tuple["_Beside", list[DatumSphere]]:
         """Faces between some balls, and the balls: the last goes until so many faces fit."""
         while True:
-            faces = self._drawn(balls, holes, count, self.tried)
+            faces = freeform_faces(
+                self.blank, count, self.tried, self.rng, balls, holes, self.from_side
+            )
             fits = faces_fit(faces, holes, self.blank.limits)
             if (
                 len(balls) <= FEWEST_BALLS
                 or len(most_side_by_side(fits, count, starts=_STARTS)) == count
             ):
-                return self._hiding_least(faces, balls, holes, touches, count), balls
+                hides = self._in_the_way(faces, touches).mean(axis=1)
+                poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
+                return _Beside(faces, fits, hides, poses), balls
             balls = balls[:-1]  # the last one chosen tells least
-
-    def _drawn(
-        self,
-        balls: list[DatumSphere],
-        holes: tuple[MountingHole, ...],
-        count: int,
-        tried: int,
-    ) -> list[FreeformPatch]:
-        """Random faces beside some balls."""
-        return freeform_faces(self.blank, count, tried, self.rng, balls, holes, self.from_side)
-
-    def _hiding_least(
-        self,
-        faces: list[FreeformPatch],
-        balls: list[DatumSphere],
-        holes: tuple[MountingHole, ...],
-        touches: Requests,
-        count: int,
-    ) -> _Beside:
-        """The faces, and some of further rounds that stand least in the way of the touches.
-
-        Rounds follow until so many faces that hide nothing fit side by side.
-        """
-        poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
-        first, hides = len(faces), self._in_the_way(faces, touches).mean(axis=1)
-        for _ in range(_ROUNDS):
-            fits = faces_fit(faces, holes, self.blank.limits)
-            free = np.flatnonzero(hides <= _HIDDEN[0])
-            if len(most_side_by_side(fits[np.ix_(free, free)], count, starts=_STARTS)) == count:
-                break
-            more = self._drawn(balls, holes, count, min(self.tried, _MORE))
-            hides = np.concatenate([hides, self._in_the_way(more, touches).mean(axis=1)])
-            best = first + np.argsort(hides[first:], kind="stable")[: self.tried]
-            kept = np.concatenate([np.arange(first), best])
-            faces, hides = [(faces + more)[k] for k in kept], hides[kept]
-            faces = [replace(face, name=f"{k}") for k, face in enumerate(faces)]
-        return _Beside(faces, faces_fit(faces, holes, self.blank.limits), hides, poses)
 
     def _chosen(self, there: "_Beside", count: int, take: int) -> list[int]:
         """Of the faces that hide fewest touches those worth most; fewer where no other fits."""

@@ -217,7 +217,7 @@ def _relief(pads: tuple[Pad, ...], base: Base) -> Any:
     slab = box([-a, -b, -1.0], [a, b, RELIEF])
     standing = []
     for pad in pads:
-        wide, below = relief_profile(pad)
+        wide, below = relief_profile(pad.radius)
         radius = RELIEF - below
         # of the arc from the flank's lower end to the floor, seen from the middle of its circle
         half = 0.5 * float(np.arccos(-below / radius))

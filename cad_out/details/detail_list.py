@@ -55,7 +55,7 @@ def details_of(standard: Standard) -> Details:
     missing += [] if pocket else ["a pocket for a thermometer"]
     return Details(
         seats={sphere.name: seat_of(sphere) for sphere in standard.spheres},
-        pads=pads_of(standard),
+        pads=pads_of(standard, sides.values()),
         screws=screws_of(standard),
         sides=sides,
         bores=bores,

@@ -1,10 +1,12 @@
 """What a standard stands on and is held by, and what is bought: balls and screws, ISO 4762."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Material, MountingHole, Standard
+from artefact.body import Material, MountingHole, Standard, outline_distance
+from cad_out.details.places import Side
 
 BALL = Material(name="100Cr6 (1.3505), hardened, ISO 3290-1 G5", density=7.83e-6, expansion=11.5e-6)
 """Of a bought ball."""
@@ -19,6 +21,7 @@ RELIEF_RADIUS = 3.0
 """Of the inner edge between a pad and the relief, mm."""
 
 _PAD_RIM = 4.0  # mm that a pad is wider than the counterbore above it
+_BESIDE_PAD = 1.5  # mm of relief between a pad's flank and the outline, at least
 _IN_NUT = 1.5  # of its diameter that a screw reaches into the nut of the slot
 
 _SCREWS = (  # ISO 4762 and ISO 273, medium: diameter, through hole, head, mm
@@ -72,17 +75,23 @@ class Pad:
     radius: float
 
 
-def pads_of(standard: Standard) -> tuple[Pad, ...]:
+def pads_of(standard: Standard, sides: Iterable[Side]) -> tuple[Pad, ...]:
     """Three pads round three screws, so that tightening them bends nothing; else none.
 
-    A standard with another number of holes stands on its whole underside.
+    A standard with another number of holes stands on its whole underside. Pads near the outline are
+    narrower: between flank and outline is relief, or a strip of no width would be left.
     """
     if len(standard.holes) != 3:
         return ()
-    return tuple(
-        Pad(f"SEAT{i}", hole.x, hole.y, hole.bore_radius + _PAD_RIM)
-        for i, hole in enumerate(standard.holes, 1)
-    )
+    out = []
+    for i, hole in enumerate(standard.holes, 1):
+        at = np.array([hole.x, hole.y])
+        base = standard.base
+        room = [-float(outline_distance(at[None], base.half_size, base.corner_radius)[0])]
+        room += [side.offset - float(at @ side.normal) for side in sides]
+        widest = min(room) - relief_profile(0.0)[0] - _BESIDE_PAD
+        out.append(Pad(f"SEAT{i}", hole.x, hole.y, min(hole.bore_radius + _PAD_RIM, widest)))
+    return tuple(out)
 
 
 def screws_of(standard: Standard) -> tuple[Screw, ...]:
@@ -120,11 +129,11 @@ def _largest(hole: MountingHole) -> tuple[float, float] | None:
     return max(fits, default=None)
 
 
-def relief_profile(pad: Pad) -> tuple[float, float]:
-    """Radius of a pad's flank at the relief's floor, and height of the arc's centre, mm.
+def relief_profile(radius: float) -> tuple[float, float]:
+    """Radius of a pad's flank at the relief's floor, and height of its arc's centre, mm.
 
     The flank is an arc of `RELIEF_RADIUS` that ends tangent to the floor, so there is no sharp
     inner edge although the step is lower than the radius.
     """
     below = RELIEF - RELIEF_RADIUS
-    return pad.radius + float(np.sqrt(RELIEF_RADIUS**2 - below**2)), below
+    return radius + float(np.sqrt(RELIEF_RADIUS**2 - below**2)), below

@@ -237,3 +237,14 @@ def test_every_face_of_the_body_is_a_part_in_a_file_of_its_own(upright, built):
     assert set(alone) == body
     for patch in upright.patches:
         assert np.array_equal(alone[patch.name].poles, whole[patch.name].poles)
+
+
+@pytest.mark.parametrize("inset", [0.0, 1.0, 1.24, 2.0, 2.74, 5.0])
+def test_relief_beside_a_pad_is_never_a_strip(upright, inset):
+    """A hole 5 mm and more from the outline; flanks end sqrt(3^2 - 2^2) mm beyond their pad."""
+    hole, base = upright.holes[0], upright.base
+    x = base.half_size[0] - hole.bore_radius - 5.0 - inset
+    moved = replace(upright, holes=(replace(hole, x=x, y=0.0), *upright.holes[1:]))
+    pad = details_of(moved).pads[0]
+    assert base.half_size[0] - x - pad.radius - np.sqrt(5.0) >= 1.5 - 1e-9
+    assert hole.bore_radius + 1.2 < pad.radius <= hole.bore_radius + 4.0
