@@ -12,6 +12,7 @@ where there is no such error, too little where there is.
 """
 
 import argparse
+import itertools
 
 import numpy as np
 from scipy.stats import norm
@@ -50,7 +51,8 @@ def covered(
     feature = np.repeat(np.arange(features), POSES)
     known = calibration * (feature[:, None] == np.arange(features))
     poses = np.tile(np.arange(POSES), features)
-    said = task_uncertainty(Visits(found.reshape(visits, -1), feature.astype(str), poses, known))
+    places = feature.astype(str), poses, region.ravel()
+    said = task_uncertainty(Visits(found.reshape(visits, -1), *places, known))
     sd = np.sqrt(np.sum(sizes**2) + 1.0)
     return float(norm.cdf((said.bias + said.U) / sd) - norm.cdf((said.bias - said.U) / sd))
 
@@ -62,25 +64,22 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     args = parser.parse_args()
     print("% within U; the machine's error in µm: " + " ".join(f"{s:9.1f}" for s in SIZES))
-    for calibration in (0.1, 1.0):
-        for features in (3, 6, 12):
-            for visits in (3, 10, 20):
-                for number, (name, parts) in enumerate(PARTS.items()):
-                    shape = np.array(parts) / np.linalg.norm(parts)
-                    cells = []
-                    for size in SIZES:
-                        seed = [args.seed, features, visits, number, int(10 * size)]
-                        rng = np.random.default_rng(seed)
-                        p = [
-                            100 * covered(size * shape, features, visits, calibration, rng)
-                            for _ in range(args.repeats)
-                        ]
-                        u = np.std(p, ddof=1) / np.sqrt(len(p))
-                        cells.append(f"{np.mean(p):4.1f} ± {u:3.1f}")
-                    what = (
-                        f"calibration {calibration} µm, {features:2d} features, {visits:2d} visits"
-                    )
-                    print(f"{what}, by {name}: " + " ".join(cells), flush=True)
+    for calibration, features, visits in itertools.product((0.1, 1.0), (3, 6, 12), (3, 20)):
+        what = f"calibration {calibration} µm, {features:2d} features, {visits:2d} visits"
+        for number, (name, parts) in enumerate(PARTS.items()):
+            shape = np.array(parts) / np.linalg.norm(parts)
+            cells = []
+            for size in SIZES:
+                if size == 0.0 and name != "all":
+                    cells.append("")
+                    continue
+                rng = np.random.default_rng([args.seed, features, visits, number, int(10 * size)])
+                p = [
+                    100 * covered(size * shape, features, visits, calibration, rng)
+                    for _ in range(args.repeats)
+                ]
+                cells.append(f"{np.mean(p):4.1f} ± {np.std(p) / np.sqrt(len(p)):3.1f}")
+            print(f"{what}, by {name:7}: " + "  ".join(f"{c:>10}" for c in cells), flush=True)
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ from diagnosis.task.visits import Visits
 from twin.frames import Array
 
 _SHARES = (0.0, 0.1, 1.0)  # of a part beside the largest; four of them cover no better
-_GRID = 200  # values of s_b for every R
+_GRID = 100  # values of s_b for every R
 _QUANTILES = 128  # values of s_p for every R'
 _COMPONENTS = 400  # of the mixtures between them: 0.01 % of U
 _LEAST = 1e-12  # of a sum of variances: what is below counts as this

@@ -37,9 +37,9 @@ def task_lines(
         lines.append("one table pose: U holds at it; what turning the table changes is not in it")
     if (few := min(budgets.values(), key=lambda b: b.dof)).dof < FEW_DOF:
         lines.append(
-            f"k is as large as {digits(few.k)}: {_count(one.faces, 'face')}, "
-            f"{_count(one.poses, 'table pose')} and {one.visits} visits hardly tell how far errors "
-            "differ; more of them make U smaller"
+            f"{_count(one.faces, 'face')}, {_count(one.poses, 'table pose')} and {one.visits} "
+            f"visits hardly tell how far errors differ, so k is {digits(few.k)}; more of them make "
+            "U smaller"
         )
     if one.visits < FEW_VISITS:
         lines.append(
