@@ -96,7 +96,7 @@ class Cone:
         edge = np.array([self.high_radius - self.low_radius, 2.0 * half])
         from_low = np.column_stack([r - self.low_radius, z + half])
         along = np.clip(from_low @ edge / (edge @ edge), 0.0, 1.0)
-        to_side = np.linalg.norm(from_low - along[:, None] * edge, axis=1)
+        to_side = _length(*(from_low - along[:, None] * edge).T)
         beside = from_low @ np.array([edge[1], -edge[0]])
         inside = (beside < 0.0) & (np.abs(z) < half)
         distance = np.where(inside, -1.0, 1.0) * np.minimum(to_cap, to_side)
@@ -122,7 +122,7 @@ class Ball:
 
     def distance(self, points: Array) -> Array:
         """Exact signed distance, (N,), mm."""
-        distance: Array = np.linalg.norm(points - self.centre, axis=1) - self.radius
+        distance: Array = _length(*(points - self.centre).T) - self.radius
         return distance
 
 
@@ -158,10 +158,12 @@ class Column:
         patch = self.patch
         local = apply(patch.T_patch_artefact, points)
         half = np.asarray(patch.half_size)
-        sideways = np.abs(local[:, :2]) - half
         middle, half_height = 0.5 * (self.top - patch.depth), 0.5 * (self.top + patch.depth)
-        beyond = np.column_stack([sideways, np.abs(local[:, 2] - middle) - half_height])
-        box = np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
+        # coordinate by coordinate: sums and maxima along rows of three take five times as long
+        x, y = np.abs(local[:, 0]) - half[0], np.abs(local[:, 1]) - half[1]
+        z = np.abs(local[:, 2] - middle) - half_height
+        out = _length(*(np.maximum(away, 0.0) for away in (x, y, z)))
+        box = out + np.minimum(np.maximum(np.maximum(x, y), z), 0.0)
         # no lid is lower than its lowest pole: where the box is farther even from that, it counts
         most = (local[:, 2] - patch.heights.min()) * self.steepest
         near = np.flatnonzero((box < 2.0 * (self.top + np.abs(half).max())) & (box < most))
@@ -169,6 +171,11 @@ class Column:
         over = (local[near, 2] - patch.height(uv)) * self.steepest
         box[near] = np.maximum(box[near], over)
         return box if self.foot is None else _blended(box, points[:, 2] - self.foot)
+
+
+def _length(*coordinates: Array) -> Array:
+    """Lengths of vectors by their coordinates, (N,) each."""
+    return np.asarray(np.sqrt(sum(c * c for c in coordinates)))
 
 
 def column(patch: FreeformPatch, foot: float | None = None) -> Column:

@@ -20,6 +20,8 @@ from twin.record import Labels
 
 DATUM_PLANE = "DATUM_A"
 
+_SLIVER = 1e-6  # mm by which a hull is taken larger: squares of coordinates have lost digits
+
 
 @dataclass(frozen=True, slots=True)
 class Material:
@@ -222,11 +224,14 @@ class Standard:
 
     def holds(self, points: Array, depth: float) -> Mask:
         """Whether points (N, 3) lie so deep, mm, or deeper in the standard, holes filled, (N,)."""
+        bodies = list(self.bodies.values())
+        middles, reaches = (np.array(one) for one in zip(*(b.hull for b in bodies), strict=True))
+        square = (points**2).sum(axis=1)[:, None] - 2.0 * points @ middles.T
+        square += (middles**2).sum(axis=1)
         held = np.zeros(len(points), dtype=bool)
-        for body in self.bodies.values():
-            middle, reach = body.hull
-            near = np.flatnonzero(((points - middle) ** 2).sum(axis=1) < reach**2)
-            held[near] |= body.distance(points[near]) <= -depth
+        for body, is_near in zip(bodies, (square < (reaches + _SLIVER) ** 2).T, strict=True):
+            near = np.flatnonzero(is_near & ~held)
+            held[near] = body.distance(points[near]) <= -depth
         return held
 
     def volume(self, step: float = 4.0) -> float:

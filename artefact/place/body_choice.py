@@ -163,8 +163,7 @@ class BodyChoice:
     def _bar_untouched(self, there: "_Beside", balls: list[DatumSphere]) -> None:
         """Keep the faces on which no touch can be made beside the balls from being chosen."""
         for k, face in enumerate(there.faces):
-            alone = replace(with_spheres(self.blank, []), patches=(face,), spheres=tuple(balls))
-            if self._untouched(alone, there.poses):
+            if self._untouched(self._put_together("", "", [face], balls, ()), there.poses):
                 there.fits[k, :] = there.fits[:, k] = False
 
     def _screwed(

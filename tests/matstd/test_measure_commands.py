@@ -49,7 +49,7 @@ def folder(tmp_path_factory):
 def test_sizes_and_what_is_left_are_said_in_words(folder, tmp_path, capsys, monkeypatch) -> None:
     monkeypatch.setenv("COLUMNS", "100")
     run = str(folder / "run.csv")
-    assert main(["diagnose", run, "-o", str(tmp_path / "out"), "--no-report"]) == 0
+    assert main(["diagnose", run, "-o", str(tmp_path / "out"), *NARROW]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith(
         "missing effect: The model lacks one effect: reversal of Y (amplitude"
