@@ -1,6 +1,7 @@
 """What the stated uncertainty of a task covers where the machine's errors are random numbers.
 
     python benchmarks/uncertainty_of_components.py [--repeats N] [--seed N]
+        [--features N ...] [--visits N ...]
 
 A machine's systematic error is the sum of normal numbers by feature, by table pose, by region of
 the machine and by place, whose sizes are given; every feature's calibration is wrong by a normal
@@ -62,16 +63,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--repeats", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--features", type=int, nargs="+", default=[3, 6, 12])
+    parser.add_argument("--visits", type=int, nargs="+", default=[3, 10, 20])
     args = parser.parse_args()
     print("% within U; the machine's error in µm: " + " ".join(f"{s:9.1f}" for s in SIZES))
-    for calibration, features, visits in itertools.product((0.1, 1.0), (3, 6, 12), (3, 20)):
+    for calibration, features, visits in itertools.product((0.1, 1.0), args.features, args.visits):
         what = f"calibration {calibration} µm, {features:2d} features, {visits:2d} visits"
         for number, (name, parts) in enumerate(PARTS.items()):
             shape = np.array(parts) / np.linalg.norm(parts)
             cells = []
             for size in SIZES:
                 if size == 0.0 and name != "all":
-                    cells.append("")
                     continue
                 rng = np.random.default_rng([args.seed, features, visits, number, int(10 * size)])
                 p = [
@@ -79,7 +81,7 @@ def main() -> None:
                     for _ in range(args.repeats)
                 ]
                 cells.append(f"{np.mean(p):4.1f} ± {np.std(p) / np.sqrt(len(p)):3.1f}")
-            print(f"{what}, by {name:7}: " + "  ".join(f"{c:>10}" for c in cells), flush=True)
+            print(f"{what}, by {name:7}: " + "  ".join(cells).rjust(58), flush=True)
 
 
 if __name__ == "__main__":

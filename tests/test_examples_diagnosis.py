@@ -230,6 +230,7 @@ def test_the_python_of_the_readme_runs_as_it_stands(tmp_path, capsys, monkeypatc
     monkeypatch.chdir(tmp_path)
     exec(compile(code, "README.md", "exec"), {})
     found, compared = capsys.readouterr().out.splitlines()
-    assert found.startswith("The model lacks one effect: thermal-lag(")
+    assert found.startswith("The model lacks one effect: growth along Z after switching on (")
+    assert found in " ".join(text.split())  # as the command says it, some pages before
     assert compared.endswith("What is left looks like noise.")
     assert (tmp_path / "model.toml").is_file()

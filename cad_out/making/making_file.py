@@ -59,6 +59,7 @@ def write_making(path: Path, making: Making) -> None:
         },
         "first_mode_Hz": stiffness.first_mode,
         "first_mode_limit_Hz": FIRST_MODE,
+        "ball_N_um": {ball: force * UM for ball, force in stiffness.at_balls.items()},
         "element_mm": stiffness.cube,
         "sag_um": {feature: value / UM for feature, value in stiffness.sag.items()},
         "sag_limit_um": SAG / UM,

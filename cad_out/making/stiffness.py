@@ -5,6 +5,7 @@ held to the plate's upper face round its foot by the stiffness of a cantilever. 
 standard is held where it is screwed down.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -35,11 +36,14 @@ class Stiffness:
         first_mode: Lowest natural frequency on rigid screws, Hz.
         per_weight: Displacement of every face's middle and ball, along x, y, z (rows), by weight
             along x, y, z (columns), (3, 3), mm.
+        at_balls: Force on a ball per deflection in its softest direction, with post, plate and
+            pads, N/mm, by name.
         cube: Side of the elements, mm.
     """
 
     first_mode: float
     per_weight: dict[str, Array]
+    at_balls: dict[str, float]
     cube: float
 
     @cached_property
@@ -120,8 +124,24 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     return Stiffness(
         first_mode=float(np.sqrt(lowest[0]) / (2.0 * np.pi) * np.sqrt(1e3)),
         per_weight=_at_features(standard, places, moved * 1e-3),
+        at_balls=_at_balls(factor.solve, size, balls),
         cube=side,
     )
+
+
+def _at_balls(
+    solve: Callable[[Array], Array], size: int, balls: tuple[DatumSphere, ...]
+) -> dict[str, float]:
+    """Force per deflection of every ball, whose freedoms are the last of all, N/mm."""
+    if not balls:
+        return {}
+    unit = np.zeros((size, 3 * len(balls)))
+    unit[size - 3 * len(balls) :] = np.eye(3 * len(balls))
+    moved = solve(unit)[size - 3 * len(balls) :].reshape(len(balls), 3, len(balls), 3)
+    return {
+        ball.name: float(1.0 / np.linalg.eigvalsh(moved[k, :, k])[-1])
+        for k, ball in enumerate(balls)
+    }
 
 
 def _origin(standard: Standard) -> Array:

@@ -10,7 +10,7 @@ from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
 from artefact.compare import Rival
 from artefact.reach import standing_remarks
 from artefact.worth import Criterion, touch_curve
-from cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making
+from cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making, Stiffness
 from report.pages.design_result import Design, Proven
 from report.pages.identifiability_section import known_content
 from report.pages.page import digits, write_page
@@ -197,9 +197,19 @@ def _making(made: Making) -> list[tuple[str, str]]:
         ),
         ("largest ball-end mill of a face, mm", cutters),
         ("first mode on rigid screws", f"{stiff.first_mode:.0f} Hz{mode}"),
+        *_softest(stiff),
         ("sag from upright to lying on its side", f"{name} {sag / UM:.2f} µm at most{told}"),
         *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
     ]
+
+
+def _softest(stiff: Stiffness) -> list[tuple[str, str]]:
+    """The ball that gives most under a touch."""
+    if not stiff.at_balls:
+        return []
+    ball = min(stiff.at_balls, key=stiff.at_balls.__getitem__)
+    words = f"{ball} {stiff.at_balls[ball] * UM:.1f} N/µm on its post, plate and pads"
+    return [("softest ball, in its softest direction", words)]
 
 
 def _out_of_reach(cutting: Cutting) -> str:

@@ -72,6 +72,12 @@ def test_a_ball_on_a_rigid_plate_sags_by_its_weight_over_the_stiffness_of_its_po
     k = post_stiffness(length, ball.stem_radius, ball.foot_radius, E)
     alone = mass * GRAVITY * 1e-3 / k
     assert alone < found.sag["SPH2"] < 3.0 * alone
+    assert k / 3.0 < found.at_balls["SPH2"] < k
+    up = np.array([0.0, 0.0, 100.0])  # on a block of 130 mm nothing but post and foot gives way
+    higher = replace(ball, foot=ball.foot + up[2], centre=ball.centre + up)
+    base = replace(bare.base, thickness=bare.base.thickness + up[2])
+    thick = replace(bare, base=base, spheres=(higher,))
+    assert found.at_balls["SPH2"] < stiffness_of(thick, details_of(bare), 25.0).at_balls["SPH2"] < k
     assert found.worst[0] in found.sag
 
 
@@ -116,6 +122,7 @@ def test_the_file_has_every_figure_with_its_limit(upright, tmp_path):
     told = json.loads((tmp_path / "making.json").read_text())
     assert told["first_mode_Hz"] == pytest.approx(made.stiffness.first_mode)
     assert told["sag_limit_um"] == 0.1
+    assert told["ball_N_um"]["SPH3"] == pytest.approx(stiffness.at_balls["SPH3"] / 1e3)
     assert set(told["sag_um"]) == {"FF1", "FF2", "SPH1", "SPH2", "SPH3"}
     face = told["faces"]["FF1"]
     assert face["step_over_mm"]["Ra 0.8 um"] == pytest.approx(

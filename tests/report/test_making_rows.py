@@ -31,7 +31,11 @@ def made(mode, sag, out_of_reach=()):
             contact=(12.0 * DEG, 44.0 * DEG) if not out_of_reach else None,
         )
     }
-    return dict(_making(Making(cutting, Stiffness(mode, soft, cube=10.0), hints)))
+    return dict(
+        _making(
+            Making(cutting, Stiffness(mode, soft, {"SPH1": 9e3, "SPH2": 8.4e3}, cube=10.0), hints)
+        )
+    )
 
 
 def test_a_stiff_standard_that_a_cutter_reaches_is_told_by_its_figures():
@@ -39,6 +43,9 @@ def test_a_stiff_standard_that_a_cutter_reaches_is_told_by_its_figures():
     assert rows["first mode on rigid screws"] == "900 Hz"
     assert rows["sag from upright to lying on its side"] == (
         "SPH1 0.09 µm at most; taken off by evaluations ([sag] of standard.toml)"
+    )
+    assert rows["softest ball, in its softest direction"] == (
+        "SPH2 8.4 N/µm on its post, plate and pads"
     )
     assert rows["milling FF1 with 6 mm"] == (
         "slopes 5 to 31°; step-over 0.13 mm for Ra 0.2 µm, 0.18 mm for Ra 0.4 µm, 0.26 mm for "
