@@ -129,7 +129,7 @@ def test_06_the_step_file_holds_every_part_and_face_by_name(tmp_path: Path) -> N
     assert result["volume, mm3"] == pytest.approx(
         result["volume by signed distances, mm3"], rel=2e-3
     )
-    models = {f"standard.{end}" for end in ("step", "stl", "3mf", "glb")}
+    models = {f"standard{end}" for end in (".step", "-faces.step", ".stl", ".3mf", ".glb")}
     assert {p.name for p in tmp_path.iterdir()} == {*models, "conformity.json"}
 
 

@@ -39,17 +39,18 @@ Sides = Mapping[str, tuple[Array, Array]]
 """Points (K, 3) and outward normal (3,) of the datum sides, by name."""
 
 
-def dmis_program(standard: Standard, sides: Sides) -> str:
+def dmis_program(standard: Standard, sides: Sides, engraved: Array) -> str:
     """Text of the program.
 
     Args:
         standard: As designed; its fingerprint stands in the program and in its results.
         sides: Where `DATUM_B` is touched twice, from -x to +x, and `DATUM_C` once.
+        engraved: Places of the lettering, (N, 3), mm, which points of the plane keep away from.
     """
     if len(standard.spheres) < 3:
         raise NotEnoughData(f"'{standard.name}' has {len(standard.spheres)} balls, 3 align it")
     high = max(body_top(standard), standard.blank_height) + LIFT
-    lines = [*_head(standard), *_aligned(standard, sides), "MODE/PROG,MAN"]
+    lines = [*_head(standard), *_aligned(standard, sides, engraved), "MODE/PROG,MAN"]
     for sphere in standard.spheres:
         size = f"{_xyz(sphere.centre)},{2 * sphere.radius:.4f}"
         lines.append(f"F({sphere.name})=FEAT/SPHERE,OUTER,CART,{size}")
@@ -107,10 +108,10 @@ def _head(standard: Standard) -> list[str]:
     ]
 
 
-def _aligned(standard: Standard, sides: Sides) -> list[str]:
+def _aligned(standard: Standard, sides: Sides, engraved: Array) -> list[str]:
     """Datums A, B and C by hand; the frame of the design from them."""
     plane, half = standard.plane, np.asarray(standard.base.half_size)
-    points = plane_points(standard)
+    points = plane_points(standard, engraved)
     normals = np.tile([0.0, 0.0, 1.0], (len(points), 1))
     (along, south), (corner, west) = sides["DATUM_B"], sides["DATUM_C"]
     return [
@@ -131,8 +132,8 @@ def _aligned(standard: Standard, sides: Sides) -> list[str]:
     ]
 
 
-def plane_points(standard: Standard) -> Array:
-    """Points of the datum plane as far out as nothing stands beside them, (8, 3)."""
+def plane_points(standard: Standard, engraved: Array) -> Array:
+    """Points of the datum plane as far out as nothing stands or is engraved beside them, (8, 3)."""
     height, half = standard.plane.height, np.asarray(standard.base.half_size)
     out = []
     for angle in 2.0 * np.pi * (np.arange(_PLANE_POINTS) + 0.5) / _PLANE_POINTS:
@@ -143,6 +144,8 @@ def plane_points(standard: Standard) -> Array:
         room = np.min(
             [b.distance(tried) for n, b in standard.bodies.items() if n != "BASE"], axis=0
         )
+        for mark in engraved[np.abs(engraved[:, 2] - height) < RIM]:
+            room = np.minimum(room, np.hypot(*(tried - mark)[:, :2].T))
         out.append(np.array([*(r[int(np.argmax(np.minimum(room, 8.0) + 1e-3 * r))] * way), height]))
     return np.stack(out)
 

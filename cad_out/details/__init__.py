@@ -6,7 +6,7 @@ makeability measures them.
 """
 
 from cad_out.details.annotations import annotations_of
-from cad_out.details.detail_list import Details, details_of
+from cad_out.details.detail_list import Details, details_of, engraved_on
 from cad_out.details.dot_font import CUTTER, DEPTH, DOT
 from cad_out.details.lettering import Lettering
 from cad_out.details.mounting import (
@@ -43,6 +43,7 @@ __all__ = [
     "annotations_of",
     "datum_touches",
     "details_of",
+    "engraved_on",
     "glue_gap",
     "notes_of",
     "relief_profile",

@@ -2,11 +2,14 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from artefact.body import Standard
 from cad_out.details.lettering import Lettering, lettering_of
 from cad_out.details.mounting import Pad, Screw, pads_of, screws_of
 from cad_out.details.places import HEAVY, Bore, Side, lifting_holes, sides_of, thermometer_pocket
 from cad_out.details.seats import Seat, seat_of
+from twin.frames import Array, apply
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +48,31 @@ def details_of(standard: Standard) -> Details:
     Raises:
         NotBuildable: A post is too thin for the seat of its ball.
     """
+    sides, bores, lettering, missing = _added(standard)
+    return Details(
+        seats={sphere.name: seat_of(sphere) for sphere in standard.spheres},
+        pads=pads_of(standard),
+        screws=screws_of(standard),
+        sides=sides,
+        bores=bores,
+        lettering=lettering,
+        missing=missing,
+    )
+
+
+def engraved_on(standard: Standard) -> Array:
+    """Where the lettering of a standard is spotted, (N, 3), mm."""
+    places = [np.empty((0, 3))]
+    for line in _added(standard)[2]:
+        flat = np.column_stack([line.dots, np.zeros(len(line.dots))])
+        places.append(apply(line.T_artefact_text, flat))
+    return np.concatenate(places)
+
+
+def _added(
+    standard: Standard,
+) -> tuple[dict[str, Side], tuple[Bore, ...], tuple[Lettering, ...], tuple[str, ...]]:
+    """Sides, bores, lettering, and what found no room."""
     mass, sides = standard.mass(step=6.0), sides_of(standard)
     lifting = lifting_holes(standard, mass)
     pocket = thermometer_pocket(standard, sides["THERMO"], lifting)
@@ -53,12 +81,4 @@ def details_of(standard: Standard) -> Details:
     missing = [f"lettering of {name}" for name in nameless]
     missing += ["lifting holes"] if mass > HEAVY and not lifting else []
     missing += [] if pocket else ["a pocket for a thermometer"]
-    return Details(
-        seats={sphere.name: seat_of(sphere) for sphere in standard.spheres},
-        pads=pads_of(standard),
-        screws=screws_of(standard),
-        sides=sides,
-        bores=bores,
-        lettering=lettering,
-        missing=tuple(missing),
-    )
+    return sides, bores, lettering, tuple(missing)

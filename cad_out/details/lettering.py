@@ -74,12 +74,13 @@ def _on_sides(
     thick = standard.base.thickness
     pocket = next((b.mouth[0] for b in bores if b.name == "THERMO"), None)
     aside = 0.0 if pocket is None else -18.0 if pocket >= 0.0 else 18.0
+    beside = 0.4 * sides["DATUM_C"].half_length  # which is touched in its middle
     wanted = [
         ("NAME", f"{standard.name} {standard.serial}".strip(), 0.0, 0.68 * thick, ""),
         ("NAME", "+X", 0.0, 0.28 * thick, ""),
         ("THERMO", "+Y", (pocket or 0.0) + aside, 0.5 * thick, ""),
         ("DATUM_B", "B", 0.0, 0.5 * thick, "DATUM_B"),
-        ("DATUM_C", "C", 0.0, 0.5 * thick, "DATUM_C"),
+        ("DATUM_C", "C", beside, 0.5 * thick, "DATUM_C"),
     ]
     found = [_on_side(sides[s], text, at, z, thick, of) for s, text, at, z, of in wanted]
     missing = [w[4] or w[1] for w, line in zip(wanted, found, strict=True) if line is None]

@@ -15,7 +15,7 @@ from artefact.brief import Project
 from artefact.certify import dmis_program, like_task
 from artefact.compare import WorstRegions, identifiability_report, worst_regions
 from artefact.place import Placement, design_standard
-from cad_out.details import datum_touches, details_of
+from cad_out.details import datum_touches, details_of, engraved_on
 from cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from cad_out.verify import Conformity, export_standard
 from diagnosis.answer import probed_volume, prove, seen_from
@@ -131,7 +131,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
 def _write_standard(folder: Path, standard: Standard) -> None:
     """The design, and the program of its calibration."""
     write_standard(folder / "standard.toml", standard)
-    program = dmis_program(standard, datum_touches(standard))
+    program = dmis_program(standard, datum_touches(standard), engraved_on(standard))
     write_whole(folder / "cmm.dmi", program, newline="\r\n")
 
 

@@ -14,6 +14,7 @@ from artefact.certify.calibration_fit import calibrated, fitted_ball
 from artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
 from artefact.certify.dmis import APPROACH, dmis_program
 from artefact.worth.calibration import Calibration
+from cad_out.details.detail_list import engraved_on
 from cad_out.details.places import datum_touches
 from diagnosis.answer.run_diagnosis import diagnose
 from diagnosis.fit.identification import fit_run
@@ -291,7 +292,8 @@ def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
 
 def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
     """Read back by patterns of its own: points on surfaces, normals, ways that meet nothing."""
-    text = dmis_program(nominal, datum_touches(nominal))
+    engraved = engraved_on(nominal)
+    text = dmis_program(nominal, datum_touches(nominal), engraved)
     assert nominal.fingerprint in text.splitlines()[0]
     number = r"(-?\d+\.\d+)"
     feature, stylus, moved = "", 1.5, 0
@@ -326,6 +328,8 @@ def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
     by_hand = text.partition("MODE/PROG")[0]
     touched = np.array(re.findall(rf"PTMEAS/CART,{','.join([number] * 6)}", by_hand), dtype=float)
     assert touched[:-3, 2] == pytest.approx(thick, abs=1e-3)
+    # a stylus of 2 mm rests on no dot, each of which is 1 mm wide
+    assert np.linalg.norm(touched[:, None, :3] - engraved, axis=-1).min() > 2.0
     first, second, third = touched[-3:]
     assert first[1] == second[1] == pytest.approx(-b, abs=1e-3)
     assert second[0] - first[0] > a

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from artefact.body.solids import BLEND
-from cad_out.details.detail_list import details_of
+from cad_out.details.detail_list import details_of, engraved_on
 from cad_out.details.dot_font import DOT
 from cad_out.details.mounting import RELIEF
-from cad_out.details.places import plan_room
+from cad_out.details.places import datum_touches, plan_room
 from cad_out.details.seats import glue_gap, seat_of
 from cad_out.details.tolerances import Tolerance, notes_of
 from cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
@@ -70,6 +70,8 @@ def test_lettering_stands_clear_of_bodies_holes_and_each_other(upright):
         else:
             assert where[:, 2].max() < upright.blank_height - 1.0
             assert where[:, 2].min() > RELIEF
+    for touched, _ in datum_touches(upright).values():
+        assert np.linalg.norm(engraved_on(upright)[:, None] - touched, axis=-1).min() > 5.0
     for k, (low, high) in enumerate(boxes):
         for a, b in boxes[:k]:
             assert (np.maximum(low - b, a - high) > 2.0 * DOT).any()

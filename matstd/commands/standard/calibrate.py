@@ -40,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
     """Write the calibrated standard, or the program, whole or not at all."""
     from artefact.body import read_standard, write_standard
     from artefact.certify import calibrated, dmis_program, read_cmm_points
-    from cad_out.details import datum_touches
+    from cad_out.details import datum_touches, engraved_on
     from matstd.console import say, say_each
     from report.task import calibration_lines
     from twin.errors import DesignError
@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     if args.program and args.cad:
         raise DesignError(f"--cad {args.cad}: beside --program, expected it beside --points")
     if args.program:
-        text = dmis_program(nominal, datum_touches(nominal))
+        text = dmis_program(nominal, datum_touches(nominal), engraved_on(nominal))
         write_whole(args.output, text, newline="\r\n")
         count = text.count("PTMEAS/")
         say(f"{args.output}: {count} points on {len(nominal.features)} features, DMIS 5.2")
