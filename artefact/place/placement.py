@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from artefact.body import Base, DatumSphere, Standard
+from artefact.body import DatumSphere, Standard
 from artefact.compare import (
     Power,
     Rival,
@@ -29,6 +29,7 @@ from artefact.compare import (
 from artefact.layout import Blank, with_spheres
 from artefact.place.body_choice import BodyChoice, body_choice
 from artefact.place.proving import proving_touches, telling_touches, touches_on_faces
+from artefact.place.room import check_blank
 from artefact.reach import Mask, ProbeReach, Requests, joined
 from artefact.worth import (
     BallPlaces,
@@ -52,7 +53,7 @@ from information.selection import Certificate
 from sensitivity.first_order import Workspace
 from sensitivity.population import Population
 from twin.compute import Progress, silent
-from twin.errors import NotBuildable, NotReachable
+from twin.errors import NotReachable
 from twin.frames import Array
 from twin.units import UM
 
@@ -60,9 +61,8 @@ __all__ = ["Placement", "PlacementOptions", "design_standard"]
 
 _FREE = 480  # free touches, at least, by which an effect is judged visible at all
 _BASES = 3  # sets of balls tried at most
-_AGAIN = 3  # times that other faces are drawn, at most, while
-_LITTLE = 1.02  # times what the balls alone leave, one per cent in µm, is exceeded beside them
-_NEXT_TO_NOTHING = 1.005  # times what the balls alone leave, a quarter of a per cent in µm
+_AGAIN, _LITTLE = 3, 1.02  # draws of other faces while they cost more than 1 % in µm
+_NEXT_TO_NOTHING = 1.005  # times what the balls alone leave
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ def design_standard(
     """
     options = options or PlacementOptions()
     choice = options.choice
-    _check_blank(blank.base, reach)
+    check_blank(blank.base, reach)
     population = population or Population(reach.chain)
     criterion = criterion_for(
         reach,
@@ -189,12 +189,7 @@ def design_standard(
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", 4, 6)
     bases = _bases(criterion.plain, rivals, places, all_poses, options)
-    first = _identifying(criterion, bodies, bases, options)
-    for _ in range(_AGAIN):
-        if first.nearness.value <= _LITTLE * bases[0].value:
-            break
-        again = _identifying(criterion, bodies, bases, options)
-        first = min(first, again, key=lambda found: found.nearness.value)
+    first = _identifying_best(criterion, bodies, bases, options)
     found = _rearranged(criterion, bodies, places, first, bases[0].value, all_poses, choice)
     found, on_faces = _with_proof([found, first], reach, choice.proof)
     on_body, here = criterion.on(found.standard), criterion.on(replace(found.standard, patches=()))
@@ -269,11 +264,21 @@ def _bases(
     return [_Base(body.spheres, tried, 0.0)]
 
 
+def _identifying_best(
+    criterion: Criterion, bodies: BodyChoice, bases: list[_Base], options: PlacementOptions
+) -> _Identifying:
+    """The best of a few draws of faces; one draw where its faces cost little."""
+    best = _identifying(criterion, bodies, bases, options)
+    for _ in range(_AGAIN):
+        if best.nearness.value <= _LITTLE * bases[0].value:
+            break
+        again = _identifying(criterion, bodies, bases, options)
+        best = min(best, again, key=lambda found: found.nearness.value)
+    return best
+
+
 def _identifying(
-    criterion: Criterion,
-    bodies: BodyChoice,
-    bases: list[_Base],
-    options: PlacementOptions,
+    criterion: Criterion, bodies: BodyChoice, bases: list[_Base], options: PlacementOptions
 ) -> _Identifying:
     """The best balls that leave room for the faces, and the touches that identify by them.
 
@@ -383,16 +388,6 @@ def _effects(criterion: Criterion, count: int, rng: np.random.Generator) -> Visi
     """Effects of the library that touches taken at random could show."""
     free = random_touches(criterion.reach, criterion.volume, criterion.rotary, count, rng)
     return visibility(criterion, free)
-
-
-def _check_blank(base: Base, reach: ProbeReach) -> None:
-    """Refuse a blank whose sides reach beyond the table; its corners may."""
-    if max(base.half_size) > reach.table_radius:
-        a, b = (2.0 * side for side in base.half_size)
-        raise NotBuildable(
-            f"a blank of {a:g} x {b:g} mm is larger than the table, diameter "
-            f"{2.0 * reach.table_radius:g} mm"
-        )
 
 
 def _with_shares(criterion: Criterion, standard: Standard, requests: Requests) -> Standard:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import DatumSphere, FreeformPatch
+from artefact.body import Base, DatumSphere, FreeformPatch
 from artefact.layout import Blank, balls_on_posts, beside_balls, freeform_faces, least_gap
 from artefact.reach import ProbeReach, reach_of, spread_poses
 from twin.errors import NotBuildable
@@ -108,3 +108,17 @@ def room_for(
     tried = reach_of(reach, points, normals, spread_poses(poses, _POSES))
     reached = [faces[i] for i in np.flatnonzero(tried.reached.any(axis=1))]
     return room_among(reached, balls_on_posts(blank, _BALLS, rng), patches, blank)
+
+
+def check_blank(base: Base, reach: ProbeReach) -> None:
+    """Refuse a blank whose sides reach beyond the table; its corners may.
+
+    Raises:
+        NotBuildable: With both sizes.
+    """
+    if max(base.half_size) > reach.table_radius:
+        a, b = (2.0 * side for side in base.half_size)
+        raise NotBuildable(
+            f"a blank of {a:g} x {b:g} mm is larger than the table, diameter "
+            f"{2.0 * reach.table_radius:g} mm"
+        )
