@@ -224,7 +224,8 @@ def faces_fit(
     """Which pillars can stand beside each other, (F, F); one over a hole fits beside nothing."""
     middle = np.stack([p.T_artefact_patch[:2, 3] for p in faces])
     half = np.array([p.half_size for p in faces])
-    beyond = np.abs(middle[:, None] - middle) - half[:, None] - half
+    # the sum first: to the last bit the same for both of a pair, which may be just as far apart
+    beyond = np.abs(middle[:, None] - middle) - (half[:, None] + half)
     out: Pairs = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) >= least_gap(limits)
     for hole in holes:
         blocked = _to_pillar(faces, np.array([[hole.x, hole.y]]))[0] < hole.bore_radius + _TO_HOLE

@@ -315,3 +315,18 @@ def test_faces_are_looked_at_alone_whatever_number_a_ball_has(chain):
         there = _Beside(faces, np.ones((4, 4), dtype=bool), np.zeros(4), poses)
         choice._bar_untouched(there, balls)
         assert there.fits.any() == touched
+
+
+def test_of_two_pillars_just_as_far_apart_as_needed_both_fit_or_none(chain):
+    """Places and sizes are tenths of a millimetre: 12 mm exactly are common."""
+    rng = np.random.default_rng(6)
+    half = np.round(rng.uniform(8.0, 30.0, (60, 2)), 1)
+    flat = np.zeros((7, 7))
+    faces, x = [], 0.0
+    for k, (a, b) in enumerate(half):
+        x = round(x + a + (12.0 + half[k - 1, 0] if k else 0.0), 1)
+        faces.append(
+            graph_patch(f"{k}", pose(t=np.array([x, 0.0, 60.0])), (a, b), flat, depth=50.0)
+        )
+    fits = faces_fit(faces, (), Limits())
+    np.testing.assert_array_equal(fits, fits.T)
