@@ -11,6 +11,7 @@ between them, then poses, then single touches are chosen so that the tool point 
 best over the user's poses, and the finished body is measured against every limit.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -53,14 +54,13 @@ from information.selection import Certificate
 from sensitivity.first_order import Workspace
 from sensitivity.population import Population
 from twin.compute import Progress, silent
-from twin.errors import NotReachable
+from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
 from twin.units import UM
 
 __all__ = ["Placement", "PlacementOptions", "design_standard"]
 
-_FREE = 480  # free touches, at least, by which an effect is judged visible at all
-_BASES = 3  # sets of balls tried at most
+_FREE, _BASES = 480, 3  # free touches that judge what is visible, at least; sets of balls, at most
 _AGAIN, _LITTLE = 3, 1.02  # draws of other faces while they cost more than 1 % in µm
 _NEXT_TO_NOTHING = 1.005  # times what the balls alone leave
 
@@ -267,13 +267,14 @@ def _bases(
 def _identifying_best(
     criterion: Criterion, bodies: BodyChoice, bases: list[_Base], options: PlacementOptions
 ) -> _Identifying:
-    """The best of a few draws of faces; one draw where its faces cost little."""
-    best = _identifying(criterion, bodies, bases, options)
-    for _ in range(_AGAIN):
-        if best.nearness.value <= _LITTLE * bases[0].value:
+    """The best of a few draws of faces; one where they cost little or none compares."""
+    best, alone = _identifying(criterion, bodies, bases, options), bases[0].value
+    for _ in range(_AGAIN if alone else 0):
+        if best.nearness.value <= _LITTLE * alone:
             break
-        again = _identifying(criterion, bodies, bases, options)
-        best = min(best, again, key=lambda found: found.nearness.value)
+        with suppress(NotBuildable, NotReachable):  # what the first draw found stays
+            again = _identifying(criterion, bodies, bases, options)
+            best = min(best, again, key=lambda found: found.nearness.value)
     return best
 
 

@@ -24,6 +24,7 @@ from artefact.layout.upright import (
     freeform_faces,
     holes_on,
 )
+from artefact.place import placement
 from artefact.place.body_choice import BodyChoice, _Beside
 from artefact.reach.probe_clearance import ProbeShape
 from artefact.reach.touchable import ProbeReach, Requests, joined
@@ -330,3 +331,23 @@ def test_of_two_pillars_just_as_far_apart_as_needed_both_fit_or_none(chain):
         )
     fits = faces_fit(faces, (), Limits())
     np.testing.assert_array_equal(fits, fits.T)
+
+
+def test_a_draw_of_faces_that_fails_costs_nothing_of_what_the_first_found(monkeypatch):
+    def drawn(*values):
+        ends = iter(values)
+
+        def one(*_):
+            value = next(ends)
+            if value is None:
+                raise NotBuildable("no room")
+            return SimpleNamespace(nearness=SimpleNamespace(value=value))
+
+        monkeypatch.setattr(placement, "_identifying", one)
+        return placement._identifying_best(None, None, [SimpleNamespace(value=alone)], None)
+
+    alone = 1.0
+    assert drawn(1.5, None, 1.3, 1.4).nearness.value == 1.3
+    assert drawn(1.5, 1.01).nearness.value == 1.01  # near enough: no further draw
+    alone = 0.0  # nothing to compare with
+    assert drawn(1.5).nearness.value == 1.5
