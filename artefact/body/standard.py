@@ -1,7 +1,7 @@
 """The whole standard: one body with freeform patches, datum spheres, datum plane and holes."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -222,9 +222,12 @@ class Standard:
         distance: Array = np.min([body.distance(points) for body in self.bodies.values()], axis=0)
         return distance
 
-    def holds(self, points: Array, depth: float) -> Mask:
-        """Whether points (N, 3) lie so deep, mm, or deeper in the standard, holes filled, (N,)."""
-        bodies = list(self.bodies.values())
+    def holds(self, points: Array, depth: float, without: Collection[str] = ()) -> Mask:
+        """Whether points (N, 3) lie so deep, mm, or deeper in the standard, holes filled, (N,).
+
+        Bodies `without` which it is looked at do not count: balls, before they are glued in.
+        """
+        bodies = [body for name, body in self.bodies.items() if name not in without]
         middles, reaches = (np.array(one) for one in zip(*(b.hull for b in bodies), strict=True))
         square = (points**2).sum(axis=1)[:, None] - 2.0 * points @ middles.T
         square += (middles**2).sum(axis=1)

@@ -21,6 +21,8 @@ CORNER_RADIUS = 25.0
 
 FEWEST_PATCHES = 3
 
+_NARROWEST = 20.0  # mm between two slots of a table, ISO 299
+
 
 class StandardTable(Table):
     """`[standard]`: what shall be made."""
@@ -120,6 +122,13 @@ def check_body(
             "limits.min_concave_radius_mm",
             f"{limits.min_concave_radius_mm:g} with a ball of probe.radius_mm = {ball_mm:g}",
             "a radius that the ball fits into",
+        )
+    if 0.0 < limits.slot_pitch_mm < _NARROWEST:
+        raise BadFile(
+            path,
+            "limits.slot_pitch_mm",
+            f"{limits.slot_pitch_mm:g}",
+            f"{_NARROWEST:g} mm or more, or 0 where screws may stand anywhere",
         )
     base = sides[0] * sides[1] * BASE_THICKNESS * wanted.density_kg_m3 * KG_M3
     if base > limits.max_mass_kg:

@@ -193,7 +193,8 @@ def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingH
     """Three screw holes as far apart as base, table, its slots and some balls allow.
 
     Two stand on one slot, the third on another; the slots run along x, one through the middle. A
-    standard rests on the pads round its holes, so three of them never rock.
+    standard rests on the pads round its holes, so three of them never rock. Places are in tenths
+    of a millimetre, whatever the slots are.
 
     Raises:
         NotBuildable: Base, table and slots leave no room for them.
@@ -202,7 +203,7 @@ def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingH
     pitch = limits.slot_pitch or _STEP
     ys = np.arange(-(base.half_size[1] // pitch), base.half_size[1] // pitch + 1) * pitch
     xs = np.arange(-(base.half_size[0] // _STEP), base.half_size[0] // _STEP + 1) * _STEP
-    places = np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1).reshape(-1, 2)
+    places = np.round(np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1).reshape(-1, 2), 1)
     inset = -outline_distance(places, base.half_size, base.corner_radius)
     good = inset >= fit.bore_radius + _WALL
     good &= np.hypot(*places.T) <= limits.table_radius - TABLE_RIM - fit.hole_radius
@@ -213,9 +214,14 @@ def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingH
     pair, third = places[good & mirrored & (places[:, 0] > 0.0)], places[good]
     legs = [np.linalg.norm(pair[:, None] * [s, 1.0] - third, axis=-1) for s in (-1.0, 1.0)]
     least = np.minimum(np.minimum(*legs), 2.0 * pair[:, :1])
+    least[np.abs(pair[:, 1:] - third[:, 1]) < _APART] = 0.0  # in a row they would rock
     if least.max(initial=0.0) < _APART:
+        slots = f"limits.slot_pitch_mm = {pitch:g}" if limits.slot_pitch else "no slots"
         raise NotBuildable(
-            f"no three screw holes {_APART:g} mm apart are within base, table and its slots"
+            f"no three screw holes {_APART:g} mm apart, two in a row and one beside it, are within "
+            f"base ({2 * base.half_size[0]:g} x {2 * base.half_size[1]:g} mm) and table (diameter "
+            f"{2 * limits.table_radius:g} mm) with {slots}",
+            binding=["slots"] if limits.slot_pitch else [],
         )
     first, last = np.unravel_index(np.argmax(least + 1e-3 * (legs[0] + legs[1])), least.shape)
     (x, y), bore = pair[first], (fit.hole_radius, fit.bore_radius, fit.bore_depth)

@@ -55,7 +55,8 @@ class Cutting:
 def cutting_of(standard: Standard, details: Details) -> Cutting:
     """Every surface by samples: faces, walls, posts, feet, plate; bores are drilled.
 
-    A ball-end mill touches with its ball; shank, holder and nose are held against all bodies.
+    A ball-end mill touches with its ball; shank, holder and nose are held against all that is
+    milled: the balls are glued in afterwards.
     """
     name, points, normals = _surface(standard, details)
     centre = points + (RADIUS + 0.01) * normals
@@ -156,7 +157,8 @@ def _walls(patch: FreeformPatch, top: float) -> list[tuple[str, Array, Array]]:
 def is_free(
     standard: Standard, centre: Array, axis: Array, overhang: float = OVERHANG
 ) -> np.ndarray:
-    """Whether shank, holder and nose of a tool keep out of all bodies, (N,)."""
+    """Whether shank, holder and nose of a tool keep out of everything that is milled, (N,)."""
+    balls = {ball.name for ball in standard.spheres}
     side = np.cross(axis, [0.0, 1.0, 0.0] if abs(axis[1]) < 0.9 else [1.0, 0.0, 0.0])
     side /= np.linalg.norm(side)
     other = np.cross(axis, side)
@@ -176,5 +178,6 @@ def is_free(
         if not len(left):
             break
         places = (centre[left, None] + offsets).reshape(-1, 3)
-        free[left] = ~standard.holds(places, _SLACK).reshape(len(left), -1).any(axis=1)
+        held = standard.holds(places, _SLACK, balls)
+        free[left] = ~held.reshape(len(left), -1).any(axis=1)
     return free

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
+from artefact.body import DatumSphere, FreeformPatch, Standard, max_slope, min_concave_radius
 from cad_out.details import (
     BALL,
     DATUMS,
@@ -123,10 +123,13 @@ def _datums(
     (a, b), thick = standard.base.half_size, standard.base.thickness
     down, west = np.array([0.0, -1.0]), np.array([-1.0, 0.0])
     up = np.array([0.0, 1.0])
-    sheet.datum(left.at([[0.92 * b, thick]])[0], up, "A")
+    # beside the view: on the face itself pillars and posts are in the way
+    sheet.line(left.at([[b, thick]])[0] + np.array([[1.0, 0.0], [12.0, 0.0]]))
+    sheet.datum(np.add(left.at([[b, thick]])[0], [7.0, 0.0]), up, "A")
     sheet.datum(top.at([[0.55 * a, -details.sides["DATUM_B"].offset]])[0], down, "B")
     sheet.datum(top.at([[-details.sides["DATUM_C"].offset, 0.55 * b]])[0], west, "C")
-    sheet.roughness(front.at([[0.72 * a, thick]])[0], "Ra 0.8")
+    sheet.line(front.at([[a, thick]])[0] + np.array([[1.0, 0.0], [16.0, 0.0]]))
+    sheet.roughness(np.add(front.at([[a, thick]])[0], [4.0, 0.0]), "Ra 0.8")
     tolerances = {t.face: t for t in tolerances_of(standard, details)}
     x, y = left.at([[-b, 0.0]])[0]
     rows = [("DATUM_A", "A"), ("DATUM_B", "B"), ("DATUM_C", "C")]
@@ -161,32 +164,46 @@ def _tables(sheet: Sheet, standard: Standard, details: Details) -> float:
     """Faces, balls and holes with their places; returns the height of the lower edge."""
     rows = [["face", "x", "y", "z", "size", "slope", "R", "proves the model, and of it most"]]
     rows += [_face_row(patch) for patch in standard.patches]
-    widths = (11, 14, 14, 14, 22, 11, 13, 89)
     title = "Freeform faces (middle, steepest slope, least concave radius between their edges)"
-    y = sheet.table(_TABLES, _TOP, widths, rows, title)
-    rows = [["ball", "x", "y", "z", "Ø", "foot", "land z", "identifies the machine; calibrated"]]
-    for ball in standard.spheres:
-        place = [f"{c:.1f}" for c in ball.centre]
-        post = [f"Ø{2 * ball.foot_radius:.1f}", f"{details.seats[ball.name].top:.2f}"]
-        purpose = f"centre and form; {BALL.name}"
-        rows.append([ball.name, *place, f"{2 * ball.radius:g}", *post, purpose])
-    widths = (11, 14, 14, 14, 11, 15, 15, 94)
-    y = sheet.table(_TABLES, y - 9.0, widths, rows, "Balls (centres)")
-    rows = [["hole", "x", "y", "through", "counterbore", "for"]]
-    rows += [
-        [h.name, f"{h.x:.1f}", f"{h.y:.1f}", f"Ø{2 * h.radius:g}", _bore(h), "screw to the table"]
-        for h in standard.holes
-    ]
+    y = sheet.table(_TABLES, _TOP, (11, 14, 14, 14, 22, 11, 13, 89), rows, title)
+    rows = [["ball", "x", "y", "z", "Ø", "foot", "land", "land z", "sink",
+             "identifies the machine; calibrated"]]  # fmt: skip
+    rows += [_ball_row(ball, details) for ball in standard.spheres]
+    title = f"Balls (centres), {BALL.name}, and their posts"
+    y = sheet.table(_TABLES, y - 9.0, (11, 14, 14, 14, 11, 15, 15, 15, 13, 66), rows, title)
+    rows = [["hole", "x", "y", "z", "through", "counterbore", "pad", "for"]]
+    rows += _hole_rows(standard, details)
+    title = "Holes (middles of their mouths)"
+    return sheet.table(_TABLES, y - 9.0, (17, 17, 17, 12, 24, 24, 14, 63), rows, title)
+
+
+def _hole_rows(standard: Standard, details: Details) -> list[list[str]]:
+    out, top = [], f"{standard.base.thickness:g}"
+    pads = {(pad.x, pad.y): f"Ø{2 * pad.radius:g}" for pad in details.pads}
+    for h in standard.holes:
+        sizes = [f"Ø{2 * h.radius:g}", f"Ø{2 * h.bore_radius:g} x {h.bore_depth:g}"]
+        sizes.append(pads.get((h.x, h.y), ""))
+        out.append([h.name, f"{h.x:.1f}", f"{h.y:.1f}", top, *sizes, "screw to the table"])
     for bore in details.bores:
-        size = f"Ø{2 * bore.radius:g} x {bore.depth:g}"
+        x, y, z = bore.mouth
+        sizes = [f"Ø{2 * bore.radius:g} x {bore.depth:g}", bore.thread, ""]
         purpose = "eyebolt" if bore.thread else "thermometer, from the side at +y"
-        rows.append([bore.name, f"{bore.mouth[0]:.1f}", f"{bore.mouth[1]:.1f}", size, bore.thread,
-                     purpose])  # fmt: skip
-    return sheet.table(_TABLES, y - 9.0, (17, 17, 17, 24, 24, 89), rows, "Holes")
+        out.append([bore.name, f"{x:.1f}", f"{y:.1f}", f"{z:g}", *sizes, purpose])
+    return out
 
 
-def _bore(hole: Any) -> str:
-    return f"Ø{2 * hole.bore_radius:g} x {hole.bore_depth:g}"
+def _ball_row(ball: DatumSphere, details: Details) -> list[str]:
+    seat = details.seats[ball.name]
+    return [
+        ball.name,
+        *(f"{c:.1f}" for c in ball.centre),
+        f"{2 * ball.radius:g}",
+        f"Ø{2 * ball.foot_radius:.1f}",
+        f"Ø{2 * seat.top_radius:.2f}",
+        f"{seat.top:.2f}",
+        f"{2 * seat.half_angle / DEG:.0f}°",
+        "centre and form",
+    ]
 
 
 def _face_row(patch: FreeformPatch) -> list[str]:
@@ -211,6 +228,7 @@ def _notes(sheet: Sheet, top: float, standard: Standard, details: Details) -> No
     words.append(f"Names of faces as in standard.step: {faces}; that model is the definition.")
     for number, note in enumerate(words, 1):
         top -= 4.2
+        note = note.replace(" degC", " °C").replace(" um", " µm")  # ASCII is for the STEP file
         for k, part in enumerate(_wrapped(f"{number}  {note}")):
             top -= 3.6 if k else 0.0
             sheet.text(_TABLES, top, part, size=2.0)
@@ -235,10 +253,11 @@ def _title(sheet: Sheet, standard: Standard, issuer: Issuer, scale: float) -> No
         (0.0, 12.0, 64.0, "legal owner", issuer.organisation),
         (64.0, 12.0, 62.0, "author", issuer.author),
         (126.0, 12.0, 62.0, "made by", tool),
-        (0.0, 0.0, 40.0, "mass with balls", f"{issuer.mass:.1f} kg"),
-        (40.0, 0.0, 30.0, "scale", ratio),
-        (70.0, 0.0, 34.0, "sheet", "1 / 1, A2"),
-        (104.0, 0.0, 50.0, "tolerances", "ISO 2768-mK, ISO 8015"),
+        (0.0, 0.0, 30.0, "mass with balls", f"{issuer.mass:.1f} kg"),
+        (30.0, 0.0, 18.0, "scale", ratio),
+        (48.0, 0.0, 24.0, "sheet", "1 / 1, A2"),
+        (72.0, 0.0, 46.0, "tolerances", "ISO 2768-mK, ISO 8015"),
+        (118.0, 0.0, 36.0, "identification", standard.fingerprint),
     ]
     for left, low, width, what, words in cells:
         sheet.box(x + left, y + low, width, 12.0)

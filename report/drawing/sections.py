@@ -27,9 +27,9 @@ def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) ->
     contact = f"contact circle Ø{2 * seat.contact_radius:.1f}, metal on metal"
     sheet.leader(tip, np.add(tip, [14.0, 9.0]), contact)
     glue = view.at([[seat.rim_radius, top + 0.5 * glue_gap(sphere, seat)]])[0]
-    sheet.leader(
-        glue, np.add(glue, [12.0, 1.0]), f"glue outside only, {glue_gap(sphere, seat):.2f} wide"
-    )
+    gaps = sorted(glue_gap(s, details.seats[s.name]) for s in standard.spheres)
+    high = " to ".join(dict.fromkeys(f"{gap:.2f}" for gap in (gaps[0], gaps[-1])))
+    sheet.leader(glue, np.add(glue, [12.0, 1.0]), f"glue outside only, {high} high")
     half = seat.half_angle / DEG
     flank = view.at([[0.45 * seat.rim_radius, 0.55 * deep + 0.45 * top]])[0]
     beside = np.add(view.at([[low, floor]])[0], [8.0, 5.0])
@@ -37,8 +37,10 @@ def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) ->
     size = view.at([[-0.7 * sphere.radius, 0.7 * sphere.radius]])[0]
     sheet.leader(size, np.add(size, [-6.0, 5.0]), f"SØ{2 * sphere.radius:g} ±0.0025")
     where = view.at([[0.0, 1.3 * sphere.radius]])[0]
-    title = f"BALL IN ITS SEAT ({_ratio(view.scale)}), all {len(standard.spheres)} alike"
-    sheet.text(where[0], where[1] + 3.0, title, size=3.0, ha="center")
+    title = f"{sphere.name} IN ITS SEAT ({_ratio(view.scale)})"
+    sheet.text(where[0], where[1] + 6.0, title, size=3.0, ha="center")
+    others = "all balls likewise, land and countersink as in the table"
+    sheet.text(where[0], where[1] + 2.0, others, size=2.2, ha="center")
 
 
 def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
@@ -77,7 +79,9 @@ def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -
         )
     where = view.at([[0.0, thick]])[0]
     through = f"Ø{2 * hole.radius:g} through"
-    title = f"SCREW AND PAD ({_ratio(view.scale)}), {len(standard.holes)} alike, {through}"
+    alike = len({p.radius for p in details.pads}) < 2
+    rest = f"{len(standard.holes)} alike" if alike else "others with pads as in the table"
+    title = f"{hole.name} ({_ratio(view.scale)}), {through}, {rest}"
     sheet.text(where[0], where[1] + 11.0, title, size=3.0, ha="center")
 
 

@@ -18,6 +18,8 @@ WIDE, THIN = 0.5, 0.25
 _POINT = 72.0 / 25.4  # points a millimetre
 _MARGIN, _BINDING = 10.0, 20.0
 _ARROW = 2.6  # mm
+_WIDE = 0.95  # of its height, a letter with what is between two
+_CLEAR, _WAYS = 1.0, 32  # mm between a circle and its name; directions that are tried for it
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +52,7 @@ class Sheet:
         self.axes.set_ylim(0.0, HEIGHT)
         self.axes.set_axis_off()
         self._depth = 1.0
+        self._ink: list[Array] = []
         self.box(_BINDING, _MARGIN, WIDTH - _MARGIN - _BINDING, HEIGHT - 2 * _MARGIN, 0.7)
 
     def line(self, points: Any, width: float = THIN, style: str = "-", fill: str = "none") -> None:
@@ -57,6 +60,7 @@ class Sheet:
         from matplotlib.patches import Polygon
 
         p = np.atleast_2d(points)
+        self._ink.append(p)
         self._depth += 1e-3
         closed = fill != "none" or bool(np.allclose(p[0], p[-1]))
         dashes = {"--": (0, (8, 4)), "-.": (0, (20, 4, 2, 4))}.get(style, "-")
@@ -91,10 +95,29 @@ class Sheet:
     ) -> None:
         """Words of a height in millimetres, standing on a line."""
         self._depth += 1e-3
+        wide, begin = _WIDE * size * len(words), {"left": 0.0, "center": 0.5, "right": 1.0}[ha]
+        box = np.array([[0.0, 0.0], [wide, 0.0], [wide, size], [0.0, size], [0.0, 0.0]])
+        along = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn))])
+        axes = np.array([along, [-along[1], along[0]]])
+        self._ink.append(np.array([x, y]) + (box - [begin * wide, 0.0]) @ axes)
         self.axes.text(
             x, y, words, fontsize=1.35 * size * _POINT, ha=ha, va="baseline", rotation=turn,
             rotation_mode="anchor", zorder=self._depth,
         )  # fmt: skip
+
+    def label(self, middle: Any, radius: float, words: str, size: float = 1.9) -> None:
+        """Words beside a circle, on the side where least is drawn."""
+        p, half = np.asarray(middle, dtype=float), 0.5 * np.array([_WIDE * len(words), 1.0]) * size
+        reach = radius + 2.0 * half[0] + 2.0 * _CLEAR
+        ink = np.concatenate([_dense(line) for line in self._ink])
+        ink = ink[(np.abs(ink - p) < reach).all(axis=1)]
+        ways = np.pi / 4.0 + np.arange(_WAYS) * 2.0 * np.pi / _WAYS
+        ways = np.column_stack([np.cos(ways), np.sin(ways)])
+        places = p + (radius + _CLEAR) * ways + half * np.clip(1.4 * ways, -1.0, 1.0)
+        beyond = np.maximum(np.abs(ink - places[:, None]) - half, 0.0)
+        room = np.hypot(beyond[..., 0], beyond[..., 1]).min(axis=1, initial=_CLEAR)
+        best = places[np.argmax(np.round(room, 1))]
+        self.text(best[0], best[1] - half[1], words, size=size, ha="center")
 
     def arrow(self, tip: Any, direction: Any) -> None:
         """Head of an arrow."""
@@ -201,3 +224,13 @@ class Sheet:
                 at += width
             y -= height
         return y
+
+
+def _dense(line: Array) -> Array:
+    """Points on a polyline, half a millimetre apart at most."""
+    far = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    if not len(far):
+        return line
+    at = np.concatenate([[0.0], np.cumsum(far)])
+    t = np.linspace(0.0, at[-1], int(2.0 * at[-1]) + 2)
+    return np.column_stack([np.interp(t, at, line[:, k]) for k in (0, 1)])

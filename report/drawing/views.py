@@ -29,11 +29,11 @@ def draw_top(sheet: Sheet, view: View, standard: Standard, details: Details) -> 
         sheet.circle(middle, view.scale * sphere.radius)
         _cross(sheet, view, sphere.centre[:2], sphere.radius)
         sheet.text(middle[0] + 0.6, middle[1] + 0.6, sphere.name.removeprefix("SPH"), size=2.2)
-    _hole_names(sheet, view, standard, details)  # last, so that nothing higher hides one
     for line in details.lettering:
         if line.T_artefact_text[2, 2] > 0.5:
             for dot in apply(line.T_artefact_text, np.pad(line.dots, ((0, 0), (0, 1)))):
                 sheet.circle(view.at(dot[:2])[0], view.scale * DOT, 0.13)
+    _hole_names(sheet, view, standard, details)  # last, so that they find their way round the rest
 
 
 def _holes(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
@@ -55,13 +55,12 @@ def _holes(sheet: Sheet, view: View, standard: Standard, details: Details) -> No
 
 
 def _hole_names(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
+    pads = {(pad.x, pad.y): pad.radius for pad in details.pads}
     for hole in standard.holes:
-        _name(sheet, view, np.array([hole.x, hole.y]), hole.bore_radius, hole.name)
+        radius = max(hole.bore_radius, pads.get((hole.x, hole.y), 0.0))
+        sheet.label(view.at([hole.x, hole.y])[0], view.scale * radius, hole.name)
     for bore in details.bores:
-        along = np.array(bore.direction[:2])
-        is_upright = bore.direction[2] < 0.0
-        end = np.array(bore.mouth[:2]) + (0.0 if is_upright else 0.4 * bore.depth) * along
-        _name(sheet, view, end, bore.radius if is_upright else 2.0, bore.name)
+        sheet.label(view.at(bore.mouth[:2])[0], view.scale * bore.radius, bore.name)
 
 
 def _outline(half: tuple[float, float], radius: float, details: Details) -> Array:
@@ -102,11 +101,6 @@ def _cross(sheet: Sheet, view: View, middle: Array, radius: float) -> None:
     reach = radius + 3.0 / view.scale * 0.5
     for way in (np.array([reach, 0.0]), np.array([0.0, reach])):
         sheet.line(view.at([middle - way, middle + way]), 0.13, "-.")
-
-
-def _name(sheet: Sheet, view: View, middle: Array, radius: float, name: str) -> None:
-    at = view.at(np.add(middle, [0.75 * radius, 0.75 * radius]))[0]
-    sheet.text(at[0] + 0.8, at[1] + 0.8, name, size=1.9)
 
 
 def draw_from(

@@ -217,7 +217,7 @@ def _out_of_reach(cutting: Cutting) -> str:
     if not cutting.out_of_reach:
         return ""
     enough = f"{cutting.overhang:g} mm out of its holder it reaches all"
-    none = "no overhang that was tried reaches all: design lower posts"
+    none = "no overhang that was tried reaches all: try a smaller blank.height_mm"
     words = enough if np.isfinite(cutting.overhang) else none
     return f", not at all: {', '.join(cutting.out_of_reach)}; {words}"
 

@@ -158,7 +158,7 @@ def test_faces_drawn_beside_bodies_leave_them_room():
             assert room >= hole.bore_radius + 6.0 - 0.05
 
 
-@pytest.mark.parametrize("pitch", [0.0, 63.0, 100.0])
+@pytest.mark.parametrize("pitch", [0.0, 31.75, 63.0, 100.0])
 def test_screws_stand_on_slots_within_table_and_base(pitch):
     blank = Blank(limits=Limits(table_radius=160.0, slot_pitch=pitch))
     holes = holes_on(blank)
@@ -168,11 +168,19 @@ def test_screws_stand_on_slots_within_table_and_base(pitch):
         inset = -outline_distance(np.array([[hole.x, hole.y]]), (140.0, 140.0), 25.0)[0]
         assert inset >= hole.bore_radius + 5.0
         if pitch:
-            assert hole.y / pitch == pytest.approx(round(hole.y / pitch), abs=1e-12)
+            assert hole.y == pytest.approx(round(hole.y / pitch) * pitch, abs=0.051)
+        assert [hole.x, hole.y] == [round(hole.x, 1), round(hole.y, 1)]
     sides = [np.hypot(a.x - b.x, a.y - b.y) for a, b in combinations(holes, 2)]
     assert min(sides) > 120.0
     with pytest.raises(NotBuildable, match="no three screw holes"):
         holes_on(Blank(limits=Limits(table_radius=20.0)))
+
+
+def test_screws_in_a_row_are_none():
+    """Slots so far apart that one alone is under the plate: the standard would rock on it."""
+    with pytest.raises(NotBuildable, match="slot_pitch_mm = 150") as caught:
+        holes_on(Blank(limits=Limits(table_radius=160.0, slot_pitch=150.0)))
+    assert caught.value.facts["binding"] == ["slots"]
 
 
 @pytest.mark.parametrize("length", [30.0, 90.0, 125.0])

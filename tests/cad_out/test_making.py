@@ -10,7 +10,7 @@ from artefact.body.freeform import graph_patch
 from artefact.body.standard import Base
 from artefact.layout.post import post_stiffness
 from cad_out.details.detail_list import details_of
-from cad_out.making.cutting import OVERHANG, cutting_of, untrimmed_radius
+from cad_out.making.cutting import OVERHANG, RADIUS, cutting_of, is_free, untrimmed_radius
 from cad_out.making.hexahedron import CORNERS, cube
 from cad_out.making.hints import hints_of, step_over
 from cad_out.making.making_file import Making, write_making
@@ -99,6 +99,17 @@ def test_a_cutter_reaches_open_pillars_and_not_the_floor_of_a_deep_slot(upright)
     # tilted by 45 degrees along the slot of 80 mm, a holder of 27 mm is out of it at its middle
     # where (overhang - 13.5) / sqrt 2 > 40, from 70 mm on
     assert found.overhang == 80.0
+
+
+def test_a_cutter_comes_from_above_to_a_post_under_its_ball(upright):
+    """The post is milled before its ball, which is wider, is glued in."""
+    ball, up = upright.spheres[0], np.array([0.0, 0.0, 1.0])
+    x, y, z = ball.centre
+    beside = np.array([[x + ball.foot_radius + RADIUS + 0.01, y, ball.foot + 20.0]])
+    side_of_shank = np.array([[x + ball.foot_radius + 0.01, y, z]])
+    assert upright.holds(side_of_shank, 0.5)  # where the ball will be
+    assert is_free(upright, beside, up).all()
+    assert not is_free(upright, beside - [2.0, 0.0, 0.0], up).any()
 
 
 def test_the_largest_cutter_fits_the_least_radius_beyond_the_trim(upright):

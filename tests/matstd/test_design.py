@@ -195,6 +195,7 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("base_mm = [280.0, 280.0]", "base_mm = [90.0, 280.0]", "160 mm or more"),
         ("table_radius_mm = 160.0", "table_radius_mm = 100.0", "no larger than the table, 200"),
         ("max_mass_kg = 60.0", "max_mass_kg = 5.0", "more than 18.3 kg"),
+        ("# slot_pitch_mm = 63.0", "slot_pitch_mm = 5.0", "found 5, expected 20 mm or more, or 0"),
         ("\nradius_mm = 3.0", "\nradius_mm = 20.0", "limits.min_concave_radius_mm"),
         ("gap_mm = 1.0", "gap_mm = -1.0", "limits.gap_mm"),
         ("B = [-90.0, 20.0]", "B = [28.0, 30.0]", "leave no room: they are approached"),

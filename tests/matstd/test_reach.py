@@ -232,6 +232,8 @@ def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
             {"binding": ["mass"]},
             "limits.max_mass_kg (larger) or blank.base_mm (smaller)",
         ),
+        ({"exit_code": 1}, "seed: the fault is the tool's own, not the project's"),
+        ({"binding": ["slots"]}, "limits.slot_pitch_mm (smaller, or 0) or blank.base_mm and"),
     ],
 )
 def test_what_cannot_be_built_says_which_keys_to_change(tmp_path, facts, change) -> None:

@@ -1,12 +1,14 @@
 """The sheet for the workshop: everything is on it, to scale, and on the paper."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from cad_out.details.detail_list import details_of
 from report.drawing.drawing import Issuer, draw_sheet, write_drawing
+from report.drawing.sections import draw_screw
 from report.drawing.sheet import HEIGHT, WIDTH, Sheet, View
 from report.drawing.views import draw_from
 
@@ -31,7 +33,45 @@ def test_every_feature_tolerance_and_party_is_on_the_sheet(upright, drawn):
     x, y, z = upright.spheres[1].centre
     row = words.index("SPH2")
     assert words[row + 1 : row + 4] == [f"{x:.1f}", f"{y:.1f}", f"{z:.1f}"]
+    details, row = details_of(upright), words.index("land")
+    land, z = (
+        f"{v:.2f}" for v in (2 * details.seats["SPH1"].top_radius, details.seats["SPH1"].top)
+    )
+    assert (words[row + 10], words[row + 11]) == (f"Ø{land}", z)
+    (thermo,) = (bore for bore in details.bores if bore.name == "THERMO")
+    row = words.index("THERMO", words.index("pad"))
+    assert words[row + 3 : row + 5] == [f"{thermo.mouth[2]:g}", "Ø6.2 x 40"]
+    assert upright.fingerprint in words
     assert not [w for w in words if "No room was found" in w]
+
+
+def test_pads_of_two_sizes_are_not_told_to_be_alike(upright):
+    """The outline leaves less relief beside the last."""
+    near = replace(upright.holes[2], y=upright.base.half_size[1] - 15.0)
+    moved = replace(upright, holes=(*upright.holes[:2], near))
+    pads = [2.0 * pad.radius for pad in details_of(moved).pads]
+    assert pads[2] < pads[0] == pytest.approx(26.0)
+    assert 10.0 * pads[2] == pytest.approx(round(10.0 * pads[2]), abs=1e-9)
+    sheet = Sheet()
+    draw_screw(sheet, View(200.0, 100.0, 1.0), moved, details_of(moved))
+    words = words_of(sheet)
+    assert f"Ø{pads[0]:g}" in words
+    assert any("others with pads as in the table" in w for w in words)
+
+
+def test_a_name_keeps_clear_of_what_is_drawn():
+    """Whatever is beside the circle but on one side, the words stand on that side."""
+    for turn in (0.0, 2.2, 4.3):
+        sheet, middle = Sheet(), np.array([200.0, 100.0])
+        sheet.circle(middle, 5.0)
+        for angle in turn + np.radians(np.arange(60.0, 301.0, 5.0)):
+            sheet.circle(middle + 9.0 * np.array([np.cos(angle), np.sin(angle)]), 2.5)
+        sheet.label(middle, 5.0, "HOLE3")
+        sheet.figure.set_dpi(72)
+        box = sheet.axes.texts[-1].get_window_extent().transformed(sheet.axes.transData.inverted())
+        at = np.array([0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)]) - middle
+        assert at @ [np.cos(turn), np.sin(turn)] > 0.5 * np.linalg.norm(at)
+        assert np.hypot(*np.maximum(np.abs(at) - 0.5 * np.array([box.width, box.height]), 0)) > 5.0
 
 
 def test_nothing_leaves_the_paper(drawn):

@@ -37,6 +37,7 @@ _KEYS = {
     "room for the ball before": "limits.gap_mm or probe.radius_mm (smaller)",
     "distance of the stem from": "limits.gap_mm or probe.radius_mm (smaller)",
     "mass": "limits.max_mass_kg (larger)",
+    "slots": "limits.slot_pitch_mm (smaller, or 0)",
 }
 """What may be changed where a constraint binds."""
 
@@ -154,6 +155,8 @@ def _what_helps(error: DesignError) -> str:
     """Changes that were tried and would do, or keys of the project file, the likeliest first."""
     from artefact.brief import FEWEST_PATCHES
 
+    if error.facts.keys() & {"conformity", "exit_code"}:
+        return "seed: the fault is the tool's own, not the project's"
     fitting, binding = error.facts.get("fitting"), error.facts.get("binding")
     wishes = error.facts.get("wishes")
     if isinstance(wishes, list):
