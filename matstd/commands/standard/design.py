@@ -156,7 +156,7 @@ def _what_helps(error: DesignError) -> str:
     from artefact.brief import FEWEST_PATCHES
 
     if error.facts.keys() & {"conformity", "exit_code"}:
-        return "seed: the fault is the tool's own, not the project's"
+        return "change seed: the fault is the tool's own, not the project's"
     fitting, binding = error.facts.get("fitting"), error.facts.get("binding")
     wishes = error.facts.get("wishes")
     if isinstance(wishes, list):
