@@ -84,7 +84,9 @@ def seen_beside(
         seen = np.flatnonzero(alone)
         some = [on[k][:: -(-len(on[k]) // _FEW)] for k in seen]
         owner = np.repeat(np.arange(len(seen)), [len(rows) for rows in some])
-        hides = in_the_way(reach, blank, [faces[k] for k in seen.tolist()], tried[np.concatenate(some)])
+        hides = in_the_way(
+            reach, blank, [faces[k] for k in seen.tolist()], tried[np.concatenate(some)]
+        )
         hidden = np.array([hides[:, owner == k].mean(axis=1) for k in range(len(seen))]).T
         leaves = hidden <= 1.0 - _LEFT
         beside[np.ix_(seen, seen)] |= leaves & leaves.T
