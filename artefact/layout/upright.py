@@ -39,6 +39,7 @@ TABLE_RIM = 8.0
 """From the rim of a screw hole to the rim of the table at least, mm."""
 
 _FACES_SHARE = 0.17  # of the base that all freeform faces cover: with more no 13 balls fit beside
+_SIZES = (0.7, 1.2)  # sides of a face in those that give them all that share
 _LARGEST = 32.0  # half side of a face, mm: what a touch probe looks at as one surface
 _ABOVE = 10.0  # mm that the lowest edge of a face is above the base: fillet, and room for the ball
 _HIGHEST = 0.45  # of the blank's height, the middle of a face at most
@@ -91,8 +92,9 @@ def freeform_faces(
     out: list[FreeformPatch] = []
     side = np.sqrt(_FACES_SHARE * 4.0 * np.prod(base.half_size) / faces)
     steepest = steepest_slope(blank.limits)
-    for _ in range(count):
-        half = np.round(np.minimum(0.5 * side * rng.uniform(0.7, 1.2, 2), _LARGEST), 1)
+    smallest = blank.material.density * (min(side, 2.0 * _LARGEST) * _SIZES[0]) ** 2 * _ABOVE
+    for _ in range(count if heaviest > smallest else 0):
+        half = np.round(np.minimum(0.5 * side * rng.uniform(*_SIZES, 2), _LARGEST), 1)
         middle = _inside(blank, half, around, rng)
         if middle is None:
             continue
