@@ -10,6 +10,7 @@ from artefact.brief.standard_tables import (
     BASE_THICKNESS,
     CORNER_RADIUS,
     FEWEST_PATCHES,
+    FINISHING,
     StandardTable,
 )
 from artefact.brief.task_file import Task, read_task
@@ -19,6 +20,7 @@ __all__ = [
     "BASE_THICKNESS",
     "CORNER_RADIUS",
     "FEWEST_PATCHES",
+    "FINISHING",
     "BodyTable",
     "ProbeTable",
     "Project",

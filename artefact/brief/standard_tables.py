@@ -21,6 +21,9 @@ CORNER_RADIUS = 25.0
 
 FEWEST_PATCHES = 3
 
+FINISHING = 3.0
+"""Radius of the ball-end mill that finishes what is milled, mm: no radius is asked below it."""
+
 _NARROWEST = 20.0  # mm between two slots of a table, ISO 299
 
 
@@ -122,6 +125,13 @@ def check_body(
             "limits.min_concave_radius_mm",
             f"{limits.min_concave_radius_mm:g} with a ball of probe.radius_mm = {ball_mm:g}",
             "a radius that the ball fits into",
+        )
+    if limits.min_concave_radius_mm < FINISHING:
+        raise BadFile(
+            path,
+            "limits.min_concave_radius_mm",
+            f"{limits.min_concave_radius_mm:g}",
+            f"{FINISHING:g} mm or more, which a finishing cutter of {2 * FINISHING:g} mm can make",
         )
     if 0.0 < limits.slot_pitch_mm < _NARROWEST:
         raise BadFile(

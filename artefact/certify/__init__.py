@@ -9,13 +9,14 @@ as much as it allows.
 from artefact.certify.calibration_fit import Calibrated, calibrated, fitted_ball
 from artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
 from artefact.certify.dmis import dmis_program
-from artefact.certify.task_places import curvature, like_task, on_faces
+from artefact.certify.task_places import check_places, curvature, like_task, on_faces
 from artefact.certify.true_places import misplaced
 
 __all__ = [
     "Calibrated",
     "CmmPoints",
     "calibrated",
+    "check_places",
     "curvature",
     "dmis_program",
     "fitted_ball",

@@ -1,17 +1,21 @@
 """Which touches on a standard are like a measuring task: slopes, curvatures, table poses."""
 
+from pathlib import Path
+
 import numpy as np
 from numpy.typing import NDArray
 
 from artefact.body import Standard
 from artefact.brief import Task
-from twin.errors import DesignError
+from twin.errors import BadFile, DesignError
 from twin.frames import Array
 from twin.record import Touches
-from twin.units import DEG
+from twin.units import DEG, UM
 
 Mask = NDArray[np.bool_]
 
+_OFF = 2.0 * UM  # rms by which touches may lie off the standard that they were evaluated with: its
+# sag is some tenths, what a piece differs from its design by 5 to 50
 _EDGE = 1e-6  # rad and 1/mm: a range includes its ends, whatever rounding did
 
 
@@ -71,6 +75,33 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
             f"within its ranges are: {', '.join(told)}"
         )
     return like
+
+
+def check_places(standard: Standard, touches: Touches, path: str | Path) -> None:
+    """Refuse a run that was evaluated with another file than that of this standard.
+
+    A touch lies on the surface that its evaluation believed in: that of the design, or that which
+    a calibration found.
+
+    Raises:
+        BadFile: They lie off its surfaces; by how much.
+    """
+    on_faces(standard, touches)
+    square: list[float] = []
+    for name in dict.fromkeys(touches.feature.tolist()):
+        surface, points = standard.features[name], touches.point[touches.feature == name]
+        uv = surface.project(points)
+        there = np.isfinite(uv).all(axis=1)
+        square += ((points[there] - surface.point(uv[there])) ** 2).sum(axis=1).tolist()
+    rms = float(np.sqrt(np.mean(square))) if square else 0.0
+    if rms > _OFF:
+        other = "the design" if standard.known else "a calibration of it"
+        raise BadFile(
+            path,
+            "px_mm, py_mm, pz_mm",
+            f"touches {rms / UM:.1f} µm rms off the surfaces of standard '{standard.name}'",
+            f"the file of the standard that the run was evaluated with: {other}, perhaps",
+        )
 
 
 def curvature(standard: Standard, touches: Touches) -> Array:

@@ -70,6 +70,7 @@ def freeform_faces(
     balls: Sequence[DatumSphere] = (),
     holes: Sequence[MountingHole] = (),
     from_side: bool = False,
+    heaviest: float = np.inf,
 ) -> list[FreeformPatch]:
     """Pillars of which some may be chosen, named by their numbers, evenly over the base.
 
@@ -81,9 +82,10 @@ def freeform_faces(
         balls: On posts, beside which cutter and probe find room.
         holes: Beside which the key does.
         from_side: Whether the probe comes from the side at every table pose, not from above.
+        heaviest: What a pillar may weigh, kg: it is drawn lower, and left out where it cannot be.
 
     Raises:
-        NotBuildable: No pillar stands within the outline.
+        NotBuildable: No pillar stands within the outline, or none is light enough.
     """
     base, around = blank.base, _around(blank, balls, holes)
     out: list[FreeformPatch] = []
@@ -102,7 +104,11 @@ def freeform_faces(
         size = (float(half[0]), float(half[1]))
         heights = np.round(smooth_heights(size, blank.limits, rng, plane=plane), 6)
         low = base.thickness + _ABOVE - float(heights.min())
+        tallest = base.thickness + heaviest / (blank.material.density * 4.0 * float(np.prod(half)))
+        if low > tallest:
+            continue
         high = max(min(_HIGHEST * blank.height, blank.height - float(heights.max())), low)
+        high = min(high, tallest)
         origin = np.round([*middle, rng.uniform(low, high)], 1)
         depth = float(origin[2]) - 0.5 * base.thickness + _ABOVE
         out.append(graph_patch(f"{len(out)}", pose(t=origin), size, heights, depth=depth))
@@ -111,6 +117,12 @@ def freeform_faces(
         beside = f" beside {len(balls)} balls" if balls else ""
         raise NotBuildable(f"no freeform face stands within a blank of {a:g} x {b:g} mm{beside}")
     return out
+
+
+def least_mass(face: FreeformPatch, blank: Blank) -> float:
+    """What a pillar adds to the plate were it as low as its shape allows, kg."""
+    tall = _ABOVE - float(face.heights.min())  # control heights have mean zero
+    return float(blank.material.density * 4.0 * np.prod(face.half_size) * tall)
 
 
 def _around(blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole]) -> Array:

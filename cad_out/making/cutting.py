@@ -6,11 +6,12 @@ from itertools import product
 import numpy as np
 
 from artefact.body import BLEND, FreeformPatch, Standard
+from artefact.brief import FINISHING
 from cad_out.details import Details
 from twin.frames import Array
 from twin.units import DEG
 
-RADIUS, OVERHANG = 3.0, 60.0
+RADIUS, OVERHANG = FINISHING, 60.0
 """Of the finishing ball-end mill, and how far it stands out of its holder: 10 D, mm."""
 
 LONGER = (80.0, 100.0, 120.0)

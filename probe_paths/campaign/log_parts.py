@@ -9,7 +9,7 @@ import numpy as np
 
 from artefact.body import Standard
 from probe_paths.control import UNDATED, LogPart
-from probe_paths.plan import stated_serial
+from probe_paths.plan import calibration_hash, stated_serial
 from twin.errors import BadFile
 from twin.frames import Array
 from twin.record import IntArray
@@ -98,7 +98,8 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
     """Parts without touches of features that the standard lacks, and remarks on all of them.
 
     Raises:
-        BadFile: A log of another standard, or nothing but such touches in a part.
+        BadFile: A log of another standard or another design of it, or nothing but such touches in
+            a part.
     """
     kept: list[LogPart] = []
     remarks = [f"{part.path}: {remark}" for part in parts for remark in part.remarks]
@@ -115,6 +116,7 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
                 part.path, f"line {part.line[0]}", f"feature {part.feature[0]}",
                 f"1 to {count}, a feature of {standard.name}",
             )  # fmt: skip
+        _check_design(part, standard)
         remarks += [
             f"{part.path}: line {part.line[i]}: feature {part.feature[i]} is none of 1 to {count}; "
             f"touch {part.number[i]} is left out"
@@ -128,6 +130,19 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
             )
         kept.append(_rows(part, np.flatnonzero(good)))
     return kept, remarks + _overlaps(kept)
+
+
+def _check_design(part: LogPart, standard: Standard) -> None:
+    """Refuse a log of another design of that name; a calibrated standard has other numbers."""
+    told = part.heading.calibration
+    if told and standard.known is None:
+        balls = standard.spheres[:-1] if part.heading.ball else standard.spheres
+        ours = calibration_hash(replace(standard, spheres=balls))
+        if told != ours:
+            raise BadFile(
+                part.path, "CALIBRATION", told,
+                f"{ours}, the hash of all faces and places of '{standard.name}'",
+            )  # fmt: skip
 
 
 def _overlaps(parts: Sequence[LogPart]) -> list[str]:

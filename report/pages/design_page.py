@@ -187,7 +187,9 @@ def _making(made: Making) -> list[tuple[str, str]]:
     often = sorted(f for f, value in stiff.sag.items() if value > SAG)
     told = f"; beyond {SAG / UM:g} µm: {', '.join(often)}" if often else ""
     told += "; taken off by evaluations ([sag] of standard.toml)"
-    cutters = ", ".join(f"{face} Ø{d:g}" for face, d in cutting.cutter.items())
+    cutters = ", ".join(
+        f"{face} {f'Ø{d:g}' if d else 'none of 6 mm or more'}" for face, d in cutting.cutter.items()
+    )
     beyond = _out_of_reach(cutting)
     return [
         (

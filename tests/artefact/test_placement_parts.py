@@ -25,7 +25,6 @@ from artefact.layout.upright import (
     holes_on,
 )
 from artefact.place import identifying
-from artefact.place.body_choice import BodyChoice, _Beside
 from artefact.reach.probe_clearance import ProbeShape
 from artefact.reach.touchable import ProbeReach, Requests, joined
 from artefact.worth.attribution import error_shares
@@ -311,21 +310,6 @@ def test_a_pose_from_which_a_head_reaches_nothing_takes_no_part_in_the_scatter()
     criterion.rotary = np.stack([poses[1], poses[1]], axis=-1)
     with pytest.raises(NotReachable, match="none of"):
         _scatter(criterion, poses[1:], np.random.default_rng(1))
-
-
-def test_faces_are_looked_at_alone_whatever_number_a_ball_has(chain):
-    """Places of faces and of balls are both named by their numbers."""
-    blank, rng = Blank(), np.random.default_rng(4)
-    balls = balls_on_posts(blank, 5, rng)[:2]
-    faces = freeform_faces(blank, 6, 4, rng, balls)
-    assert {b.name for b in balls} <= {f.name for f in faces}
-    reach = ProbeReach(chain, Setup("a"), PROBE, 160.0)
-    choice = BodyChoice(SimpleNamespace(reach=reach), blank, 4, rng, None, False)
-    near, far = np.zeros((1, 2)), np.full((1, 2), [0.0, 100.0])  # 100 rad: beyond the travel
-    for poses, touched in ((near, True), (far, False)):
-        there = _Beside(faces, np.ones((4, 4), dtype=bool), np.zeros(4), poses)
-        choice._bar_untouched(there, balls)
-        assert there.fits.any() == touched
 
 
 def test_of_two_pillars_just_as_far_apart_as_needed_both_fit_or_none(chain):

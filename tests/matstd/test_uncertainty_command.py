@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from artefact.body.known import Known
 from artefact.body.standard import Standard
-from artefact.body.standard_file import write_standard
+from artefact.body.standard_file import read_standard, write_standard
 from artefact.brief.task_file import Task
 from artefact.certify.task_places import curvature, like_task
 from matstd.cli import main
@@ -200,3 +201,36 @@ def test_a_run_of_another_standard(place: Path) -> None:
     other = replace(run.touches, feature=np.full(len(run), "PAD9"))
     with pytest.raises(DesignError, match="PAD9"):
         like_task(Task(), read_standard(place / "standard.toml"), other)
+
+
+def test_another_file_of_the_standard_than_the_run_was_evaluated_with_is_refused(
+    place: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A calibration that found FF1 20 µm higher; then one of another design."""
+    design = read_standard(place / "standard.toml")
+    face = design.patches[0]
+    up = face.T_artefact_patch @ pose(np.eye(3), np.array([0.0, 0.0, 20.0 * UM]))
+    found = replace(
+        design,
+        patches=(replace(face, T_artefact_patch=up), *design.patches[1:]),
+        known=Known("cmm.csv", "0123456789abcdef", {}),
+    )
+    piece, out = tmp_path / "piece.toml", tmp_path / "out"
+    write_standard(piece, found)
+    run = str(place / "v0.csv")
+    assert main(["uncertainty", run, "--standard", str(piece), "-o", str(out)]) == 2
+    told = capsys.readouterr().err
+    off = float(re.search(r"v0.csv: .* touches ([0-9.]+) µm rms off the surfaces", told)[1])
+    touches = read_run(run).touches
+    share = np.mean(touches.feature == "FF1")
+    upwards = np.mean(touches.normal[touches.feature == "FF1"][:, 2] ** 2)
+    assert off == pytest.approx(20.0 * np.sqrt(share * upwards), rel=0.05)
+    assert "the design, perhaps" in told
+    program = str(next((place / "programs").glob("*.H")))
+    real = ["--standard", str(place / "standard.toml"), "--real-standard", str(piece)]
+    machine = ["--machine", str(place / "machine.toml"), "-o", str(out)]
+    assert main(["simulate", program, *real, *machine]) == 2
+    assert f"nominal: found 0123456789abcdef, expected {design.fingerprint}" in (
+        capsys.readouterr().err
+    )
+    assert not out.exists()

@@ -6,6 +6,7 @@ from datetime import datetime
 import numpy as np
 import pytest
 
+from artefact.body.known import Known
 from probe_paths.campaign.contact_solver import FIRST_MORNING, VirtualMachine
 from probe_paths.campaign.evaluation import evaluate
 from probe_paths.campaign.virtual_run import run_programs
@@ -199,6 +200,13 @@ def test_touches_that_cannot_be_evaluated_are_named(parts, small, golden, chain)
     other = golden.standard((golden.sphere("SPH9", 0.0, 0.0),))
     with pytest.raises(BadFile, match="expected 1 to 2, a feature of SMALL-1"):
         evaluate([replace(parts[0], feature=np.full(len(parts[0].feature), 3))], other, chain, U)
+    first = small.spheres[0]
+    moved = replace(first, centre=np.add(first.centre, [0.005, 0.0, 0.0]))
+    another = replace(small, spheres=(moved, *small.spheres[1:]))
+    with pytest.raises(BadFile, match=r"CALIBRATION: found \w+, expected \w+, the hash of all"):
+        evaluate(parts, another, chain, U)
+    found = replace(another, known=Known("cmm.csv", small.fingerprint, {}))
+    assert len(evaluate(parts, found, chain, U)) == len(evaluate(parts, small, chain, U))
     with pytest.raises(NotEnoughData, match="no touch"):
         evaluate([], small, chain, U)
 

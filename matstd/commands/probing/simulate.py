@@ -70,6 +70,7 @@ def run(args: argparse.Namespace) -> int:
     refuse_to_overwrite(args.output, args.force)
     standard = read_standard(args.standard)
     real = read_standard(args.real_standard) if args.real_standard else standard
+    _check_piece(args.real_standard, real, standard)
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     record = read_sensors(args.sensors) if args.sensors else None
     dialect = read_dialect(args.control)
@@ -98,6 +99,19 @@ def run(args: argparse.Namespace) -> int:
     say_each(ball_lines(changes, radii=radii))
     say_each(run.remarks)
     return 0
+
+
+def _check_piece(path: str, real: Standard, believed: Standard) -> None:
+    """Refuse the calibration of another standard than the design that is believed of the piece."""
+    from twin.errors import BadFile
+
+    if real.known and not believed.known and real.known.nominal != believed.fingerprint:
+        raise BadFile(
+            path,
+            "calibration.nominal",
+            real.known.nominal,
+            f"{believed.fingerprint}, the fingerprint of '{believed.name}' (--standard)",
+        )
 
 
 def _search(

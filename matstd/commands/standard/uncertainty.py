@@ -39,6 +39,7 @@ def run(args: argparse.Namespace) -> int:
     """Evaluate; the result is written whole or not at all."""
     from artefact.body import read_standard
     from artefact.brief import Task, read_task
+    from artefact.certify import check_places
     from artefact.worth import Calibration
     from diagnosis.files import check_machine, read_model, write_uncertainty
     from matstd.console import say, say_each
@@ -56,6 +57,8 @@ def run(args: argparse.Namespace) -> int:
     standard = read_standard(args.standard)
     runs = [read_run(path) for path in args.run_files]
     check_visits(args.run_files, [one.fingerprint for one in runs])
+    for path, one in zip(args.run_files, runs, strict=True):
+        check_places(standard, one.touches, path)
     models: dict[str, tuple[Model, Prior] | None] = {PLAIN: None}
     remarks = [
         f"{p}: {r}" for p, one in zip(args.run_files, runs, strict=True) for r in one.remarks
