@@ -48,9 +48,10 @@ degrees of a wave off an even grid."""
 UNEVEN = 0.9
 """Mean resultant over a distance of readings from which they stand on a grid of it."""
 GAPS = (0.01, 0.1, 0.5, 0.9)
-"""Shares of the gaps between readings, to the widest of which it is taken for that of a grid. One row
-of every eight of an even log leaves a single distance in one gap of 64; in fewer rows no period is
-looked for (`PER_READING`) that they show as a longer one."""
+"""Shares of the gaps between readings, to the widest of which it is taken for that of a grid.
+
+One row of every eight of an even log leaves a single distance in one gap of 64; in fewer rows no
+period is looked for (`PER_READING`) that they show as a longer one."""
 PER_READING, MOST_PERIODS = 4, 40_000
 """Periods that are looked for in dense uneven readings: so many for each of them, so many at most.
 A choice of three thousand readings along 60 mm is scanned down to 5 µm."""
