@@ -7,9 +7,10 @@ more entry in `rivals`.
 
 from artefact.layout.post import post_stiffness
 from artefact.layout.rival_artefacts import rivals, with_spheres
-from artefact.layout.side_by_side import beside_balls, most_side_by_side
+from artefact.layout.side_by_side import Pairs, beside_balls, most_side_by_side
 from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
 from artefact.layout.upright import (
+    WALL_GAP,
     balls_fit,
     balls_on_posts,
     faces_beside,
@@ -17,11 +18,14 @@ from artefact.layout.upright import (
     freeform_faces,
     holes_on,
     least_gap,
+    least_mass,
 )
 
 __all__ = [
+    "WALL_GAP",
     "Blank",
     "Fittings",
+    "Pairs",
     "Site",
     "balls_fit",
     "balls_on_posts",
@@ -31,6 +35,7 @@ __all__ = [
     "freeform_faces",
     "holes_on",
     "least_gap",
+    "least_mass",
     "most_side_by_side",
     "post_stiffness",
     "rivals",

@@ -53,6 +53,7 @@ def beside_balls(
     balls: Sequence[DatumSphere],
     wanted: tuple[int, int],
     blank: Blank,
+    seen: Pairs | None = None,
 ) -> tuple[list[int], list[int]]:
     """Faces and balls that stand on a blank together: as many as wanted, else the most found.
 
@@ -61,11 +62,14 @@ def beside_balls(
         balls: Where they may stand.
         wanted: Number of faces and of balls.
         blank: With its limits; the screws stand where they are farthest apart without balls.
+        seen: Which faces leave each other to the probe, (F, F); None for all.
     """
     kind = np.repeat([0, 1], [len(faces), len(balls)])
     fits = np.zeros((len(kind), len(kind)), dtype=bool)
     n = len(faces)
     fits[:n, :n] = faces_fit(faces, holes_on(blank), blank.limits)
+    if seen is not None:
+        fits[:n, :n] &= seen
     fits[n:, n:] = balls_fit(balls, blank)
     fits[:n, n:] = np.array([faces_beside(faces, [ball], blank) for ball in balls]).reshape(-1, n).T
     fits[n:, :n] = fits[:n, n:].T

@@ -39,6 +39,7 @@ TABLE_RIM = 8.0
 """From the rim of a screw hole to the rim of the table at least, mm."""
 
 _FACES_SHARE = 0.17  # of the base that all freeform faces cover: with more no 13 balls fit beside
+_SIZES = (0.7, 1.2)  # sides of a face in those that give them all that share
 _LARGEST = 32.0  # half side of a face, mm: what a touch probe looks at as one surface
 _ABOVE = 10.0  # mm that the lowest edge of a face is above the base: fillet, and room for the ball
 _HIGHEST = 0.45  # of the blank's height, the middle of a face at most
@@ -70,6 +71,7 @@ def freeform_faces(
     balls: Sequence[DatumSphere] = (),
     holes: Sequence[MountingHole] = (),
     from_side: bool = False,
+    heaviest: float = np.inf,
 ) -> list[FreeformPatch]:
     """Pillars of which some may be chosen, named by their numbers, evenly over the base.
 
@@ -81,16 +83,18 @@ def freeform_faces(
         balls: On posts, beside which cutter and probe find room.
         holes: Beside which the key does.
         from_side: Whether the probe comes from the side at every table pose, not from above.
+        heaviest: What a pillar may weigh, kg: it is drawn lower, and left out where it cannot be.
 
     Raises:
-        NotBuildable: No pillar stands within the outline.
+        NotBuildable: No pillar stands within the outline, or none is light enough.
     """
     base, around = blank.base, _around(blank, balls, holes)
     out: list[FreeformPatch] = []
     side = np.sqrt(_FACES_SHARE * 4.0 * np.prod(base.half_size) / faces)
     steepest = steepest_slope(blank.limits)
-    for _ in range(count):
-        half = np.round(np.minimum(0.5 * side * rng.uniform(0.7, 1.2, 2), _LARGEST), 1)
+    smallest = blank.material.density * (min(side, 2.0 * _LARGEST) * _SIZES[0]) ** 2 * _ABOVE
+    for _ in range(count if heaviest > smallest else 0):
+        half = np.round(np.minimum(0.5 * side * rng.uniform(*_SIZES, 2), _LARGEST), 1)
         middle = _inside(blank, half, around, rng)
         if middle is None:
             continue
@@ -102,7 +106,11 @@ def freeform_faces(
         size = (float(half[0]), float(half[1]))
         heights = np.round(smooth_heights(size, blank.limits, rng, plane=plane), 6)
         low = base.thickness + _ABOVE - float(heights.min())
+        tallest = base.thickness + heaviest / (blank.material.density * 4.0 * float(np.prod(half)))
+        if low > tallest:
+            continue
         high = max(min(_HIGHEST * blank.height, blank.height - float(heights.max())), low)
+        high = min(high, tallest)
         origin = np.round([*middle, rng.uniform(low, high)], 1)
         depth = float(origin[2]) - 0.5 * base.thickness + _ABOVE
         out.append(graph_patch(f"{len(out)}", pose(t=origin), size, heights, depth=depth))
@@ -111,6 +119,12 @@ def freeform_faces(
         beside = f" beside {len(balls)} balls" if balls else ""
         raise NotBuildable(f"no freeform face stands within a blank of {a:g} x {b:g} mm{beside}")
     return out
+
+
+def least_mass(face: FreeformPatch, blank: Blank) -> float:
+    """What a pillar adds to the plate were it as low as its shape allows, kg."""
+    tall = _ABOVE - float(face.heights.min())  # control heights have mean zero
+    return float(blank.material.density * 4.0 * np.prod(face.half_size) * tall)
 
 
 def _around(blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole]) -> Array:

@@ -20,15 +20,21 @@ from artefact.layout import (
     holes_on,
     least_gap,
     most_side_by_side,
-    with_spheres,
 )
-from artefact.place.room import FEWEST_BALLS, Room, check_room, room_among
-from artefact.reach import ProbeReach, Requests, joined, spread_poses
-from artefact.worth import BallPlaces, Criterion, each_at, face_grid
+from artefact.place.room import (
+    FEWEST_BALLS,
+    Room,
+    check_room,
+    light_enough,
+    room_among,
+    share_of_mass,
+)
+from artefact.place.touched import in_the_way, is_from_side, seen_beside, touches_on, untouched
+from artefact.reach import Requests, spread_poses
+from artefact.worth import BallPlaces, Criterion
 from information.selection import best_groups
 from twin.errors import NotBuildable, NotReachable
-from twin.frames import Array, inverse, turn
-from twin.machine import table_to_tool
+from twin.frames import Array
 
 Which = NDArray[np.bool_]
 
@@ -50,11 +56,27 @@ class _Beside:
     poses: Array
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked of faces beyond room, once a body without it was refused.
+
+    Attributes:
+        light: That they leave the standard within its mass.
+        seen: That the probe can touch them beside each other.
+    """
+
+    light: bool = False
+    seen: bool = False
+
+    def fewer(self, balls: list[DatumSphere]) -> list[DatumSphere]:
+        """The balls without those that tell least: one, or half where each look takes seconds."""
+        return balls[: max(FEWEST_BALLS, len(balls) // 2)] if self.seen else balls[:-1]
+
+
 _REBUILDS = 8  # choices of faces tried before giving up
 _STARTS = 80  # of the search for faces side by side
 
 _HIDDEN = (0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 1.0)  # of the touches, that a face may hide
-_WAY, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that is looked at, in steps
 _POSES = 20  # at which touches on faces are looked at
 
 
@@ -119,14 +141,14 @@ class BodyChoice:
         take: int,
     ) -> Standard:
         """A body of some balls with faces between them, chosen again until no limit is broken."""
-        limits = self.blank.limits
+        limits, asked = self.blank.limits, _Asked()
         standing, holes = self._screwed(balls)
-        there, standing = self._beside(standing, holes, touches, count)
+        there, standing = self._beside(standing, holes, touches, count, asked)
         refused, binding = "", list[str]()
         for _ in range(_REBUILDS):
             chosen = self._chosen(there, count, take)
             while len(chosen) < count and len(standing) > FEWEST_BALLS:
-                there, standing = self._beside(standing[:-1], holes, touches, count)
+                there, standing = self._beside(asked.fewer(standing), holes, touches, count, asked)
                 chosen = self._chosen(there, count, take)
             if len(chosen) < count:
                 raise NotBuildable(
@@ -138,13 +160,19 @@ class BodyChoice:
             faces = sorted((there.faces[k] for k in chosen), key=_azimuth_of_face)
             made = self._put_together(name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
-            blamed = [c.features for c in broken] or self._untouched(made, there.poses)
+            blamed = [c.features for c in broken]
+            blamed = blamed or [(f,) for f in untouched(self.criterion.reach, made, there.poses)]
             if not blamed:
                 return made
-            if not broken and not refused:
-                self._bar_untouched(there, standing)
             what = broken[0] if broken else f"no touch can be made on {blamed[0][0]}"
             refused, binding = f"; {what}", [c.name for c in broken]
+            if "mass" in binding and not asked.light:
+                asked = replace(asked, light=True)
+                there, standing = self._beside(standing, holes, touches, count, asked)
+                continue
+            if not broken and not asked.seen:
+                asked = replace(asked, seen=True)
+                there.fits[:] &= self._seen(there.faces, standing, there.poses)
             in_order = [int(face.name) for face in faces]
             for features in blamed:
                 _blame(there.fits, features, [p.name for p in made.patches], in_order)
@@ -152,18 +180,8 @@ class BodyChoice:
             f"no choice of {count} patches meets every limit{refused}", binding=binding
         )
 
-    def _untouched(self, made: Standard, poses: Array) -> list[tuple[str, ...]]:
-        """Faces on which the probe finds no way to any of a few touches."""
-        reach, tried = self.criterion.reach, _touches_on(list(made.patches), poses)
-        tried = tried[reach.is_reachable(tried)]
-        there = set(tried[reach.is_clear(made, tried)].feature.tolist())
-        return [(patch.name,) for patch in made.patches if patch.name not in there]
-
-    def _bar_untouched(self, there: "_Beside", balls: list[DatumSphere]) -> None:
-        """Keep the faces on which no touch can be made beside the balls from being chosen."""
-        for k, face in enumerate(there.faces):
-            if self._untouched(self._put_together("", "", [face], balls, ()), there.poses):
-                there.fits[k, :] = there.fits[:, k] = False
+    def _seen(self, faces: list[FreeformPatch], balls: list[DatumSphere], poses: Array) -> Which:
+        return seen_beside(self.criterion.reach, self.blank, faces, balls, poses).beside
 
     def _screwed(
         self, balls: list[DatumSphere]
@@ -183,21 +201,32 @@ class BodyChoice:
         holes: tuple[MountingHole, ...],
         touches: Requests,
         count: int,
+        asked: "_Asked",
     ) -> tuple["_Beside", list[DatumSphere]]:
         """Faces between some balls, and the balls: the last goes until so many faces fit."""
+        poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
         while True:
-            faces = freeform_faces(
-                self.blank, count, self.tried, self.rng, balls, holes, self.from_side
-            )
+            heaviest = share_of_mass(self.blank, balls, holes, count) if asked.light else np.inf
+            try:
+                faces = freeform_faces(
+                    self.blank, count, self.tried, self.rng, balls, holes, self.from_side, heaviest
+                )
+            except NotBuildable:  # none is light enough
+                if not asked.light or len(balls) <= FEWEST_BALLS:
+                    raise
+                balls = asked.fewer(balls)
+                continue
             fits = faces_fit(faces, holes, self.blank.limits)
+            if asked.seen:
+                fits &= self._seen(faces, balls, poses)
             if (
                 len(balls) <= FEWEST_BALLS
                 or len(most_side_by_side(fits, count, starts=_STARTS)) == count
             ):
-                hides = self._in_the_way(faces, touches).mean(axis=1)
-                poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
+                reach = self.criterion.reach
+                hides = in_the_way(reach, self.blank, faces, touches).mean(axis=1)
                 return _Beside(faces, fits, hides, poses), balls
-            balls = balls[:-1]  # the last one chosen tells least
+            balls = asked.fewer(balls)
 
     def _chosen(self, there: "_Beside", count: int, take: int) -> list[int]:
         """Of the faces that hide fewest touches those worth most; fewer where no other fits."""
@@ -229,7 +258,7 @@ class BodyChoice:
         faces = list(made.patches)
         free = [bool(faces_beside(faces, [ball], self.blank).all()) for ball in places.balls]
         clear = np.array(free)[places.group]
-        clear &= ~self._in_the_way(faces, places.touches).any(axis=0)
+        clear &= ~in_the_way(self.criterion.reach, self.blank, faces, places.touches).any(axis=0)
         if not clear.any():
             return None
         balls = places.best(len(made.spheres), touches, clear)
@@ -242,28 +271,11 @@ class BodyChoice:
         broken = any(c.slack < 0.0 for c in constraints(again, self.blank.limits))
         return again if is_whole and not broken else None
 
-    def _in_the_way(self, faces: list[FreeformPatch], touches: Requests) -> Which:
-        """Whether a face stands in the way of the probe at a touch, (F, N)."""
-        reach = self.criterion.reach
-        frames = table_to_tool(reach.chain, reach.readings(touches))
-        axis = turn(inverse(reach.setup.T_table_artefact), frames[:, :3, 2])
-        ball = touches.point + reach.radius * touches.normal
-        begin, points, radii = 0.0, list[Array](), list[Array]()
-        for end, radius in reach.shape.cylinders:
-            for at in np.arange(begin, min(end, _WAY), _SAMPLES):
-                points.append(ball + at * axis)
-                radii.append(np.full(len(ball), radius + reach.room))
-            begin = end
-        where, least = np.concatenate(points), np.concatenate(radii)
-        bare = replace(with_spheres(self.blank, []), patches=tuple(faces))
-        near = [column.distance(where) < least for column in bare.columns.values()]
-        return np.array([n.reshape(-1, len(ball)).any(axis=0) for n in near])
-
     def _worth_most(
         self, faces: list[FreeformPatch], fits: Which, poses: Array, count: int, take: int
     ) -> list[int]:
         """The faces worth most; if their neighbours run out, begun from some that all fit."""
-        wanted = _touches_on(faces, poses)
+        wanted = touches_on(faces, poses)
         wanted = wanted[self.criterion.reach.is_reachable(wanted)]
         if not len(wanted):
             return []
@@ -318,11 +330,12 @@ def body_choice(
     """
     criterion, blank = places.criterion, places.blank
     few = spread_poses(poses, _POSES)
-    from_side = _is_from_side(criterion.reach, few)
+    from_side = is_from_side(criterion.reach, few)
     all_faces = freeform_faces(blank, faces, tried, rng, from_side=from_side)
     room = room_among(all_faces, places.balls, faces, blank)
+    room = light_enough(room, all_faces, places.balls)
     check_room(room)
-    if not criterion.reach.is_reachable(_touches_on(all_faces, few)).any():
+    if not criterion.reach.is_reachable(touches_on(all_faces, few)).any():
         raise NotReachable(
             f"no face at any of {len(all_faces)} places can be touched at a table pose with every "
             "axis within its travel"
@@ -330,19 +343,6 @@ def body_choice(
     return BodyChoice(
         criterion=criterion, blank=blank, tried=tried, rng=rng, room=room, from_side=from_side
     )
-
-
-def _is_from_side(reach: ProbeReach, poses: Array) -> bool:
-    """Whether the tool axis never comes within half a right angle of the standard's z."""
-    up = np.tile([0.0, 0.0, 1.0], (len(poses), 1))
-    at = Requests(np.full(len(poses), "FF1"), np.zeros_like(up), up, poses)
-    axis = table_to_tool(reach.chain, reach.readings(at))[:, :3, 2]
-    return bool((turn(inverse(reach.setup.T_table_artefact), axis)[:, 2] < np.sqrt(0.5)).all())
-
-
-def _touches_on(faces: list[FreeformPatch], poses: Array) -> Requests:
-    """A few touches on every face."""
-    return joined([each_at(p, face_grid(p.half_size, 3)[::2], poses) for p in faces])
 
 
 def _azimuth_of_face(face: FreeformPatch) -> float:

@@ -11,12 +11,11 @@ between them, then poses, then single touches are chosen so that the tool point 
 best over the user's poses, and the finished body is measured against every limit.
 """
 
-from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import DatumSphere, Standard
+from artefact.body import Standard
 from artefact.compare import (
     Power,
     Rival,
@@ -27,67 +26,38 @@ from artefact.compare import (
     random_lots,
     task_normals,
 )
-from artefact.layout import Blank, with_spheres
-from artefact.place.body_choice import BodyChoice, body_choice
-from artefact.place.proving import proving_touches, telling_touches, touches_on_faces
+from artefact.layout import Blank
+from artefact.place.body_choice import body_choice
+from artefact.place.identifying import (
+    Identifying,
+    ball_bases,
+    identifying,
+    rearranged,
+    with_proof,
+)
+from artefact.place.options import PlacementOptions
+from artefact.place.proving import proving_touches, telling_touches
 from artefact.place.room import check_blank
-from artefact.reach import Mask, ProbeReach, Requests, joined
+from artefact.reach import ProbeReach, Requests, joined
 from artefact.worth import (
-    BallPlaces,
     Criterion,
-    CriterionOptions,
-    TouchOptions,
     Visibility,
     ball_places,
-    chosen_poses,
-    chosen_touches_on,
     criterion_for,
-    error_shares,
-    parameter_symbols,
     random_touches,
     table_poses,
-    touches_to_choose_from,
     visibility,
+    with_error_shares,
 )
-from information.criteria import whitened
 from information.selection import Certificate
 from sensitivity.first_order import Workspace
 from sensitivity.population import Population
 from twin.compute import Progress, silent
-from twin.errors import NotBuildable, NotReachable
 from twin.frames import Array
-from twin.units import UM
 
 __all__ = ["Placement", "PlacementOptions", "design_standard"]
 
-_FREE, _BASES = 480, 3  # free touches that judge what is visible, at least; sets of balls, at most
-_AGAIN, _LITTLE = 3, 1.02  # draws of other faces while they cost more than 1 % in µm
-_NEXT_TO_NOTHING = 1.005  # times what the balls alone leave
-
-
-@dataclass(frozen=True)
-class PlacementOptions:
-    """What is designed, how much is tried, and what for.
-
-    Attributes:
-        name: Type of the standard.
-        serial: Of the piece.
-        patches: Number of freeform patches.
-        balls: Number of balls, fewer where no more find room.
-        sites: Number of random faces to choose from.
-        noise: Standard deviation of one touch, mm.
-        criterion: What faces, balls, poses and touches are chosen for.
-        choice: How many touches at how many table poses.
-    """
-
-    name: str = "FFS"
-    serial: str = ""
-    patches: int = 6
-    balls: int = 13
-    sites: int = 400
-    noise: float = 1.0 * UM
-    criterion: CriterionOptions = field(default_factory=lambda: CriterionOptions(potential=0.3))
-    choice: TouchOptions = field(default_factory=TouchOptions)
+_FREE = 480  # free touches that judge what is visible, at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,14 +158,14 @@ def design_standard(
     library = _effects(criterion, max(choice.touches, _FREE), rng)
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", 4, 6)
-    bases = _bases(criterion.plain, rivals, places, all_poses, options)
-    first = _identifying_best(criterion, bodies, bases, options)
-    found = _rearranged(criterion, bodies, places, first, bases[0].value, all_poses, choice)
-    found, on_faces = _with_proof([found, first], reach, choice.proof)
+    bases = ball_bases(criterion.plain, rivals, places, all_poses, options)
+    first = identifying(criterion, bodies, bases, options)
+    found = rearranged(criterion, bodies, places, first, bases[0].value, all_poses, choice)
+    found, on_faces = with_proof([found, first], reach, choice.proof)
     on_body, here = criterion.on(found.standard), criterion.on(replace(found.standard, patches=()))
     proof, powers = _proving(on_body, found, on_faces, choice.proof, library, rng)
     requests, tried = found.tried[found.chosen], found.tried
-    standard = _with_shares(criterion, found.standard, proof)
+    standard = with_error_shares(criterion, found.standard, proof)
     progress("placement", 5, 6)
     lots = random_lots(tried, len(requests), rng)
     own = evaluated(f"standard {options.name}", here, requests, lots, library, len(tried), standard)
@@ -216,150 +186,9 @@ def design_standard(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Base:
-    """Balls to build on, touches on them, and the value of these where no face is in the way."""
-
-    balls: tuple[DatumSphere, ...]
-    touches: Requests
-    value: float
-
-
-@dataclass(frozen=True, eq=False)
-class _Identifying:
-    """A standard with the touches that identify by it: those that can be made, the choice."""
-
-    standard: Standard
-    poses: Array
-    tried: Requests
-    chosen: Mask
-    nearness: Certificate
-
-
-def _bases(
-    criterion: Criterion,
-    rivals: tuple[Rival, ...],
-    places: BallPlaces,
-    all_poses: Array,
-    options: PlacementOptions,
-) -> list[_Base]:
-    """Those of the rivals, the best first, or as many balls as find room."""
-    of_balls = [
-        r
-        for r in rivals
-        if r.body is not None and not r.body.patches and len(r.body.spheres) <= options.balls
-    ]
-    if of_balls:
-        return [
-            _Base(r.body.spheres, r.touches, r.value)
-            for r in sorted(of_balls, key=lambda r: r.value)
-            if r.body is not None
-        ]
-    balls = places.best(options.balls, options.choice.touches)
-    body = with_spheres(places.blank, [b.centre for b in balls])
-    poses = chosen_poses(criterion.on(body), body, body.spheres, all_poses, options.choice)
-    tried = touches_to_choose_from(
-        criterion.reach, body, body.spheres, poses, options.choice.touches
-    )
-    return [_Base(body.spheres, tried, 0.0)]
-
-
-def _identifying_best(
-    criterion: Criterion, bodies: BodyChoice, bases: list[_Base], options: PlacementOptions
-) -> _Identifying:
-    """The best of a few draws of faces; one where they cost little or none compares."""
-    best, alone = _identifying(criterion, bodies, bases, options), bases[0].value
-    for _ in range(_AGAIN if alone else 0):
-        if best.nearness.value <= _LITTLE * alone:
-            break
-        with suppress(NotBuildable, NotReachable):  # what the first draw found stays
-            again = _identifying(criterion, bodies, bases, options)
-            best = min(best, again, key=lambda found: found.nearness.value)
-    return best
-
-
-def _identifying(
-    criterion: Criterion, bodies: BodyChoice, bases: list[_Base], options: PlacementOptions
-) -> _Identifying:
-    """The best balls that leave room for the faces, and the touches that identify by them.
-
-    Where every ball of a base stays nothing better is looked for; where some had to go, the next
-    base is tried as well.
-    """
-    best: _Identifying | None = None
-    choice, refused = options.choice, NotReachable("no ball")
-    for base in bases[:_BASES]:
-        poses = np.unique(base.touches.rotary, axis=0)
-        standard = bodies.standard(
-            options.name, options.serial, base.balls, base.touches, options.patches, choice.proof
-        )
-        here, reach = criterion.on(replace(standard, patches=())), criterion.reach
-        tried = touches_to_choose_from(reach, standard, standard.spheres, poses, choice.touches)
-        try:
-            chosen, nearness = chosen_touches_on(here, tried, choice)
-        except NotReachable as error:
-            refused = error
-            continue
-        if best is None or nearness.value < best.nearness.value:
-            best = _Identifying(
-                standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
-            )
-        if len(standard.spheres) == len(base.balls):
-            break
-    if best is None:
-        raise refused
-    return best
-
-
-def _rearranged(
-    criterion: Criterion,
-    bodies: BodyChoice,
-    places: BallPlaces,
-    found: _Identifying,
-    alone: float,
-    all_poses: Array,
-    choice: TouchOptions,
-) -> _Identifying:
-    """The same faces with balls and table poses chosen anew beside them, if that tells more.
-
-    Nothing is tried where the faces cost next to nothing of what the balls alone are worth.
-    """
-    if found.nearness.value <= _NEXT_TO_NOTHING * alone:
-        return found
-    standard = bodies.rearranged(found.standard, places, choice.touches)
-    if standard is None:
-        return found
-    bare = replace(standard, patches=())
-    plain, here = criterion.plain.on(bare), criterion.on(bare)
-    try:
-        poses = chosen_poses(plain, standard, standard.spheres, all_poses, choice)
-        tried = touches_to_choose_from(
-            here.reach, standard, standard.spheres, poses, choice.touches
-        )
-        chosen, nearness = chosen_touches_on(here, tried, choice)
-    except NotReachable:
-        return found
-    if nearness.value >= found.nearness.value:
-        return found
-    return _Identifying(
-        standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
-    )
-
-
-def _with_proof(
-    choices: list[_Identifying], reach: ProbeReach, count: int
-) -> tuple[_Identifying, Requests]:
-    """The first choice on whose faces touches enough can be made, or the last; those touches."""
-    for found in choices:
-        on_faces = touches_on_faces(reach, found.standard, found.poses, count)
-        if len(on_faces) >= count:
-            break
-    return found, on_faces
-
-
 def _proving(
     criterion: Criterion,
-    found: _Identifying,
+    found: Identifying,
     on_faces: Requests,
     count: int,
     library: Visibility,
@@ -389,12 +218,3 @@ def _effects(criterion: Criterion, count: int, rng: np.random.Generator) -> Visi
     """Effects of the library that touches taken at random could show."""
     free = random_touches(criterion.reach, criterion.volume, criterion.rotary, count, rng)
     return visibility(criterion, free)
-
-
-def _with_shares(criterion: Criterion, standard: Standard, requests: Requests) -> Standard:
-    """The standard with the errors that each patch is for."""
-    touches = criterion.reach.touches(requests)
-    W = whitened(criterion.model.columns(touches), criterion.model.prior_sd, criterion.noise)
-    shares = error_shares(W, requests.feature.tolist(), parameter_symbols(criterion.model))
-    patches = tuple(replace(p, errors=shares.get(p.name, ())) for p in standard.patches)
-    return replace(standard, patches=patches)

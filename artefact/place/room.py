@@ -1,16 +1,28 @@
 """Whether the wanted faces stand side by side on the blank, beside the fewest balls that identify.
 
-Looked at before anything is chosen. As many places are tried as the choice has later, with random
-shapes of their own: what does not fit among these is not found later either, but for luck.
+Looked at before anything is chosen: that they find room, that the probe can touch them there, and
+that they are not too heavy. As many places are tried as the choice has later, with random shapes of
+their own: what does not fit among these is not found later either, but for luck.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import Base, DatumSphere, FreeformPatch
-from artefact.layout import Blank, balls_on_posts, beside_balls, freeform_faces, least_gap
+from artefact.body import Base, DatumSphere, FreeformPatch, MountingHole, Standard
+from artefact.layout import (
+    Blank,
+    Pairs,
+    balls_on_posts,
+    beside_balls,
+    freeform_faces,
+    holes_on,
+    least_gap,
+    least_mass,
+    with_spheres,
+)
+from artefact.place.touched import is_from_side, seen_beside, untouched
 from artefact.reach import ProbeReach, reach_of, spread_poses
 from twin.errors import NotBuildable
 from twin.frames import Array
@@ -20,6 +32,10 @@ FEWEST_BALLS = 3
 
 _POSES = 20  # table poses at which a place has to be reached once
 _BALLS = 200  # places of balls that are tried
+_ROUNDS = 8  # of a search for faces that can be touched
+_NEAR = 16  # places to which the lightest faces are found
+_CELL = 6.0  # mm, of the grid by which a standard is weighed
+_SPARE = 0.97  # of the mass left to the faces: their shares are estimates
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,20 +46,41 @@ class Room:
         blank: On which they stand.
         wanted: Number of faces.
         tried: Number of places of faces that were tried.
+        reached: Number of those that the machine reaches within angle and travels.
         faces: That fit.
         balls: That still stand beside them.
+        unseen: What keeps the probe from touching more faces, in words; empty where nothing does.
+        least: Mass of the lightest such standard that was found, kg; 0 where these are light.
     """
 
     blank: Blank
     wanted: int
     tried: int
+    reached: int
     faces: tuple[FreeformPatch, ...]
     balls: tuple[DatumSphere, ...]
+    unseen: str = ""
+    least: float = 0.0
 
     @property
     def is_enough(self) -> bool:
         """Whether all faces fit, and with them as many balls as a set-up needs."""
         return len(self.faces) >= self.wanted and len(self.balls) >= FEWEST_BALLS
+
+    @property
+    def is_hidden(self) -> bool:
+        """Whether it is the probe that finds no way to most of the faces."""
+        return bool(self.unseen) or 2 * self.reached < self.tried
+
+    @property
+    def is_light(self) -> bool:
+        """Whether such a standard keeps its mass."""
+        return self.least <= self.blank.limits.max_mass
+
+    @property
+    def standard(self) -> Standard:
+        """The bodies on their plate."""
+        return replace(_bare(self.blank, self.balls, holes_on(self.blank)), patches=self.faces)
 
 
 def check_room(room: Room) -> None:
@@ -52,19 +89,42 @@ def check_room(room: Room) -> None:
     Raises:
         NotBuildable: Fewer faces or balls than wanted (fact `fitting`).
     """
+    few, limits = len(room.faces) < room.wanted, room.blank.limits
+    places = f"{room.tried} places tried"
+    if room.reached < room.tried:
+        places += f", {room.reached} of which are within the probe's angle and travels"
+    if room.unseen:
+        raise NotBuildable(
+            f"only {len(room.faces)} of {room.wanted} patches can be touched where they stand side "
+            f"by side, of {places}; {room.unseen}",
+            fitting=len(room.faces),
+            binding=["touch"],
+        )
     if not room.is_enough:
-        few = len(room.faces) < room.wanted
         balls = "" if few else f" with {len(room.balls)} of {FEWEST_BALLS} balls"
         raise NotBuildable(
             f"only {len(room.faces)} of {room.wanted} patches{balls} fit on the blank side by "
-            f"side, of {room.tried} places tried; between two bodies cutter and probe need "
-            f"{least_gap(room.blank.limits):g} mm",
+            f"side, of {places}; between two bodies cutter and probe need "
+            f"{least_gap(limits):g} mm",
             fitting=len(room.faces),
+        )
+    if not room.is_light:
+        plate = _bare(room.blank, (), ()).mass(_CELL)
+        raise NotBuildable(
+            f"the lightest standard found weighs {room.least:.1f} kg, limit "
+            f"{limits.max_mass:g} kg: its plate {plate:.1f} kg, {FEWEST_BALLS} balls on the "
+            f"shortest posts and {room.wanted} of the smallest, lowest faces the rest",
+            binding=["mass"],
+            least=room.least,
         )
 
 
 def room_among(
-    faces: Sequence[FreeformPatch], balls: Sequence[DatumSphere], wanted: int, blank: Blank
+    faces: Sequence[FreeformPatch],
+    balls: Sequence[DatumSphere],
+    wanted: int,
+    blank: Blank,
+    seen: Pairs | None = None,
 ) -> Room:
     """As many faces as wanted that stand beside the fewest balls, or the most that are found.
 
@@ -73,15 +133,17 @@ def room_among(
         balls: Where they may stand.
         wanted: Number of faces.
         blank: On which they stand.
+        seen: Which faces leave each other to the probe, (F, F); None for all.
 
     Raises:
         NotBuildable: No screw holes on such a blank.
     """
     if not faces:
-        return Room(blank=blank, wanted=wanted, tried=0, faces=(), balls=())
-    stand, beside = beside_balls(faces, balls, (wanted, FEWEST_BALLS), blank)
+        return Room(blank=blank, wanted=wanted, tried=0, reached=0, faces=(), balls=())
+    stand, beside = beside_balls(faces, balls, (wanted, FEWEST_BALLS), blank, seen)
     found, left = tuple(faces[i] for i in stand), tuple(balls[i] for i in beside)
-    return Room(blank=blank, wanted=wanted, tried=len(faces), faces=found, balls=left)
+    n = len(faces)
+    return Room(blank=blank, wanted=wanted, tried=n, reached=n, faces=found, balls=left)
 
 
 def room_for(
@@ -100,14 +162,91 @@ def room_for(
     Raises:
         NotBuildable: No screw holes, or no face at all, on such a blank.
     """
-    rng = np.random.default_rng(seed)
-    faces = freeform_faces(blank, patches, count, rng)
+    rng, few = np.random.default_rng(seed), spread_poses(poses, _POSES)
+    faces = freeform_faces(blank, patches, count, rng, from_side=is_from_side(reach, few))
     middle = np.zeros((1, 2))
     points = np.concatenate([p.point(middle) for p in faces])
     normals = np.concatenate([p.normal(middle) for p in faces])
-    tried = reach_of(reach, points, normals, spread_poses(poses, _POSES))
+    tried = reach_of(reach, points, normals, few)
     reached = [faces[i] for i in np.flatnonzero(tried.reached.any(axis=1))]
-    return room_among(reached, balls_on_posts(blank, _BALLS, rng), patches, blank)
+    balls = balls_on_posts(blank, _BALLS, rng)
+    room = room_among(reached, balls, patches, blank)
+    if room.is_enough:
+        room = _touched(room, reached, balls, reach, few)
+    room = replace(room, tried=len(faces), reached=len(reached))
+    return light_enough(room, reached, balls)
+
+
+def light_enough(room: Room, faces: Sequence[FreeformPatch], balls: Sequence[DatumSphere]) -> Room:
+    """The same, or where that is too heavy the lightest that is found, with its mass.
+
+    Its faces are of places where the heaviest one, were it as low as it can be, is lightest.
+    """
+    blank, wanted = room.blank, room.wanted
+    if not room.is_enough or room.standard.mass(_CELL) <= blank.limits.max_mass:
+        return room
+    low = _lowest(balls)
+    mass = np.array([least_mass(face, blank) for face in faces])
+    order, found = np.argsort(mass, kind="stable"), room
+    at_least, enough = wanted, len(faces)
+    while enough - at_least > _NEAR:
+        middle = (at_least + enough) // 2
+        trial = room_among([faces[k] for k in order[:middle]], low, wanted, blank)
+        if trial.is_enough:
+            enough, found = middle, trial
+        else:
+            at_least = middle + 1
+    bare = _bare(blank, found.balls, holes_on(blank)).mass(_CELL)
+    heaviest = max(least_mass(face, blank) for face in found.faces)
+    least = bare + wanted * heaviest / _SPARE
+    return replace(room, faces=found.faces, balls=found.balls, least=least)
+
+
+def share_of_mass(
+    blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole], count: int
+) -> float:
+    """What each of some faces may weigh beside balls, kg; negative where these are too heavy."""
+    left = blank.limits.max_mass - _bare(blank, balls, holes).mass(_CELL)
+    return _SPARE * left / count
+
+
+def _touched(
+    room: Room,
+    faces: Sequence[FreeformPatch],
+    balls: Sequence[DatumSphere],
+    reach: ProbeReach,
+    poses: Array,
+) -> Room:
+    """The same if the probe can touch every face, or the most faces that leave each other to it."""
+    if not untouched(reach, room.standard, poses):
+        return room
+    seen = seen_beside(reach, room.blank, faces, (), poses)
+    most, beside, low = replace(room, faces=()), seen.beside.copy(), _lowest(balls)
+    for _ in range(_ROUNDS):
+        found = room_among(faces, low, room.wanted, room.blank, beside)
+        out = set(untouched(reach, found.standard, poses))
+        left = tuple(face for face in found.faces if face.name not in out)
+        if len(left) > len(most.faces):
+            most = replace(found, faces=left)
+        if most.is_enough or not out:
+            break
+        barred = [face.name in out for face in faces]
+        beside[barred, :] = beside[:, barred] = False
+    if most.is_enough:
+        return most
+    unseen = f"the probe comes past plate and pillar to {seen.alone.sum()} of these places alone"
+    return replace(most, unseen=unseen)
+
+
+def _lowest(balls: Sequence[DatumSphere]) -> list[DatumSphere]:
+    """A third of some balls: they weigh least, and hide least."""
+    low = sorted(balls, key=lambda ball: float(ball.centre[2]))
+    return low[: max(FEWEST_BALLS, len(low) // 3)]
+
+
+def _bare(blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole]) -> Standard:
+    """Plate and balls."""
+    return replace(with_spheres(blank, [b.centre for b in balls]), holes=tuple(holes))
 
 
 def check_blank(base: Base, reach: ProbeReach) -> None:

@@ -6,7 +6,7 @@ effects that touches could show, and the errors that each patch is for. A new cr
 in `CRITERIA` and in `criterion_for`.
 """
 
-from artefact.worth.attribution import error_shares, parameter_symbols
+from artefact.worth.attribution import with_error_shares
 from artefact.worth.ball_choice import BallPlaces, ball_places
 from artefact.worth.calibration import Calibration
 from artefact.worth.effect_visibility import Visibility, visibility
@@ -17,6 +17,7 @@ from artefact.worth.touch_choice import (
     chosen_touches_on,
     each_at,
     face_grid,
+    mended_touches,
     pose_quota,
     poses_within,
     some_touches,
@@ -47,9 +48,8 @@ __all__ = [
     "chosen_touches_on",
     "criterion_for",
     "each_at",
-    "error_shares",
     "face_grid",
-    "parameter_symbols",
+    "mended_touches",
     "pose_quota",
     "poses_within",
     "random_touches",
@@ -58,4 +58,5 @@ __all__ = [
     "touch_curve",
     "touches_to_choose_from",
     "visibility",
+    "with_error_shares",
 ]

@@ -1,11 +1,15 @@
 """Which errors a patch is for, and what share of its signal they make."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import ErrorShare
+from artefact.body import ErrorShare, Standard
+from artefact.reach import Requests
+from artefact.worth.touch_criterion import Criterion
+from information.criteria import whitened
 from twin.effects import ComponentError, LocationError
 from twin.errors import NotBuildable
 from twin.frames import Array
@@ -16,7 +20,20 @@ NAMED = 4
 """Errors named for a patch."""
 
 
-def parameter_symbols(model: Model) -> NDArray[np.str_]:
+def with_error_shares(criterion: Criterion, standard: Standard, requests: Requests) -> Standard:
+    """The standard with the errors that each patch is for, as touches on its patches see them.
+
+    Raises:
+        NotBuildable: Every error has the amplitude zero.
+    """
+    touches = criterion.reach.touches(requests)
+    W = whitened(criterion.model.columns(touches), criterion.model.prior_sd, criterion.noise)
+    shares = error_shares(W, requests.feature.tolist(), _symbols(criterion.model))
+    patches = tuple(replace(p, errors=shares.get(p.name, ())) for p in standard.patches)
+    return replace(standard, patches=patches)
+
+
+def _symbols(model: Model) -> NDArray[np.str_]:
     """Error parameter (`EXX`, `EC0Y`) that every parameter of a model belongs to, (P,)."""
     return np.array([_symbol(effect) for effect, _ in model.parameters])
 

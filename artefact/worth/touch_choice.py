@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from artefact.body import DatumSphere, FreeformPatch, Standard
 from artefact.reach import Mask, ProbeReach, Requests, joined
@@ -19,7 +20,10 @@ from information.selection import (
     ROUNDS,
     Certificate,
     Quota,
+    Selection,
     best_groups,
+    exchange,
+    fill,
     heaviest,
     relaxed,
     rounded,
@@ -227,6 +231,7 @@ def chosen_touches_on(
     tried: Requests,
     options: TouchOptions,
     rounds: int = ROUNDS,
+    begin: Mask | None = None,
 ) -> tuple[Mask, Certificate]:
     """Single touches, and how near they are to the best that crowd no table pose.
 
@@ -237,6 +242,7 @@ def chosen_touches_on(
         tried: Touches that can be made.
         options: How many of them.
         rounds: Most looks at all candidates on the way to the relaxed optimum; exchanges follow.
+        begin: A choice that is known, (N,): it stays where nothing better is found; None for none.
 
     Returns:
         The choice, (N,), and its certificate.
@@ -244,13 +250,54 @@ def chosen_touches_on(
     Raises:
         NotReachable: Too few touches can be made.
     """
-    n = options.touches
-    if len(tried) < n:
-        raise NotReachable(f"{len(tried)} touches can be made on the standard, {n} are wanted")
-    quotas, W = (pose_quota(tried, n),), criterion.rows(tried)
+    n, quotas = options.touches, _pose_quotas(tried, options)
+    W = criterion.rows(tried)
     start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
     best = relaxed(criterion.objective, W, n, start, _NEAR, quotas, rounds)
     choice = rounded(criterion.objective, W, best.weight, n, most=n // 2, quotas=quotas)
+    if begin is not None:
+        choice = min(
+            choice, Selection(criterion.objective, W, begin), key=lambda found: found.value
+        )
     return choice.chosen, Certificate(
         candidates=len(W), count=n, value=choice.value, bound=best.bound, shares=True
     )
+
+
+def mended_touches(
+    criterion: Criterion, tried: Requests, like: Requests, options: TouchOptions
+) -> tuple[Mask, float]:
+    """A choice made where nothing stood in the way: what is left of it, filled up and exchanged.
+
+    Args:
+        criterion: What touches are chosen for.
+        tried: Touches that can be made, N.
+        like: That were chosen on the same features, whatever these were called.
+        options: How many are wanted.
+
+    Returns:
+        The choice, (N,), and its value.
+
+    Raises:
+        NotReachable: Too few touches can be made.
+    """
+    n, quotas = options.touches, _pose_quotas(tried, options)
+    left = np.isin(_places(tried), _places(like))
+    choice = Selection(criterion.objective, criterion.rows(tried), left & (left.sum() <= n))
+    fill(choice, n, quotas)
+    exchange(choice, quotas, most=n // 2)
+    return choice.chosen, choice.value
+
+
+def _pose_quotas(tried: Requests, options: TouchOptions) -> tuple[Quota, ...]:
+    """The quota of the poses, where as many touches as are wanted can be made."""
+    n = options.touches
+    if len(tried) < n:
+        raise NotReachable(f"{len(tried)} touches can be made on the standard, {n} are wanted")
+    return (pose_quota(tried, n),)
+
+
+def _places(touches: Requests) -> NDArray[np.str_]:
+    """What tells touches apart but the name of the feature: point and table pose, (N,)."""
+    rows = np.round(np.column_stack([touches.point, touches.rotary]), 6) + 0.0
+    return np.array([row.tobytes().hex() for row in rows], dtype=np.str_)

@@ -33,7 +33,8 @@ from matstd.stages.from_project import (
     probe_reach,
     probes,
 )
-from matstd.stages.reach import check_reach, check_space
+from matstd.stages.reach import check_reach
+from matstd.stages.space import check_space
 from matstd.stages.streams import streams
 from matstd.stages.study_run import study_and_maps
 from probe_paths.campaign import Campaign, VirtualMachine, simulate

@@ -11,7 +11,6 @@ import numpy as np
 
 from artefact.body import DatumSphere, Standard
 from artefact.brief import Project
-from artefact.place import check_room, room_for
 from artefact.reach import (
     ANGLE,
     Limit,
@@ -41,7 +40,7 @@ from probe_paths.plan import (
     swing_height,
     top_height,
 )
-from report.plots import draw_reach, draw_room
+from report.plots import draw_reach
 from report.style import save
 from twin.errors import BadFile, NotReachable
 from twin.frames import Array, fixed_xyz_angles
@@ -51,9 +50,6 @@ from twin.units import DEG
 
 PICTURE = "reach.png"
 """File of the picture in a folder of results."""
-
-ROOM_PICTURE = "room.png"
-"""Of the patches that fit on the blank; only a refusal draws it."""
 
 _RISER = 300.0  # mm above the table's face that a wish may lift a standard
 _SUNK = 1.0  # mm by which a seat may lie below the table's face: set-ups are measured
@@ -155,24 +151,6 @@ def _check_standing(project: Project, setup: Setup) -> None:
             np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 6).tolist(),
             "a standard that looks towards the tool with every axis at zero: its seat does",
         )
-
-
-def check_space(project: Project, folder: Path, poses: Array) -> None:
-    """Refuse more patches than stand side by side, with a picture of those that do.
-
-    Args:
-        project: What is wanted.
-        folder: For the picture.
-        poses: Table poses to choose from, (K, R), rad.
-
-    Raises:
-        NotBuildable: How many fit (fact `fitting`).
-    """
-    made, options = blank(project), placement_options(project)
-    room = room_for(options.patches, probe_reach(project), made, poses, options.sites, project.seed)
-    if not room.is_enough:
-        save(draw_room(room), folder / ROOM_PICTURE)
-    check_room(room)
 
 
 def _enough(project: Project) -> int:

@@ -24,11 +24,12 @@ from artefact.layout.upright import (
     freeform_faces,
     holes_on,
 )
-from artefact.place import placement
-from artefact.place.body_choice import BodyChoice, _Beside
+from artefact.place import identifying
 from artefact.reach.probe_clearance import ProbeShape
 from artefact.reach.touchable import ProbeReach, Requests, joined
 from artefact.worth.attribution import error_shares
+from artefact.worth.touch_choice import TouchOptions, chosen_touches_on, mended_touches
+from artefact.worth.touch_criterion import random_touches
 from twin.errors import NotBuildable, NotReachable
 from twin.frames import fixed_xyz, pose
 from twin.machine.chain import Axis, make_chain
@@ -311,21 +312,6 @@ def test_a_pose_from_which_a_head_reaches_nothing_takes_no_part_in_the_scatter()
         _scatter(criterion, poses[1:], np.random.default_rng(1))
 
 
-def test_faces_are_looked_at_alone_whatever_number_a_ball_has(chain):
-    """Places of faces and of balls are both named by their numbers."""
-    blank, rng = Blank(), np.random.default_rng(4)
-    balls = balls_on_posts(blank, 5, rng)[:2]
-    faces = freeform_faces(blank, 6, 4, rng, balls)
-    assert {b.name for b in balls} <= {f.name for f in faces}
-    reach = ProbeReach(chain, Setup("a"), PROBE, 160.0)
-    choice = BodyChoice(SimpleNamespace(reach=reach), blank, 4, rng, None, False)
-    near, far = np.zeros((1, 2)), np.full((1, 2), [0.0, 100.0])  # 100 rad: beyond the travel
-    for poses, touched in ((near, True), (far, False)):
-        there = _Beside(faces, np.ones((4, 4), dtype=bool), np.zeros(4), poses)
-        choice._bar_untouched(there, balls)
-        assert there.fits.any() == touched
-
-
 def test_of_two_pillars_just_as_far_apart_as_needed_both_fit_or_none(chain):
     """Places and sizes are tenths of a millimetre: 12 mm exactly are common."""
     rng = np.random.default_rng(6)
@@ -349,13 +335,42 @@ def test_a_draw_of_faces_that_fails_costs_nothing_of_what_the_first_found(monkey
             value = next(ends)
             if value is None:
                 raise NotBuildable("no room")
-            return SimpleNamespace(nearness=SimpleNamespace(value=value))
+            return SimpleNamespace(value=value)
 
-        monkeypatch.setattr(placement, "_identifying", one)
-        return placement._identifying_best(None, None, [SimpleNamespace(value=alone)], None)
+        monkeypatch.setattr(identifying, "_draw", one)
+        base = SimpleNamespace(value=alone)
+        return identifying._drawn(None, None, [base], None).value, len(list(ends))
 
     alone = 1.0
-    assert drawn(1.5, None, 1.3, 1.4).nearness.value == 1.3
-    assert drawn(1.5, 1.01).nearness.value == 1.01  # near enough: no further draw
+    assert drawn(1.5, None, 1.3, 1.4, None, 1.35, 1.2) == (1.3, 1)  # no more than six
+    assert drawn(1.5, 1.009, 1.2) == (1.009, 1)  # near enough: no further draw
     alone = 0.0  # nothing to compare with
-    assert drawn(1.5).nearness.value == 1.5
+    assert drawn(1.5, 1.2) == (1.5, 1)
+
+
+def test_what_is_left_of_a_choice_is_filled_up_and_exchanged_under_the_shares_of_poses(criterion):
+    rng = np.random.default_rng(5)
+    free = random_touches(criterion.reach, criterion.volume, criterion.rotary, 120, rng)
+    poses = free.rotary[np.arange(120) % 6]
+    tried, options = replace(free, rotary=poses), TouchOptions(touches=30, poses=6)
+    chosen, nearness = chosen_touches_on(criterion, tried, options)
+    like = tried[chosen]
+    # all that was chosen can still be made, under other names: it stays, or betters itself
+    named = replace(tried, feature=np.full(120, "SPH9"))
+    again, value = mended_touches(criterion, named, like, options)
+    assert value <= nearness.value * (1.0 + 1e-9)
+    # a few are hidden: as many touches again, no pose crowded, near what the whole search finds
+    open_ = np.ones(120, dtype=bool)
+    open_[np.flatnonzero(chosen)[::6]] = False
+    again, value = mended_touches(criterion, tried[open_], like, options)
+    rows = criterion.rows(tried[open_][again])
+    assert value == pytest.approx(criterion.objective.value(rows.T @ rows), rel=1e-9)
+    assert again.sum() == 30
+    assert np.bincount(tried[open_][again].pose).max() <= np.ceil(1.6 * 30 / 6)
+    searched = chosen_touches_on(criterion, tried[open_], options)[1]
+    assert searched.bound <= value <= 1.03 * searched.value
+    # a choice that is known stays where the search finds no better one
+    known = chosen_touches_on(criterion, tried[open_], options, begin=again)[1]
+    assert known.value == pytest.approx(min(value, searched.value), rel=1e-9)
+    with pytest.raises(NotReachable, match="29 touches can be made on the standard, 30 are"):
+        mended_touches(criterion, tried[:29], like, options)

@@ -1,6 +1,7 @@
 """Reach comes first: what binds is named and true, the nearest wish does, a picture stays."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,10 @@ from artefact.reach.touchable import Requests
 from artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
 from matstd.commands.standard.design import NO_ROOM, REFUSED, refusals
+from matstd.stages import space
 from matstd.stages.from_project import blank, probe_reach
 from matstd.stages.reach import _to_rise, check_reach
+from matstd.stages.space import check_space
 from twin.errors import BadFile, NotBuildable, NotReachable
 from twin.frames import fixed_xyz, pose
 from twin.units import DEG
@@ -169,14 +172,42 @@ def test_patches_that_do_not_fit_are_told_with_a_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("matstd.stages.design.design_standard", None)  # not begun
+    usual = space.placement_options
+    monkeypatch.setattr(space, "placement_options", lambda p: replace(usual(p), sites=40))
     wide = {r"\Z": "\n[limits]\ngap_mm = 120.0\n"}
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
     for _ in range(2):
         assert main(["design", str(path), "-o", str(out)]) == 2
         (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
         assert [p.name for p in out.iterdir()] == [NO_ROOM]
-    assert re.search(r"only 4 of 6 patches fit on the blank side by side", told)
-    assert "limits.gap_mm or probe.radius_mm (smaller)" in told
+    assert re.search(r"only 1 of 6 patches fit on the blank side by side", told)
+    assert re.search(r"; limits\.gap_mm = \d+ would do; ", told)
+
+
+@pytest.mark.parametrize(
+    ("name", "limits", "told", "wish"),
+    [
+        ("vertical", "max_mass_kg = 19.0", "limit 19 kg: its plate 18.2 kg", "max_mass_kg"),
+        pytest.param(
+            *("upright", "max_slope_deg = 32.0", "can be touched where they stand"),
+            "max_slope_deg",
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_what_would_do_does(tmp_path, monkeypatch, name, limits, told, wish) -> None:
+    """A tenth of the usual places are tried: what is refused is, and the wish that is met."""
+    usual = space.placement_options
+    monkeypatch.setattr(space, "placement_options", lambda p: replace(usual(p), sites=40))
+    monkeypatch.setattr(space, "_fewer", lambda *_: ())
+    path = changed(tmp_path, name, {r"\Z": f"\n[limits]\n{limits}\n"}, {})
+    project = read_project(path)
+    poses = np.linspace(-3.0, 3.0, 12)[:, None] * np.ones(len(project.chain.rotary_axes))
+    with pytest.raises(NotBuildable, match=told) as caught:
+        check_space(project, tmp_path, poses)
+    (words,) = [w for w in caught.value.facts["wishes"] if wish in w]
+    met = project.limits.model_copy(update={wish: float(words.split(" = ")[1])})
+    check_space(replace(project, limits=met), tmp_path, poses)
 
 
 def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
@@ -199,7 +230,7 @@ def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
         ({"fitting": 2}, "limits.gap_mm or probe.radius_mm (smaller) or blank.base_mm and"),
         (
             {"binding": ["mass"]},
-            "limits.max_mass_kg (larger) or blank.base_mm and blank.height_mm (larger)",
+            "limits.max_mass_kg (larger) or blank.base_mm (smaller)",
         ),
         ({"exit_code": 1}, "seed: the fault is the tool's own, not the project's"),
         ({"binding": ["slots"]}, "limits.slot_pitch_mm (smaller, or 0) or blank.base_mm and"),

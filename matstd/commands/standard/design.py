@@ -41,7 +41,11 @@ _KEYS = {
 }
 """What may be changed where a constraint binds."""
 
-_ALWAYS = "blank.base_mm and blank.height_mm (larger)"
+_ALWAYS, _LIGHTER = "blank.base_mm and blank.height_mm (larger)", "blank.base_mm (smaller)"
+
+_NOTHING = (
+    "no change of standard.patches, limits or blank.base_mm alone would do of those that were tried"
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -121,14 +125,14 @@ def refusals(project: Project, folder: Path, out: str) -> Iterator[None]:
         folder: In which it is; the picture of what is reached lies there.
         out: Where a picture goes of what stops it.
     """
-    from matstd.stages import reach
+    from matstd.stages import reach, space
     from twin.errors import NotBuildable, NotReachable
 
     try:
         yield
     except NotBuildable as error:
-        told = f"{project.path}: {error}; change {_to_change(error)}"
-        seen = _left(folder / reach.ROOM_PICTURE, Path(out) / NO_ROOM, "what fits")
+        told = f"{project.path}: {error}; {_what_helps(error)}"
+        seen = _left(folder / space.PICTURE, Path(out) / NO_ROOM, "what fits")
         raise NotBuildable(told + seen) from error
     except NotReachable as error:
         told = str(error)
@@ -147,17 +151,21 @@ def _left(picture: Path, there: Path, shows: str) -> str:
     return f"; {there} shows {shows}"
 
 
-def _to_change(error: DesignError) -> str:
-    """Keys of the project file, the likeliest first."""
+def _what_helps(error: DesignError) -> str:
+    """Changes that were tried and would do, or keys of the project file, the likeliest first."""
     from artefact.brief import FEWEST_PATCHES
 
     if error.facts.keys() & {"conformity", "exit_code"}:
-        return "seed: the fault is the tool's own, not the project's"
+        return "change seed: the fault is the tool's own, not the project's"
     fitting, binding = error.facts.get("fitting"), error.facts.get("binding")
+    wishes = error.facts.get("wishes")
+    if isinstance(wishes, list):
+        return f"{' or '.join(wishes)} would do" if wishes else _NOTHING
     keys = []
     if isinstance(fitting, int):
         if fitting >= FEWEST_PATCHES:
             keys.append(f"standard.patches (to {fitting})")
         keys.append(_KEYS["room for the ball before"])
     keys += [_KEYS.get(name, _ALWAYS) for name in binding] if isinstance(binding, list) else []
-    return " or ".join(dict.fromkeys([*keys, _ALWAYS]))
+    last = _LIGHTER if binding == ["mass"] else _ALWAYS
+    return f"change {' or '.join(dict.fromkeys([*keys, last]))}"

@@ -1,0 +1,138 @@
+"""Which faces the probe can touch where they stand, alone and beside others."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from artefact.body import DatumSphere, FreeformPatch, Standard
+from artefact.layout import Blank, with_spheres
+from artefact.reach import ProbeReach, Requests, joined
+from artefact.worth import each_at, face_grid
+from twin.frames import Array, inverse, turn
+from twin.machine import table_to_tool
+
+Which = NDArray[np.bool_]
+
+_WAY, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that is looked at, in steps
+_LEFT = 0.5  # of the touches on a face, that each of the others leaves at least
+_FEW = 6  # touches on a face by which it is judged beside others
+
+
+def touches_on(faces: Sequence[FreeformPatch], poses: Array) -> Requests:
+    """A few touches on every face."""
+    return joined([each_at(p, face_grid(p.half_size, 3)[::2], poses) for p in faces])
+
+
+def is_from_side(reach: ProbeReach, poses: Array) -> bool:
+    """Whether the tool axis never comes within half a right angle of the standard's z."""
+    up = np.tile([0.0, 0.0, 1.0], (len(poses), 1))
+    at = Requests(np.full(len(poses), "FF1"), np.zeros_like(up), up, poses)
+    axis = table_to_tool(reach.chain, reach.readings(at))[:, :3, 2]
+    return bool((turn(inverse(reach.setup.T_table_artefact), axis)[:, 2] < np.sqrt(0.5)).all())
+
+
+def untouched(reach: ProbeReach, made: Standard, poses: Array) -> list[str]:
+    """Faces of a standard on which the probe finds no way to any of a few touches."""
+    tried = touches_on(made.patches, poses)
+    tried = tried[reach.is_reachable(tried)]
+    there = set(tried[reach.is_clear(made, tried)].feature.tolist())
+    return [patch.name for patch in made.patches if patch.name not in there]
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What the probe can touch of some faces, F.
+
+    Attributes:
+        reached: Faces with a touch within angle and travels, (F,).
+        alone: Faces with one past the plate, the balls and their own pillars, (F,).
+        beside: Which of these leave each other half of some such touches at least, (F, F).
+    """
+
+    reached: Which
+    alone: Which
+    beside: Which
+
+
+def seen_beside(
+    reach: ProbeReach,
+    blank: Blank,
+    faces: Sequence[FreeformPatch],
+    balls: Sequence[DatumSphere],
+    poses: Array,
+) -> Seen:
+    """What the probe can touch of some faces, each alone and two beside each other.
+
+    Args:
+        reach: Machine, probe, set-up.
+        blank: On which they stand.
+        faces: Each at its place, named by its number.
+        balls: That stand there whatever face is chosen.
+        poses: Table poses of the touches, (K, R), rad.
+    """
+    tried = touches_on(faces, poses)
+    tried = tried[reach.is_reachable(tried)]
+    names = np.array([face.name for face in faces])
+    reached = np.isin(names, tried.feature)
+    tried = tried[_is_open(reach, blank, faces, balls, tried)]
+    on = [np.flatnonzero(tried.feature == name) for name in names]
+    alone, beside = np.array([len(rows) > 0 for rows in on]), np.diag(np.ones(len(faces)) > 0.0)
+    beside &= alone
+    if alone.any():
+        seen = np.flatnonzero(alone)
+        some = [on[k][:: -(-len(on[k]) // _FEW)] for k in seen]
+        owner = np.repeat(np.arange(len(seen)), [len(rows) for rows in some])
+        hides = in_the_way(
+            reach, blank, [faces[k] for k in seen.tolist()], tried[np.concatenate(some)]
+        )
+        hidden = np.array([hides[:, owner == k].mean(axis=1) for k in range(len(seen))]).T
+        leaves = hidden <= 1.0 - _LEFT
+        beside[np.ix_(seen, seen)] |= leaves & leaves.T
+    return Seen(reached=reached, alone=alone, beside=beside)
+
+
+def _is_open(
+    reach: ProbeReach,
+    blank: Blank,
+    faces: Sequence[FreeformPatch],
+    balls: Sequence[DatumSphere],
+    touches: Requests,
+) -> Which:
+    """Touches at which the probe clears the plate, some balls and the pillar that it touches."""
+    ball, axis = _approach(reach, touches)
+    place, radius = reach.shape.stations()
+    points, least = ball[:, None] + place[:, None] * axis[:, None], radius + reach.room
+    bare = with_spheres(blank, [b.centre for b in balls])
+    free = np.ones(len(ball), dtype=bool)
+    pillars = replace(bare, patches=tuple(faces)).columns
+    for name, body in [("", body) for body in bare.bodies.values()] + list(pillars.items()):
+        rows = np.flatnonzero(free & (touches.feature == name)) if name else np.flatnonzero(free)
+        apart = body.distance(points[rows].reshape(-1, 3)).reshape(-1, len(place))
+        free[rows] = (apart >= least).all(axis=1)
+    return free
+
+
+def _approach(reach: ProbeReach, touches: Requests) -> tuple[Array, Array]:
+    """Centre of the probe's ball at touches, and the direction of its stylus, (N, 3) each."""
+    frames = table_to_tool(reach.chain, reach.readings(touches))
+    axis = turn(inverse(reach.setup.T_table_artefact), frames[:, :3, 2])
+    return touches.point + reach.radius * touches.normal, axis
+
+
+def in_the_way(
+    reach: ProbeReach, blank: Blank, faces: Sequence[FreeformPatch], touches: Requests
+) -> Which:
+    """Whether a face stands in the way of the probe at a touch, (F, N)."""
+    ball, axis = _approach(reach, touches)
+    begin, points, radii = 0.0, list[Array](), list[Array]()
+    for end, radius in reach.shape.cylinders:
+        for at in np.arange(begin, min(end, _WAY), _SAMPLES):
+            points.append(ball + at * axis)
+            radii.append(np.full(len(ball), radius + reach.room))
+        begin = end
+    where, least = np.concatenate(points), np.concatenate(radii)
+    bare = replace(with_spheres(blank, []), patches=tuple(faces))
+    near = [column.distance(where) < least for column in bare.columns.values()]
+    return np.array([n.reshape(-1, len(ball)).any(axis=0) for n in near])
