@@ -40,7 +40,7 @@ class StandardTable(Table):
     patches: int = Field(default=6, ge=FEWEST_PATCHES, le=16)
     balls: int = Field(default=13, ge=3, le=25)
     touches: int = Field(default=480, ge=100, le=2000)
-    proof_touches: int = Field(default=160, ge=30, le=1000)
+    proof_touches: int = Field(default=110, ge=30, le=1000)
     poses: int = Field(default=30, ge=8, le=100)
     criterion: Literal["I", "G", "D", "A", "E"] = "I"
     potential: float = Field(default=0.3, ge=0.0, le=0.95)

@@ -60,7 +60,7 @@ class TouchOptions:
 
     touches: int = 480
     poses: int = 30
-    proof: int = 160
+    proof: int = 110
 
 
 def table_poses(criterion: Criterion, wanted: int) -> Array:

@@ -48,7 +48,7 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
         ("draws = 2000", "draws = 300"),
         ("patches = 6 ", "patches = 3 "),
         ("# balls = 13", "balls = 5"),
-        ("# proof_touches = 160", "proof_touches = 60"),
+        ("# proof_touches = 110", "proof_touches = 60"),
         ("touches = 480", f"touches = {touches}"),
         ("poses = 30 ", f"poses = {poses} "),
         ("machines = 3", f"machines = {machines}"),
