@@ -63,7 +63,7 @@ def _budget_sentence(name: str, one: TaskUncertainty) -> str:
     return (
         f"{name}: U = {_um(one.U)} ({percent(LEVEL)}, k = {digits(one.k)}, "
         f"{digits(one.dof, 2)} degrees of freedom) for results corrected by b = "
-        f"{one.bias / UM:+.2f} µm, {_um(one.U_uncorrected)} for others; u_cal {_um(one.u_cal)}, "
+        f"{one.bias / UM:+z.2f} µm, {_um(one.U_uncorrected)} for others; u_cal {_um(one.u_cal)}, "
         f"u_p {_um(one.u_p)}, u_b {_um(one.u_b)}, u_w {_um(one.u_w)}"
     )
 
@@ -86,7 +86,7 @@ def budget_rows(budgets: Mapping[str, TaskUncertainty]) -> list[dict[str, Any]]:
     return [
         {
             "name": name,
-            "b": f"{one.bias / UM:+.2f}",
+            "b": f"{one.bias / UM:+z.2f}",
             "u_cal": digits(one.u_cal / UM),
             "u_p": digits(one.u_p / UM),
             "u_b": digits(one.u_b / UM),

@@ -213,6 +213,12 @@ def test_periods_are_scanned_down_to_what_readings_resolve() -> None:
     assert fine[-1] == pytest.approx(50.0, rel=1e-3)
     uneven = scanned_periods(np.sort(np.random.default_rng(0).uniform(0.0, 60.0, 1000)))
     assert uneven[0] == pytest.approx(60.0 / 4000.0, rel=1e-2)
+    # a choice of even readings stands on their grid: shorter periods look like longer ones
+    rng = np.random.default_rng(0)
+    chosen = np.sort(rng.choice(np.arange(0.0, 100.0, 1.0 / 120.0), 3000, replace=False))
+    for scatter in (0.0, 4e-4):
+        off = rng.normal(0.0, scatter, len(chosen))
+        assert scanned_periods(chosen + off)[0] == pytest.approx(1.0 / 60.0, rel=1e-4)
     coarse = scanned_periods(np.arange(0.0, 300.0, 6.0))
     assert coarse[0] == pytest.approx(1.0)
     # repeated targets stand no closer for their scatter

@@ -1,5 +1,6 @@
 """The main job on a small project: every file is there, and the proof holds."""
 
+import csv
 import json
 import re
 from dataclasses import replace
@@ -157,6 +158,12 @@ def test_the_page_stands_alone(made: Path) -> None:
     assert "https://" not in page
     assert page.count("data:image/png;base64,") >= 7
     assert "placeholders" in page
+    told = re.search(r"the (\d+) touches that prove take (\d+) minutes, (\d+) with every", page)
+    touches, minutes, once = map(int, told.groups())
+    with next(made.glob("tables/05-*.csv")).open(encoding="utf-8") as table:
+        assert 0 < once <= minutes < max(float(way["minutes"]) for way in csv.DictReader(table))
+    run = read_run(made / "run.csv").touches
+    assert touches == sum(name.startswith("FF") for name in run.feature)
 
 
 def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[str]) -> None:

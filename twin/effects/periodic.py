@@ -46,7 +46,12 @@ COHERENT = 0.999
 """Mean resultant of readings times n from which n waves a turn look like none: readings are 2.6
 degrees of a wave off an even grid."""
 UNEVEN = 0.9
-"""Mean resultant over the usual distance of readings from which they stand on a grid of it."""
+"""Mean resultant over a distance of readings from which they stand on a grid of it."""
+GAPS = (0.01, 0.1, 0.5, 0.9)
+"""Shares of the gaps between readings, to the widest of which it is taken for that of a grid.
+
+One row of every eight of an even log leaves a single distance in one gap of 64; in fewer rows no
+period is looked for (`PER_READING`) that they show as a longer one."""
 PER_READING, MOST_PERIODS = 4, 40_000
 """Periods that are looked for in dense uneven readings: so many for each of them, so many at most.
 A choice of three thousand readings along 60 mm is scanned down to 5 µm."""
@@ -256,13 +261,34 @@ def finest_harmonic(q: Array) -> int:
 def _resolved(q: Array) -> float:
     """Shortest period that readings tell from longer ones, mm.
 
-    Even ones take half their distance for a constant; dense uneven ones have no such period.
+    Readings on an even grid, all of it or some, show every period below twice its distance as a
+    longer one; dense uneven ones have no such period.
     """
     places, usual = np.unique(q), 2.0 * usual_distance(q)
-    even = float(np.median(np.diff(places)))
-    if usual >= SHORTEST or abs(np.exp(2j * np.pi * places / even).mean()) > UNEVEN:
+    if usual >= SHORTEST:
         return usual
-    return min(usual, float(np.ptp(q)) / min(PER_READING * len(places), MOST_PERIODS))
+    finest = float(np.ptp(q)) / min(PER_READING * len(places), MOST_PERIODS)
+    return min(usual, max(finest, 2.0 * _grid_distance(places)))
+
+
+def _grid_distance(places: Array) -> float:
+    """Distance of the even grid on which readings stand, 0 where there is none, mm.
+
+    A choice of an even log has gaps of one, two and more distances, few of them of one.
+
+    Args:
+        places: Distinct readings, ascending, (N,), mm.
+    """
+    gaps = np.diff(places)
+    for distance in np.unique(np.quantile(gaps, GAPS, method="nearest"))[::-1]:
+        for _ in range(2):  # the second time by a distance that all of the travel tells
+            count = np.r_[0.0, np.cumsum(np.round(gaps / distance))]
+            if not count.any():
+                break
+            distance = float(count @ (places - places[0]) / (count @ count))
+        if abs(np.exp(2j * np.pi * places / distance).mean()) > UNEVEN:
+            return float(distance)
+    return 0.0
 
 
 def usual_distance(q: Array) -> float:
