@@ -101,11 +101,15 @@ def check_room(room: Room) -> None:
             binding=["touch"],
         )
     if not room.is_enough:
-        gap = f"; between two bodies cutter and probe need {least_gap(limits):g} mm"
         balls = "" if few else f" with {len(room.balls)} of {FEWEST_BALLS} balls"
         raise NotBuildable(
             f"only {len(room.faces)} of {room.wanted} patches{balls} fit on the blank side by "
-            f"side, of {places}{'' if room.is_hidden else gap}",
+            f"side, of {places}"
+            + (
+                ""
+                if room.is_hidden
+                else f"; between two bodies cutter and probe need {least_gap(limits):g} mm"
+            ),
             fitting=len(room.faces),
         )
     if not room.is_light:
