@@ -104,8 +104,12 @@ def check_room(room: Room) -> None:
         balls = "" if few else f" with {len(room.balls)} of {FEWEST_BALLS} balls"
         raise NotBuildable(
             f"only {len(room.faces)} of {room.wanted} patches{balls} fit on the blank side by "
-            f"side, of {places}; between two bodies cutter and probe need "
-            f"{least_gap(limits):g} mm",
+            f"side, of {places}"
+            + (
+                ""
+                if room.is_hidden
+                else f"; between two bodies cutter and probe need {least_gap(limits):g} mm"
+            ),
             fitting=len(room.faces),
         )
     if not room.is_light:

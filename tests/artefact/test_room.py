@@ -73,6 +73,14 @@ def test_the_lightest_standard_is_told_and_can_be_built(reach):
     assert mass_of(blank, made.patches, made.spheres) < blank.limits.max_mass
 
 
+def test_faces_out_of_reach_do_not_lack_room():
+    room = replace(room_among([], [], 4, Blank()), tried=30)
+    with pytest.raises(NotBuildable, match=r"30 places tried, 0 of which .* travels$"):
+        check_room(room)
+    with pytest.raises(NotBuildable, match=r"of 0 places tried; between two bodies .* 12 mm"):
+        check_room(replace(room, tried=0))
+
+
 def built(choice: BodyChoice):
     """Faces that stand beside each other, worth alike."""
     balls = list(choice.room.balls)
