@@ -1,5 +1,8 @@
 """A design on LinuxCNC: every block through its interpreter, and touches that it really makes.
 
+What is planted is looked for in the control's own log, beside a model that was learnt by probing
+the whole programs virtually without it.
+
     python benchmarks/control.py OUT [--touches 64] [--user NAME] [--add EFFECT=SIZE]
 
 OUT is a folder of `matstd design`. Without LinuxCNC it says so. The second part takes the time that
@@ -45,6 +48,21 @@ def interpreted(program: Program, folder: Path) -> str:
     return done.stdout
 
 
+def probed(design: Path, folder: Path, touches: int, add: str, user: str) -> None:
+    """Touches on the control with an effect planted, and what is found in its log."""
+    noise, quiet = ["--noise-um", "0.2"], ["--no-report", "-o"]
+    of = ["--standard", str(design / "standard.toml"), "--machine", str(design / "machine.toml")]
+    programs = [str(p) for p in sorted((design / "programs").iterdir()) if p.suffix == ".H"]
+    matstd(["simulate", *programs, *of, *noise, "-o", str(folder / "known.csv")])
+    matstd(["diagnose", str(folder / "known.csv"), *quiet, str(folder / "known")])
+    begin = time.perf_counter()
+    wanted = ["--touches", str(touches), "--add", add, *(["--user", user] if user else [])]
+    matstd(["control-test", str(design), *wanted, *noise, "-o", str(folder / "control")])
+    print(f"{time.perf_counter() - begin:.0f} s")
+    model = ["--model", str(folder / "known" / "model.toml")]
+    matstd(["diagnose", str(folder / "control" / "run.csv"), *model, *quiet, str(folder / "found")])
+
+
 def main() -> None:
     """Blocks, then touches."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -68,13 +86,8 @@ def main() -> None:
                 f"{seconds:.1f} s"
             )
     if args.touches:
-        user = ["--user", args.user] if args.user else []
         with tempfile.TemporaryDirectory() as folder:
-            begin = time.perf_counter()
-            touches = ["--touches", str(args.touches), "--add", args.add, *user]
-            output = ["-o", f"{folder}/control", "--noise-um", "0.2"]
-            matstd(["control-test", str(args.design), *touches, *output])
-            print(f"{time.perf_counter() - begin:.0f} s")
+            probed(args.design, Path(folder), args.touches, args.add, args.user)
 
 
 if __name__ == "__main__":
