@@ -3,7 +3,7 @@
 What is planted is looked for in the control's own log, beside a model that was learnt by probing
 the whole programs virtually without it.
 
-    python benchmarks/control.py OUT [--touches 64] [--user NAME] [--add EFFECT=SIZE]
+    python benchmarks/control.py OUT [--touches 100] [--user NAME] [--add EFFECT=SIZE]
 
 OUT is a folder of `matstd design`. Without LinuxCNC it says so. The second part takes the time that
 the touches take; `--touches 0` leaves it out.
@@ -67,7 +67,7 @@ def main() -> None:
     """Blocks, then touches."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("design", type=Path)
-    parser.add_argument("--touches", type=int, default=64)
+    parser.add_argument("--touches", type=int, default=100)
     parser.add_argument("--user", default="")
     parser.add_argument("--add", default="backlash(X)=10um")
     args = parser.parse_args()

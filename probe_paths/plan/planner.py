@@ -29,6 +29,7 @@ from twin.record import IntArray, Labels, Setup
 from twin.units import DEG
 
 _MARGIN = 0.011  # mm: gaps are found to 0.01, readings in programs are rounded to 0.0001
+_ANCHOR_SPARE = 5.0 * DEG  # an anchor stays away from where the ball ends above its stem
 
 
 @dataclass(frozen=True, eq=False)
@@ -316,12 +317,16 @@ def _anchor_requests(task: _Task, stop: Visit) -> Requests:
     local = np.stack([sin * np.cos(azimuth), sin * np.sin(azimuth), np.full(6, cos)], axis=-1)
     tilted = np.concatenate([local, [[0.0, 0.0, 1.0]]]) @ R_table_tool.T
     normal = tilted @ task.setup.T_table_artefact[:3, :3]
-    return Requests(
+    wanted = Requests(
         np.repeat([s.name for s in spheres], len(normal)),
         np.concatenate([s.centre + s.radius * normal for s in spheres]),
         np.tile(normal, (len(spheres), 1)),
         np.repeat(stop.rotary[None], len(spheres) * len(normal), axis=0),
     )
+    # where the machine errs by some tenths of a millimetre the ball is met a few degrees lower
+    lower = np.arcsin(np.clip(normal[:, 2], -1.0, 1.0)) - _ANCHOR_SPARE
+    around = np.column_stack([np.zeros(len(normal)), lower])
+    return wanted[np.concatenate([s.contains(around) for s in spheres])]
 
 
 def _assembled(

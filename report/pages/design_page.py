@@ -295,7 +295,7 @@ def _proof(design: Design) -> dict[str, Any]:
     machines = [_machine(m) for m in design.machines]
     return {
         "machines": machines,
-        "worst": min(machines, key=lambda m: m["proofs"][0]["factor"]),
+        "worst": max(machines, key=lambda m: m["proofs"][0]["after_um"]),
         "noise_um": design.project.noise / UM,
         "proof_poses": len(design.machines[0].proof.before),
         "poses": len({v.pose for v in design.plan.visits}),

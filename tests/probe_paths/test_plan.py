@@ -2,19 +2,23 @@
 
 from dataclasses import replace
 from itertools import permutations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from artefact.body.datum import STEM_CLEARANCE, DatumSphere
 from artefact.reach.touchable import Requests
 from artefact.reach.workshop import Workshop
+from probe_paths.plan import planner
 from probe_paths.plan.clearance import solid_hull, swing_height, top_height
 from probe_paths.plan.order import LONGEST_TURN, nearest_neighbours, short_order, visits, waypoints
 from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import PlanOptions, requests_at
 from twin.errors import DesignError, NotReachable, ShapeMismatch
-from twin.frames import apply
+from twin.frames import apply, fixed_xyz
+from twin.frames import pose as at_pose
 from twin.machine.kinematics import table_to_tool, tip
 from twin.record.touches import Setup
 from twin.units import DEG
@@ -212,3 +216,20 @@ def test_the_stylus_that_would_rub_is_refused(golden):
     fat = Probe(stack=((15.0, 2.0), (160.0, 60.0)), nose_radius=60.0)
     with pytest.raises(NotReachable, match="between probe and"):
         plan_touches(small, chain, fat, Setup("a"), wanted, PlanOptions())
+
+
+def test_an_anchor_stays_away_from_the_stem_though_the_machine_errs(chain):
+    """A standard is turned over step by step: the tool axis points ever lower at its ball."""
+    ball = DatumSphere("SPH1", np.array([0.0, 0.0, 100.0]), 12.5, 8.0, 9.1, 30.0)
+    task = SimpleNamespace(
+        options=PlanOptions(), standard=SimpleNamespace(spheres=(ball,)), chain=chain
+    )
+    stop, least, counts = SimpleNamespace(rotary=np.zeros(2), pose=0), [], []
+    for angle in range(0, 180, 2):
+        task.setup = Setup("a", at_pose(fixed_xyz(np.array([-angle, 0.0, 0.0]) * DEG)))
+        wanted = planner._anchor_requests(task, stop)
+        counts.append(len(wanted))
+        least += np.arcsin(wanted.normal[:, 2]).tolist()
+    allowed = ball.rim + STEM_CLEARANCE
+    assert allowed + 5.0 * DEG <= min(least) < allowed + 7.0 * DEG
+    assert (counts[0], counts[-1]) == (7, 0)
