@@ -130,14 +130,19 @@ class TwinContact:
         return np.array(out)
 
     def _programmed(self, q: Array, way: Array) -> tuple[int, float]:
-        """Row of the touch along whose line the axes go, and how far along they have come, mm."""
+        """Row of the touch along whose line the axes go, and how far along they have come, mm.
+
+        An anchor is touched again along the very same line: the next one in order counts.
+        """
         start = np.array([touch.q for _, touch in self.touches])
         along = (q - start) @ way
         beside = np.linalg.norm(q - start - along[:, None] * way, axis=1)
         turned = np.array([np.linalg.norm(touch.direction - way) for _, touch in self.touches])
         longest = np.array([touch.distance for _, touch in self.touches])
         wrong = (along < -_ON_LINE) | (along > longest) | (turned > 1e-3)
-        row = int(np.argmin(np.where(wrong, np.inf, beside)))
+        off = np.where(wrong, np.inf, beside)
+        same = np.flatnonzero(off <= off.min() + 1e-3 * _ON_LINE)
+        row = int(next((k for k in same if k >= max(self.made, default=0)), same[0]))
         if wrong[row] or beside[row] > _ON_LINE:
             raise DesignError(
                 f"LinuxCNC probes from {np.round(q[self.columns] / self.units, 4).tolist()} along "

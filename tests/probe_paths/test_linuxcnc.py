@@ -6,6 +6,7 @@ import os
 import socket
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.virtual_run import run_program
 from probe_paths.control.interpreter import interpret
 from probe_paths.control.log import read_log
+from probe_paths.control.steps import ProbeStep
 from probe_paths.emit.program import make_programs
 from probe_paths.language.dialect_file import read_dialect
 from probe_paths.linuxcnc import session as session_module
@@ -145,6 +147,21 @@ def test_the_contact_is_that_of_the_virtual_probing(twins, small, chain, crooked
         near = q - 0.3 * touch.direction
         assert abs(contact.travel(joints(chain, near), way) - 0.3) < NM
     assert [s.number for s in contact.strokes[:4]] == [1, 1, 2, 2]
+
+
+def test_a_touch_along_the_line_of_an_earlier_one_is_the_next_in_order(twins, small, chain):
+    """An anchor is touched in both rounds at the same readings, other touches lie between."""
+    first = twins[0]
+    later = [
+        replace(s, number=s.number + 100) if isinstance(s, ProbeStep) else s for s in first.steps
+    ]
+    twice, machine = [first, replace(first, steps=tuple(later))], VirtualMachine(chain)
+    contact = TwinContact(twice, small, machine, np.random.default_rng(0))
+    linear = [chain.axis_index(a) for a in "XYZ"]
+    wanted = [step for program in twice for step in program.touches[:3]]
+    for step in wanted:
+        contact.travel(joints(chain, step.q), step.direction[linear].tolist())
+    assert [s.number for s in contact.strokes] == [1, 2, 3, 101, 102, 103]
 
 
 def test_backlash_acts_by_the_side_from_which_the_axis_came(twins, small, chain, crooked):
