@@ -195,6 +195,34 @@ def decimals(is_length: bool, unit: Array) -> Array:
     return np.where(is_length & (unit != 1.0), _DECIMALS + 2, _DECIMALS)
 
 
+TIMED = "G0, G93 with the time of every line, or a program for LinuxCNC (.ngc)"
+"""What may stand where the feed of a turn would change its meaning."""
+
+INVERSE_TIME = "G93"
+
+
+def states_time(path: Path) -> bool:
+    """Whether turns at a feed are written with their time: the meaning of F is LinuxCNC's.
+
+    Its manual, "How feed rate applies": the path of X, Y and Z; degrees where none of them moves.
+    """
+    return path.suffix.lower() == ENDING
+
+
+def in_time(motion: Motion, minutes: float) -> Motion:
+    """A motion at a feed as one that states its time."""
+    return motion._replace(minutes=minutes, words=_FEED_WORDS.sub("", motion.words).strip())
+
+
+def feed_again(motion: Motion) -> str:
+    """The line that brings the feed of a motion back into force."""
+    return f"G94 F{motion.feed / motion.unit:.10g}"
+
+
+_FEED_WORDS = re.compile(r"(?<!\S)(?:F[\d.eE+-]+|G94)(?!\S)(?![^(]*\))")
+"""Words that state a feed, outside of remarks."""
+
+
 @cache
 def _form(axes: tuple[str, ...], places: int) -> str:
     """Of the words of some axes; lengths have so many decimals."""

@@ -179,6 +179,15 @@ def decimals(is_length: bool, unit: Array) -> Array:
     return np.where(is_length & (unit != 1.0), _DECIMALS + 1, _DECIMALS)
 
 
+TIMED = "FMAX, or a turn beside motions of X, Y, Z that its correction is small against"
+"""What may stand where the feed of a turn would change its meaning."""
+
+
+def states_time(path: Path) -> bool:
+    """No public manual of the control has a block that states its time."""
+    return False
+
+
 @cache
 def _form(axes: tuple[str, ...], places: int) -> str:
     """Of the words of some axes; lengths have so many decimals."""

@@ -169,7 +169,8 @@ class Paths:
             moved[k, list(arc.plane)] = self.radius(k, arc) * arc.angle, 0.0
         far = np.linalg.norm(moved[:, linear], axis=1)
         turned = np.linalg.norm(np.delete(moved, linear, axis=1), axis=1) / DEG
-        self.travel = np.where(far > 0.0, far, turned)
+        unit = np.array([m.unit for m in motions])  # F of a turn alone is in degrees, not inches
+        self.travel = np.where(far > 0.0, far, turned * unit)
 
     def radius(self, k: int, arc: Arc) -> float:
         """Of a motion that is an arc, mm."""

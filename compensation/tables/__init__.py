@@ -2,13 +2,21 @@
 
 In: `MachineErrors` and a `Datum`. Out: the files of a format and, from what was read back of them,
 `Played`: what they correct, what they cannot hold, and the one-point test of their sign. Tables
-hold errors by name (`iso230`, `heidenhain`) or corrections over single axes (`sinumerik`,
-`linuxcnc`). A new control is a module with `write` and `read` and a line in `formats.FORMATS`.
+hold errors by name (`iso230`) or corrections over single axes (`sinumerik`, `linuxcnc`). A new
+control is a module with `write` and `read` and a line in `formats.FORMATS`.
 """
 
 from compensation.tables.acceptance import Acceptance
 from compensation.tables.by_name import point_spacing
-from compensation.tables.formats import FORMATS, Format, Played, play_tables, write_tables
+from compensation.tables.formats import (
+    FORMATS,
+    Format,
+    Harmful,
+    Played,
+    play_tables,
+    refuse_harmful,
+    write_tables,
+)
 from compensation.tables.header import Header, hashed, header_of
 from compensation.tables.result_file import write_table_results
 
@@ -16,12 +24,14 @@ __all__ = [
     "FORMATS",
     "Acceptance",
     "Format",
+    "Harmful",
     "Header",
     "Played",
     "hashed",
     "header_of",
     "play_tables",
     "point_spacing",
+    "refuse_harmful",
     "write_table_results",
     "write_tables",
 ]

@@ -1,7 +1,7 @@
 """Tables of corrections over single axes, as controls without a volumetric model hold them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -76,15 +76,17 @@ def along_axes(
         datum: Through which the lines go, with the tool that is in the spindle there.
         most: Points of an axis that the format holds.
         crosswise: Whether an axis may correct others, in both directions alike; else every axis
-            corrects itself, each direction by itself.
+            corrects itself, each direction by itself, over all of its travel: LinuxCNC holds the
+            last value beyond a table and knows no turns.
         points: By axis, where they are given.
     """
     chain = errors.chain
     needed = _Needed(errors, datum)
-    counts = points or {a: _points(needed, a, most) for a in chain.programmed_axes}
     out = []
-    for axis, count in counts.items():
-        nodes = np.linspace(*span(chain.link(axis)), count)
+    for axis in points or chain.programmed_axes:
+        low, high = span(chain.link(axis)) if crosswise else chain.link(axis).range
+        count = points[axis] if points else _points(needed, axis, (low, high), most)
+        nodes = np.linspace(low, high, count)
         ways = [needed.along(axis, nodes, move) for move in _moves(errors, axis, crosswise)]
         names = [*chain.linear_axes, axis] if crosswise else [axis]
         for name in dict.fromkeys(names):
@@ -163,9 +165,9 @@ def _rotary(errors: MachineErrors, touches: Touches) -> Array:
     return out
 
 
-def _points(needed: _Needed, axis: str, most: int) -> int:
+def _points(needed: _Needed, axis: str, over: tuple[float, float], most: int) -> int:
     """Points of an axis, doubled until linear interpolation is good enough or the table full."""
-    low, high = span(needed.errors.chain.link(axis))
+    low, high = over
     count = FEWEST
     while True:
         between = np.linspace(low, high, BETWEEN * (count - 1) + 1)
@@ -193,13 +195,7 @@ def most_useful(
         q: Poses, (N, A).
         most: Tables that a control holds.
     """
-    touches = errors.touches(q, datum.length)
-    moves = _motion(errors, touches)
-    left = aligned(touches.point, deviation(errors, touches))
-    effects = []
-    for table in tables.tables:
-        added = AxisTables(tables.chain, (table,)).correction(touches)
-        effects.append(aligned(touches.point, np.einsum("nxa,na->nx", moves, added)))
+    left, effects = _fields(tables, errors, datum, q)
     chosen: list[int] = []
     while len(chosen) < most:
         trials = {k: rms(left + e) for k, e in enumerate(effects) if k not in chosen}
@@ -209,6 +205,46 @@ def most_useful(
         chosen.append(best)
         left = left + effects[best]
     return AxisTables(tables.chain, tuple(tables.tables[k] for k in chosen))
+
+
+def harmless(tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array) -> AxisTables:
+    """Tables without those that raise the error over some poses, the most harmful left out first.
+
+    A table keeps what depends on the direction of motion alone, which is right beside the datum
+    too.
+
+    Args:
+        q: Poses, (N, A).
+    """
+    left, effects = _fields(tables, errors, datum, q)
+    kept = dict(enumerate(effects))
+    while kept:
+        trials = {k: rms(left + sum(e for j, e in kept.items() if j != k)) for k in kept}
+        worst = min(trials, key=lambda k: trials[k])
+        if trials[worst] > rms(left + sum(kept.values())) - WORTH:
+            break
+        del kept[worst]
+    out = [t if k in kept else _reversal_of(t) for k, t in enumerate(tables.tables)]
+    return AxisTables(tables.chain, tuple(out))
+
+
+def _fields(
+    tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array
+) -> tuple[Array, list[Array]]:
+    """Deviation of the aligned workpiece at some poses, and what every table adds, (N, 3)."""
+    touches = errors.touches(q, datum.length)
+    moves = _motion(errors, touches)
+    effects = []
+    for table in tables.tables:
+        added = AxisTables(tables.chain, (table,)).correction(touches)
+        effects.append(aligned(touches.point, np.einsum("nxa,na->nx", moves, added)))
+    return aligned(touches.point, deviation(errors, touches)), effects
+
+
+def _reversal_of(table: AxisTable) -> AxisTable:
+    """What of a table depends on the direction of motion alone."""
+    half = 0.5 * (table.forward - table.reverse)
+    return replace(table, forward=half, reverse=-half)
 
 
 def line_bound(tables: AxisTables, errors: MachineErrors, datum: Datum) -> float:
@@ -249,6 +285,8 @@ def unheld_along(
     out = errors.columns(touches)
     moves = _motion(errors, touches)  # (N, 3, A)
     for table in tables.tables:
+        if not np.any(table.forward + table.reverse):
+            continue  # it was left out as harmful (`harmless`)
         k = chain.axis_index(table.moves)
         at = on_table(touches.reading(table.over), table.nodes, chain.link(table.over))
         added = interpolated(at, table.nodes, needed[table.over][:, k])

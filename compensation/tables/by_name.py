@@ -58,7 +58,7 @@ class NamedTables:
 
 def on_table(reading: Array, nodes: Array, link: Link) -> Array:
     """Readings brought into the turn that a table covers."""
-    if link.kind != "rotary" or nodes[-1] - nodes[0] < 2.0 * np.pi - 1e-9:
+    if link.kind != "rotary" or abs(nodes[-1] - nodes[0] - 2.0 * np.pi) > 1e-9:
         return reading
     return nodes[0] + np.mod(reading - nodes[0], 2.0 * np.pi)
 

@@ -3,22 +3,27 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from compensation.field import Datum, MachineErrors, Result, result_of
-from compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
+from compensation.field import Datum, MachineErrors, Result, result_of, rms
+from compensation.tables import iso_csv, linuxcnc_comp, sinumerik_cec
 from compensation.tables.acceptance import Acceptance, acceptance
 from compensation.tables.along_axes import (
+    WORTH,
     AxisTables,
     along_axes,
+    harmless,
     line_bound,
     most_useful,
     unheld_along,
 )
 from compensation.tables.by_name import NamedTables, interpolation_bound, sampled, unheld_by_name
 from compensation.tables.header import Header
+from twin.errors import DesignError
 from twin.files import write_whole
 from twin.frames import Array
 from twin.machine import Chain
+from twin.units import UM
 
 Tables = NamedTables | AxisTables
 
@@ -36,7 +41,7 @@ class Format:
 
     name: str
     make: Callable[[MachineErrors, Datum, Array], Tables]
-    write: Callable[[Tables, Header, MachineErrors, Datum], dict[str, str]]
+    write: Callable[[Any, Header], dict[str, str]]
     read: Callable[[Path, Chain], tuple[Tables, Header]]
 
 
@@ -62,6 +67,21 @@ class Played:
     acceptance: Acceptance
 
 
+class Harmful(DesignError):
+    """Tables that would make the machine worse."""
+
+
+def refuse_harmful(played: Played) -> None:
+    """Raise Harmful for tables that leave more than they found over the workspace."""
+    before, after = rms(played.result.before), rms(played.result.after)
+    if after > before + WORTH:
+        raise Harmful(
+            f"{played.format}: the tables would leave {after / UM:.3g} µm rms over the workspace, "
+            f"where the machine without them has {before / UM:.3g} µm; narrow the workspace "
+            f"(--within) or compensate part programs instead (--program)"
+        )
+
+
 def _named(most: int) -> Callable[[MachineErrors, Datum, Array], Tables]:
     return lambda errors, datum, _: sampled(errors, datum, most)
 
@@ -73,15 +93,7 @@ def _cec(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
 
 
 def _comp(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
-    return along_axes(errors, datum, linuxcnc_comp.MOST_POINTS, False)
-
-
-def _write_comp(
-    tables: Tables, head: Header, errors: MachineErrors, datum: Datum
-) -> dict[str, str]:
-    there = errors.contribution(errors.touches(datum.q[None, :], datum.length))
-    assert isinstance(tables, AxisTables)
-    return linuxcnc_comp.write(tables, head, there.place[0])
+    return harmless(along_axes(errors, datum, linuxcnc_comp.MOST_POINTS, False), errors, datum, q)
 
 
 FORMATS: Mapping[str, Format] = {
@@ -90,17 +102,11 @@ FORMATS: Mapping[str, Format] = {
         Format(
             "iso230",
             _named(iso_csv.MOST_POINTS),
-            lambda t, h, *_: iso_csv.write(t, h),
+            iso_csv.write,
             iso_csv.read,
         ),
-        Format(
-            "heidenhain",
-            _named(heidenhain_com.MOST_POINTS),
-            lambda t, h, *_: heidenhain_com.write(t, h),
-            heidenhain_com.read,
-        ),
-        Format("sinumerik", _cec, lambda t, h, *_: sinumerik_cec.write(t, h), sinumerik_cec.read),
-        Format("linuxcnc", _comp, _write_comp, linuxcnc_comp.read),
+        Format("sinumerik", _cec, sinumerik_cec.write, sinumerik_cec.read),
+        Format("linuxcnc", _comp, linuxcnc_comp.write, linuxcnc_comp.read),
     )
 }
 """By the word of the command line, that which holds most first."""
@@ -110,7 +116,7 @@ def write_tables(
     form: Format, folder: Path, errors: MachineErrors, datum: Datum, head: Header, q: Array
 ) -> None:
     """Write the tables of a format into a folder of their own; arguments as of `play_tables`."""
-    for name, text in form.write(form.make(errors, datum, q), head, errors, datum).items():
+    for name, text in form.write(form.make(errors, datum, q), head).items():
         write_whole(folder / name, text)
 
 

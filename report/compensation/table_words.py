@@ -11,7 +11,6 @@ from twin.units import NM, UM
 
 _TITLES = {
     "iso230": "ISO 230 names (ISG kernel, TwinCAT CNC)",
-    "heidenhain": "iTNC 530 KinematicsComp",
     "sinumerik": "Sinumerik CEC",
     "linuxcnc": "LinuxCNC COMP_FILE",
 }

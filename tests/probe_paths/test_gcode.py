@@ -219,6 +219,13 @@ def test_the_interpreter_of_linuxcnc_takes_every_block(number, made, tmp_path):
     assert "PROGRAM_END" in done
     assert done.count("STRAIGHT_PROBE") == 2 * program.touches
     assert "PROGRAM_END" not in rs274.interpreted(met.replace("\nG0 Z", "\nG0 H", 1), tmp_path)
+    at = np.zeros(6)
+    for name, words in re.findall(r"(STRAIGHT_\w+)\(([^()]*)\)", done):
+        end = np.array([float(v) for v in words.split(",")[:6]])
+        moves = ~np.isclose(end, at, atol=2e-4)
+        # F is degrees a minute for turns alone, mm a minute for lines alone, and neither for both
+        assert name == "STRAIGHT_TRAVERSE" or not (moves[:3].any() and moves[3:].any())
+        at = end
     missed = rs274.interpreted(program.text, tmp_path)  # where nothing is simulated nothing is met
     assert "(ABORT,1014)" in missed
     assert "PROGRAM_END" not in missed
