@@ -10,6 +10,7 @@ from twin.errors import BadFile
 from twin.files import run_columns as columns
 from twin.files.machine_file import Coordinate, Vector, read_machine
 from twin.files.pose_file import FARTHEST, reading_columns, readings
+from twin.files.run_body import BodyTable, check_body_column, with_body
 from twin.files.run_checks import checked_run, states_readings
 from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, is_file, parse_toml, read_text
@@ -73,6 +74,7 @@ class HeadTable(Table):
     probe: ProbeTable
     instrument: Instrument = Field(default=Instrument.TOUCH_PROBE, strict=False)
     u_um: float | None = Field(default=None, ge=columns.FINEST, le=columns.COARSEST)
+    standard: BodyTable | None = None
     setup: dict[str, SetupTable] = Field(default_factory=dict)
 
 
@@ -102,6 +104,9 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     remarks = list(chain.remarks)
     columns.put_in_order(table, remarks)
     stated = _assemble(table, chain, head, remarks)
+    if head.standard is not None:
+        check_body_column(table, stated)
+        stated = with_body(stated, head.standard, path)
     run = stated
     moved: tuple[Moved, ...] = ()
     if "dev_um" not in table:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.files.pose_file import reading_columns
+from twin.files.run_body import body_line
 from twin.files.run_columns import FORCE, NORMAL, POINT, RADIUS, TARGET
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
@@ -19,7 +20,8 @@ def write_run(path: str | Path, run: Run, machine: str) -> None:
     """Write a run file, whole or not at all; `read_run` gives the same measurements back.
 
     Args:
-        run: Measurements with one stated uncertainty or one a row.
+        run: Measurements with one stated uncertainty or one a row; their deviations are written as
+            from the standard at 20 degC, for the reader to take its growth off.
         machine: Path of the machine file as it shall stand in the head (relative to `path`).
     """
     write_whole(path, run_text(run, machine))
@@ -42,6 +44,7 @@ def run_text(run: Run, machine: str) -> str:
         out.write(f'# instrument = "{t.instrument.value}"\n')
     if common_u:
         out.write(f"# u_um = {float(run.u[0]) / UM:.12g}\n")
+    out.write(body_line(t))
     for setup in t.setups:
         T = setup.T_table_artefact
         angles = np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 10) + 0.0  # no minus before a zero
@@ -90,7 +93,7 @@ def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
     columns |= {f"V_{name}": [f"{v:.9g}" for v in values] for name, values in t.value.items()}
     columns |= _optional_columns(run, common_u)
     # the deviation is in the readings, but only to their digits; instruments state it themselves
-    columns["dev_um"] = _cells(run.deviation / UM, 6)
+    columns["dev_um"] = _cells(run.raw_deviation / UM, 6)
     return columns
 
 

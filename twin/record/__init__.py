@@ -5,6 +5,7 @@ units. A new quantity that is recorded at every touch becomes a field of it; `Ru
 """
 
 from twin.record.alignment import Moved, aligned, rigid_motion
+from twin.record.body import BODY, Body
 from twin.record.copies import without_copies
 from twin.record.instrument import Instrument
 from twin.record.run import Run
@@ -21,6 +22,8 @@ from twin.record.touches import (
 )
 
 __all__ = [
+    "BODY",
+    "Body",
     "Instrument",
     "IntArray",
     "Labels",
