@@ -64,7 +64,7 @@ def true_scales(e, fit):
         q = used.reading(a)
         middle[a] = 0.0 if a in e.machine.rotary else 0.5 * (q.min() + q.max())
     out = {}
-    for i, axis in enumerate("XYZ"):
+    for axis in "XYZ":
         q = {a: np.full(21, middle[a]) for a in e.machine.programmed}
         q[axis] = np.linspace(used.reading(axis).min(), used.reading(axis).max(), 21)
         errors = {name: f(q) for name, f in e.errors.items()}
@@ -98,16 +98,19 @@ def main():
     """Print how often the truth lies within two standard uncertainties."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-n", type=int, default=100, help="runs of each case (100)")
+    parser.add_argument("--first", type=int, default=0, help="seed of the first run (0)")
     parser.add_argument("--machine", choices=MACHINES, default="hsm600u")
     args = parser.parse_args()
+    seeds = range(args.first, args.first + args.n)
     for case in CASES:
-        found = [scales(seed, args.machine, case, poses=5) for seed in range(args.n)]
+        found = [scales(seed, args.machine, case, poses=5) for seed in seeds]
         for axis in "XYZ":
             v, u, truth = np.array([one[f"E{axis}{axis}"] for one in found]).T
             within = int(np.sum(np.abs(v - truth) <= 2.0 * u))
             print(
                 f"{case:8s} E{axis}{axis}: {within} of {args.n} within 2 u, u {1e6 * u.mean():.1f} "
-                f"ppm, error {1e6 * np.sqrt(np.mean((v - truth) ** 2)):.1f} ppm rms"
+                f"ppm, error {1e6 * np.sqrt(np.mean((v - truth) ** 2)):.1f} ppm rms, "
+                f"{np.sqrt(np.mean(((v - truth) / u) ** 2)):.2f} u rms"
             )
 
 

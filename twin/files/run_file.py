@@ -6,25 +6,27 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field
 
-from twin.errors import BadFile
+from twin.errors import BadFile, BadValue
 from twin.files import run_columns as columns
 from twin.files.machine_file import Coordinate, Vector, read_machine
 from twin.files.pose_file import FARTHEST, reading_columns, readings
-from twin.files.run_body import BodyTable, check_body_column, with_body
 from twin.files.run_checks import checked_run, states_readings
 from twin.files.table import CsvTable
 from twin.files.toml import Table, check_format, checked, is_file, parse_toml, read_text
 from twin.frames import fixed_xyz, pose
 from twin.machine import Chain
 from twin.record import (
+    BODY,
     Instrument,
     IntArray,
     Moved,
     Run,
     Setup,
+    StatedBody,
     Touches,
     aligned,
     computed_deviation,
+    with_body,
 )
 from twin.units import DEG, UM
 
@@ -66,6 +68,15 @@ class SetupTable(Table):
         return Setup(name, pose(rotation, np.array(self.origin_mm)), self.run)
 
 
+class BodyTable(Table):
+    """`standard`: what the calibrated piece expands by, and how its temperature is known."""
+
+    expansion_1_K: float  # noqa: N815  (K is the kelvin)
+    expansion_u_1_K: float | None = None  # noqa: N815
+    body_degC: float | None = None  # noqa: N815
+    body_u_K: float | None = None  # noqa: N815
+
+
 class HeadTable(Table):
     """The head of a run file."""
 
@@ -105,8 +116,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     columns.put_in_order(table, remarks)
     stated = _assemble(table, chain, head, remarks)
     if head.standard is not None:
-        check_body_column(table, stated)
-        stated = with_body(stated, head.standard, path)
+        stated = _with_body(stated, head.standard, table)
     run = stated
     moved: tuple[Moved, ...] = ()
     if "dev_um" not in table:
@@ -123,6 +133,19 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         refusal.facts["run"] = stated  # for whoever can say which mistake makes it so
         raise
     return replace(run, remarks=tuple(remarks))
+
+
+def _with_body(run: Run, stated: BodyTable, table: CsvTable) -> Run:
+    """The run with the growth of its standard taken off; raises BadFile."""
+    column = f"T_{BODY}_degC"
+    if column in table and BODY not in run.touches.temperature:
+        found = "no temperatures in half of the rows or more"
+        raise BadFile(table.path, f"column {column}", found, "those of the standard, 0 to 50 degC")
+    try:
+        return with_body(run, StatedBody(**stated.model_dump()))
+    except BadValue as error:
+        within = "" if error.facts["key"] == column else "standard"
+        raise BadFile.of(table.path, error, within) from None
 
 
 def _split_head(text: str, path: str | Path) -> tuple[str, str, int]:

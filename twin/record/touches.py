@@ -19,7 +19,6 @@ from twin.machine import (
     table_to_tool,
     tip,
 )
-from twin.record.body import Body
 from twin.record.instrument import Instrument
 from twin.units import T_REF
 
@@ -29,6 +28,23 @@ Labels = NDArray[np.str_]
 
 METRE = 1000.0
 """Arm, mm, at which a deviation in µm is as many µrad."""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """The standard as a body that expands.
+
+    Attributes:
+        alpha: Coefficient of linear expansion, 1/K.
+        u_alpha: Its standard uncertainty, 1/K.
+        u_temperature: That of its temperature, K, the same error at all touches of a run.
+        is_known: Whether its temperature is stated; else points stay those of 20 degC.
+    """
+
+    alpha: float
+    u_alpha: float
+    u_temperature: float
+    is_known: bool
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,14 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.options import add_effects, add_output, load_effects, seen_from
+from matstd.options import (
+    add_body,
+    add_effects,
+    add_output,
+    body_stated,
+    load_effects,
+    seen_from,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,6 +40,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "believed of it",
     )
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
+    add_body(
+        parser, "temperature of the standard, °C, which the run states; 20, not stated, without it"
+    )
     add_planted(parser)
     parser.add_argument(
         "--sensors",
@@ -64,13 +74,14 @@ def run(args: argparse.Namespace) -> int:
     from probe_paths.language import read_dialect
     from report.words import ball_lines
     from twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
+    from twin.record import with_body
     from twin.units import UM
 
     checked_noise(args)
     refuse_to_overwrite(args.output, args.force)
     standard = read_standard(args.standard)
-    real = read_standard(args.real_standard) if args.real_standard else standard
-    _check_piece(args.real_standard, real, standard)
+    stated = body_stated(args, standard)
+    real = _piece(args, standard)
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     record = read_sensors(args.sensors) if args.sensors else None
     dialect = read_dialect(args.control)
@@ -84,8 +95,10 @@ def run(args: argparse.Namespace) -> int:
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
     for name, text in campaign.logs.items() if args.logs else ():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
-    write_run(args.output, run, seen_from(Path(args.output).parent, args.machine))
     rms = float(np.sqrt(np.mean(run.deviation**2))) / UM
+    if args.body_degC is not None:
+        run = with_body(run, stated)
+    write_run(args.output, run, seen_from(Path(args.output).parent, args.machine))
     minutes = campaign.runs[-1].end / 60.0
     say(
         f"{args.output}: {len(run)} touches in {minutes:.0f} min, "
@@ -101,17 +114,27 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _check_piece(path: str, real: Standard, believed: Standard) -> None:
-    """Refuse the calibration of another standard than the design that is believed of the piece."""
-    from twin.errors import BadFile
+def _piece(args: argparse.Namespace, believed: Standard) -> Standard:
+    """The standard as it really is, at its temperature.
 
+    Raises:
+        BadFile: The calibration of another standard than the design that is believed of it.
+        DesignError: The uncertainty of a temperature that is not stated.
+    """
+    from artefact.body import read_standard
+    from twin.errors import BadFile, DesignError
+
+    if args.body_degC is None and args.body_u_K is not None:
+        raise DesignError(f"--body-u-K {args.body_u_K:g}: expected --body-degC as well")
+    real = read_standard(args.real_standard) if args.real_standard else believed
     if real.known and not believed.known and real.known.nominal != believed.fingerprint:
         raise BadFile(
-            path,
+            args.real_standard,
             "calibration.nominal",
             real.known.nominal,
             f"{believed.fingerprint}, the fingerprint of '{believed.name}' (--standard)",
         )
+    return real if args.body_degC is None else real.at(args.body_degC)
 
 
 def _search(
