@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from report.pages import Printer
     from twin.machine import Chain
     from twin.model import Model
-    from twin.record import StatedBody
+    from twin.record import Run, StatedBody
 
 SETUP, GEOMETRY = "setup", "geometry"
 """Words of `--start`."""
@@ -82,6 +82,16 @@ def body_stated(args: argparse.Namespace, standard: Standard) -> StatedBody:
         option = str(error.facts["key"]).replace("_", "-")
         expected = error.facts["expected"]
         raise DesignError(f"--{option} {error.facts['found']}: expected {expected}") from None
+
+
+def with_size(run: Run, stated: StatedBody) -> tuple[Run, list[str]]:
+    """The run with what is stated of its standard, and what that says of every scale."""
+    from diagnosis.remarks import body_sizes
+    from report.words import remark_sentence
+    from twin.record import with_body
+
+    run = with_body(run, stated)
+    return run, [remark_sentence(size) for size in body_sizes(run.touches)]
 
 
 def load_effects(files: Iterable[str]) -> None:

@@ -139,8 +139,11 @@ def _with_body(run: Run, stated: BodyTable, table: CsvTable) -> Run:
     """The run with the growth of its standard taken off; raises BadFile."""
     column = f"T_{BODY}_degC"
     if column in table and BODY not in run.touches.temperature:
-        found = "no temperatures in half of the rows or more"
-        raise BadFile(table.path, f"column {column}", found, "those of the standard, 0 to 50 degC")
+        values, gaps = table.temperatures(column)
+        row = int(np.argmax(gaps))
+        raise table.bad(
+            row, column, f"{values[row]:g}", "the temperature of the standard in degC (not kelvin)"
+        )
     try:
         return with_body(run, StatedBody(**stated.model_dump()))
     except BadValue as error:

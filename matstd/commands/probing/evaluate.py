@@ -1,14 +1,8 @@
 """`matstd evaluate`: logs that our probing programs left on a control, made a run file."""
 
-from __future__ import annotations
-
 import argparse
-from typing import TYPE_CHECKING
 
-from matstd.options import add_body, add_output, body_stated, seen_from
-
-if TYPE_CHECKING:
-    from twin.record import Run, StatedBody
+from matstd.options import add_body, add_output, body_stated, seen_from, with_size
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -94,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
         twice = [name for name in measured.touches.temperature if name in record.temperature]
         measured = record.joined(measured, min(part.begin for part in parts))
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
-    measured, size = _with_size(measured, body_stated(args, standard))
+    measured, size = with_size(measured, body_stated(args, standard))
     write_run(args.output, measured, seen_from(Path(args.output).parent, args.machine))
     say(
         f"{args.output}: {len(measured)} touches at {len(np.unique(measured.touches.pose))} table "
@@ -112,16 +106,6 @@ def run(args: argparse.Namespace) -> int:
         if not part.is_complete
     )
     return 0
-
-
-def _with_size(run: Run, stated: StatedBody) -> tuple[Run, list[str]]:
-    """The run with what is stated of its standard, and what that says of every scale."""
-    from diagnosis.remarks import body_sizes
-    from report.words import remark_sentence
-    from twin.record import with_body
-
-    run = with_body(run, stated)
-    return run, [remark_sentence(size) for size in body_sizes(run.touches)]
 
 
 def _check_numbers(args: argparse.Namespace) -> None:

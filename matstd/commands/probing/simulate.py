@@ -13,6 +13,7 @@ from matstd.options import (
     body_stated,
     load_effects,
     seen_from,
+    with_size,
 )
 
 if TYPE_CHECKING:
@@ -74,7 +75,6 @@ def run(args: argparse.Namespace) -> int:
     from probe_paths.language import read_dialect
     from report.words import ball_lines
     from twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
-    from twin.record import with_body
     from twin.units import UM
 
     checked_noise(args)
@@ -96,8 +96,7 @@ def run(args: argparse.Namespace) -> int:
     for name, text in campaign.logs.items() if args.logs else ():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
     rms = float(np.sqrt(np.mean(run.deviation**2))) / UM
-    if args.body_degC is not None:
-        run = with_body(run, stated)
+    run, size = with_size(run, stated) if args.body_degC is not None else (run, [])
     write_run(args.output, run, seen_from(Path(args.output).parent, args.machine))
     minutes = campaign.runs[-1].end / 60.0
     say(
@@ -109,8 +108,7 @@ def run(args: argparse.Namespace) -> int:
     u = max(machine.noise, SMALLEST_U)
     changes = ball_changes(campaign.parts, standard, machine.chain, u, dialect)
     radii = effective_radii(campaign.parts, machine.chain, u, dialect)
-    say_each(ball_lines(changes, radii=radii))
-    say_each(run.remarks)
+    say_each([*ball_lines(changes, radii=radii), *size, *run.remarks])
     return 0
 
 
