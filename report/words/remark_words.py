@@ -35,27 +35,26 @@ def _body_size(r: noticed.BodySize) -> str:
     """How large the standard was, and what that leaves open in every scale."""
     of = f"the standard of {r.run}" if r.run else "the standard"
     over = f"over its {r.length:.0f} mm"
-    u = f"± {1e6 * r.u:.1f} ppm, ± {r.u * r.length / UM:.1f} µm {over}"
     if r.body is None:
-        known = "temperature and expansion are" if r.temperature is None else "expansion is"
-        at = "" if r.temperature is None else f" (T_body_degC reads {r.temperature:.1f} on average)"
         each = STEEL * r.length / UM
+        lacks = "expansion and temperature are" if r.temperature is None else "expansion is"
+        at = "" if r.temperature is None else f"; T_body_degC reads {r.temperature:.1f} on average"
         return (
-            f"scales are those of a standard at 20 °C: {of} may be at another temperature, its "
-            f"{known} not stated{at}, and every kelvin of steel is {1e6 * STEEL:g} ppm, "
-            f"{each:.1f} µm {over}; `standard` in the head of the run states them"
+            f"scales hold for a standard at 20 °C: of {of} the {lacks} not stated, and every "
+            f"kelvin of steel is {1e6 * STEEL:g} ppm, {each:.1f} µm {over}{at} (`standard` in the "
+            "head of the run)"
         )
+    u = f"a standard uncertainty of {1e6 * r.u:.1f} ppm, {r.u * r.length / UM:.1f} µm"
     if r.temperature is None:
         return (
             f"the temperature of {of} is not stated: {T_REF:g} ± {r.body.u_temperature:g} °C is "
-            f"assumed, which leaves {u}, in every scale; body_degC or a column T_body_degC "
+            f"assumed, which leaves {u} {over}, in every scale; body_degC or a column T_body_degC "
             "states it"
         )
     taken = r.strain * r.length / UM
     return (
         f"{of} was at {r.temperature:.1f} ± {r.body.u_temperature:g} °C: its growth of "
-        f"{1e6 * r.strain:+.1f} ppm, {taken:+.1f} µm {over}, is taken off; {u}, stays in every "
-        "scale"
+        f"{1e6 * r.strain:+.1f} ppm, {taken:+.1f} µm {over}, is taken off; {u} stays in every scale"
     )
 
 

@@ -101,8 +101,10 @@ def test_what_is_said_beside_the_scales(found) -> None:
     assert told[AT_25][0].u == pytest.approx(np.hypot(1.05e-6, 5e-6))
     assert "was at 25.0 ± 0.1 °C: its growth of +52.5 ppm" in told[AT_25][1]
     assert told[UNKNOWN][0].u == pytest.approx(21e-6)
-    assert "20 ± 2 °C is assumed, which leaves ± 21.0 ppm" in told[UNKNOWN][1]
-    assert "scales are those of a standard at 20 °C" in told[""][1]
+    assert (
+        "20 ± 2 °C is assumed, which leaves a standard uncertainty of 21.0 ppm" in told[UNKNOWN][1]
+    )
+    assert "scales hold for a standard at 20 °C" in told[""][1]
 
 
 def test_nothing_is_corrected_twice(found) -> None:

@@ -286,7 +286,10 @@ def test_a_standard_that_is_warm(folder, capsys):
     assert left(free) < 20.0 * NM  # and not because a size was free in the fit
     # the logs know no temperature: by option, or in doubt
     assert evaluated(folder) == 0
-    assert "20 ± 2 °C is assumed, which leaves ± 21.0 ppm" in capsys.readouterr().out
+    assert (
+        "20 ± 2 °C is assumed, which leaves a standard uncertainty of 21.0 ppm"
+        in capsys.readouterr().out
+    )
     unknown = read_run(folder / "read" / "run.csv")
     assert np.abs(unknown.deviation - read_run(path).deviation).max() < NM
     assert evaluated(folder, "--body-degC", "30", "--body-u-K", "0.1", "--force") == 0
