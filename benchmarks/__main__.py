@@ -36,6 +36,7 @@ RUNS: dict[str, tuple[str, ...]] = {
     "noise_with_memory": ("--jobs", "2"),
     "large_effects": ("--jobs", "2"),
     "real_records": (),
+    "standard_temperature": (),
     "thermal_laws": (),
 }
 """Scripts and their arguments; the unseen cases, which have to be made first, come after them."""

@@ -8,12 +8,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from twin.errors import DesignError
+from twin.errors import BadValue, DesignError
 
 if TYPE_CHECKING:
+    from artefact.body import Standard
     from report.pages import Printer
     from twin.machine import Chain
     from twin.model import Model
+    from twin.record import Run, StatedBody
 
 SETUP, GEOMETRY = "setup", "geometry"
 """Words of `--start`."""
@@ -55,6 +57,41 @@ def add_effects(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
     )
+
+
+def add_body(parser: argparse.ArgumentParser, meaning: str) -> None:
+    """Options that state the temperature of the standard."""
+    parser.add_argument("--body-degC", metavar="T", type=float, help=meaning)
+    parser.add_argument(
+        "--body-u-K",
+        metavar="U",
+        type=float,
+        help="standard uncertainty of the temperature of the standard (0.3 where it is stated, "
+        "2 about 20 °C where it is not)",
+    )
+
+
+def body_stated(args: argparse.Namespace, standard: Standard) -> StatedBody:
+    """What the file of a standard and the options of `add_body` state; raises DesignError."""
+    from twin.record import StatedBody
+
+    made_of = standard.material
+    try:
+        return StatedBody(made_of.expansion, made_of.u_expansion, args.body_degC, args.body_u_K)
+    except BadValue as error:
+        option = str(error.facts["key"]).replace("_", "-")
+        expected = error.facts["expected"]
+        raise DesignError(f"--{option} {error.facts['found']}: expected {expected}") from None
+
+
+def with_size(run: Run, stated: StatedBody) -> tuple[Run, list[str]]:
+    """The run with what is stated of its standard, and what that says of every scale."""
+    from diagnosis.remarks import body_sizes
+    from report.words import remark_sentence
+    from twin.record import with_body
+
+    run = with_body(run, stated)
+    return run, [remark_sentence(size) for size in body_sizes(run.touches)]
 
 
 def load_effects(files: Iterable[str]) -> None:

@@ -1,6 +1,6 @@
 """A freeform patch: one B-spline height field over its own plane, trimmed to a rectangle."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -78,6 +78,21 @@ class FreeformPatch:
         gu, gv = greville(self.knots_u, self.degree[0]), greville(self.knots_v, self.degree[1])
         x, y = np.meshgrid(gu, gv, indexing="ij")
         return apply(self.T_artefact_patch, np.stack([x, y, self.heights], axis=-1))
+
+    def scaled(self, k: float) -> "FreeformPatch":
+        """The face of a body all of whose lengths from its origin are k times as large."""
+        T = self.T_artefact_patch.copy()
+        T[:3, 3] *= k
+        # a smaller face needs the whole overhang all the same
+        u, v = (k * a - max(0.0, 1.0 - k) * LEAST_OVERHANG for a in self.half_size)
+        return replace(
+            self,
+            T_artefact_patch=T,
+            half_size=(u, v),
+            knots_u=k * self.knots_u,
+            knots_v=k * self.knots_v,
+            heights=k * self.heights,
+        )
 
     @property
     def direction(self) -> Array:

@@ -17,6 +17,7 @@ from twin.errors import ShapeMismatch
 from twin.frames import Array
 from twin.machine import Chain
 from twin.record import Labels
+from twin.units import T_REF
 
 DATUM_PLANE = "DATUM_A"
 
@@ -31,11 +32,13 @@ class Material:
         name: Designation.
         density: In kg/mm^3.
         expansion: Coefficient of linear thermal expansion, 1/K.
+        u_expansion: Its standard uncertainty, 1/K; None where it is not stated.
     """
 
     name: str = "X40Cr14 (1.2083), hardened"
     density: float = 7.8e-6
     expansion: float = 10.5e-6
+    u_expansion: float | None = None
 
 
 STEEL = Material()
@@ -138,6 +141,22 @@ class Standard:
         if self.sag is None:
             return np.zeros((len(q), 3))
         return self.sag.moved(chain, q, T_table_artefact, feature)
+
+    def at(self, temperature: float) -> "Standard":
+        """The same standard at a temperature, degC: every length but those of stems and holes.
+
+        Evenly warm and held at its origin, so that all surfaces grow by
+        ``1 + expansion (temperature - 20)`` and keep their normals.
+        """
+        k = 1.0 + self.material.expansion * (temperature - T_REF)
+        return replace(
+            self,
+            base=replace(self.base, thickness=k * self.base.thickness),
+            patches=tuple(patch.scaled(k) for patch in self.patches),
+            spheres=tuple(
+                replace(s, centre=k * s.centre, radius=k * s.radius) for s in self.spheres
+            ),
+        )
 
     @property
     def plane(self) -> DatumPlane:

@@ -31,6 +31,7 @@ class _Material(Table):
     name: str
     density_kg_mm3: Positive
     expansion: float = Field(alias="expansion_1_K", ge=0.0, lt=1e-3)
+    u_expansion: float | None = Field(default=None, alias="expansion_u_1_K", ge=0.0, lt=1e-3)
 
 
 class _Base(Table):
@@ -147,7 +148,10 @@ def _standard(path: Path, file: _File) -> Standard:
             name=file.name,
             serial=file.serial,
             material=Material(
-                file.material.name, file.material.density_kg_mm3, file.material.expansion
+                file.material.name,
+                file.material.density_kg_mm3,
+                file.material.expansion,
+                file.material.u_expansion,
             ),
             base=_base(path, file.base),
             core=None
@@ -286,6 +290,8 @@ def _table(standard: Standard) -> dict[str, Any]:
             "thickness_mm": float(base.thickness),
         },
     }
+    if material.u_expansion is not None:
+        table["material"]["expansion_u_1_K"] = float(material.u_expansion)
     if core is not None:
         table["core"] = {
             "low_radius_mm": float(core.low_radius),

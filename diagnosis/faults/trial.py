@@ -26,7 +26,7 @@ from diagnosis.faults.suspects import (
 )
 from diagnosis.fit import Fit, fit_run, unit_mistake
 from diagnosis.regression import PRIOR_DOF, solve
-from twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, setup_errors
+from twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, body_errors, placing_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array, apply, inverse
 from twin.library import ordinary_model
@@ -228,13 +228,15 @@ def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array
         at: By how much they have been moved already, (K,).
     """
     touches = run.touches
-    machine, setups = ordinary_model(touches.chain).effects, setup_errors(touches)
-    usual = (*machine, *setups)
+    machine, setups = ordinary_model(touches.chain).effects, placing_errors(touches)
+    bodies = body_errors(touches)
+    usual = (*machine, *setups, *bodies)
     count = sum(len(e.parameters) for e in free)
     sd_free = np.concatenate([free_sd(e) for e in free]) if free else np.zeros(0)
     sd_machine = [p.sd for e in machine for p in e.parameters]
     sd_setups = [SETUPS * p.sd for e in setups for p in e.parameters]
-    sd = np.concatenate([sd_machine, sd_setups, sd_free])
+    sd_bodies = [p.sd for e in bodies for p in e.parameters]
+    sd = np.concatenate([sd_machine, sd_setups, sd_bodies, sd_free])
     X = columns((*usual, *free), touches) * sd / run.u[:, None]
     y = run.deviation / run.u
     first = solve(X, y)

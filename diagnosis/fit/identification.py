@@ -26,7 +26,7 @@ from diagnosis.regression import (
     whitener,
 )
 from twin.display import Shown
-from twin.effects import Free, setup_errors
+from twin.effects import Free, placing_errors, setup_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Effect, Model, Parameter, columns
@@ -55,7 +55,7 @@ class Fit(Shown):
     Parameters stand in the order: effects of the model, set-ups, tangents of inner parameters.
 
     Attributes:
-        setups: The free set-ups of the standard, and every further stylus.
+        setups: The free set-ups of the standard, every further stylus, and its size where stated.
         tangents: Displacements of inner parameters that were left free.
         prior: Of all parameters, as it was used.
         X: Columns of all rows times the root of the prior over the noise, (N, P).
@@ -136,7 +136,8 @@ class Fit(Shown):
     @cached_property
     def unseen_setups(self) -> tuple[tuple[NDArray[np.int64], slice], ...]:
         """Rows and parameters of every set-up, or further stylus, of which no touch was used."""
-        rows = [(np.flatnonzero(s.here(self.run.touches)), s.name) for s in self.setups]
+        t = self.run.touches
+        rows = [(np.flatnonzero(s.here(t)), s.name) for s in placing_errors(t)]
         return tuple((r, self.of_effect(name)) for r, name in rows if not self.used[r].any())
 
     @property

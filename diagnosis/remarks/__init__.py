@@ -4,6 +4,7 @@ In: a `Fit`. Out: `Remark`s, which carry numbers; `report.words` makes the sente
 to notice is a record here, and a function that makes it.
 """
 
+from diagnosis.remarks.body_size import BodySize, body_sizes
 from diagnosis.remarks.order import JumpInOrder
 from diagnosis.remarks.run_remarks import (
     ChosenByPrediction,
@@ -31,6 +32,7 @@ from diagnosis.remarks.run_remarks import (
 from diagnosis.remarks.turns import HarmonicsAlike
 
 __all__ = [
+    "BodySize",
     "ChosenByPrediction",
     "FewDegreesOfFreedom",
     "FewPoses",
@@ -53,5 +55,6 @@ __all__ = [
     "SearchEnded",
     "ShortBeam",
     "WorseThanReplicates",
+    "body_sizes",
     "remarks",
 ]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
+from diagnosis.remarks.body_size import BodySize, body_sizes
 from diagnosis.remarks.order import JumpInOrder, jump_in_order
 from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from twin.elastic import short_beams
@@ -229,6 +230,7 @@ class LoadTooSmall:
 
 Remark = (
     UnitMistake
+    | BodySize
     | NoiseRemembers
     | ChosenByPrediction
     | FieldShares
@@ -264,6 +266,7 @@ def remarks(fit: Fit, start: Fit | None = None) -> tuple[Remark, ...]:
     units = unit_mistake(fit)
     out: list[Remark] = [] if units is None else [units]
     out += [ReaderRemark(text) for text in fit.run.remarks]
+    out += body_sizes(fit.run.touches)
     out += _memory(fit)
     out += _touches(fit)
     jump = jump_in_order(start or fit)

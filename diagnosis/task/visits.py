@@ -12,7 +12,7 @@ import numpy as np
 
 from diagnosis.fit import Prior, fit_run
 from diagnosis.regression import BoolArray
-from twin.effects import setup_errors
+from twin.effects import body_errors, placing_errors
 from twin.errors import NotEnoughData
 from twin.frames import Array
 from twin.model import Model, columns
@@ -69,7 +69,7 @@ def visits_of(
         is_task: Touches like those of the task, of every run, (N,).
         is_datum: Touches that place the standard, (N,); all others take no part.
         calibration: Columns (N, Q) of the first run per standard uncertainty of the features'
-            places, mm.
+            places, mm; what its size leaves open comes to it, the same in all visits.
         model: What is known of the machine; None for nothing.
         estimates: Of its parameters.
 
@@ -99,12 +99,13 @@ def visits_of(
             f"the task, expected at least {MIN_PLACES}"
         )
     mine = rows[kept]
+    unknown = np.concatenate([calibration, _size_columns(first)], axis=1)
     return Visits(
         deviation=deviation[:, kept],
         face=first.feature[mine],
         pose=first.pose[mine],
         region=_region(first[mine]),
-        shared=_placed_columns(runs[0], is_datum[0], calibration)[mine],
+        shared=_placed_columns(runs[0], is_datum[0], unknown)[mine],
         lost=int((~there).sum()),
         gross=int(far.sum()),
     )
@@ -120,6 +121,8 @@ def _placed(
     """Deviations seen from the datum features, (N,), mm, and which of them are gross errors."""
     if not is_datum.any():
         raise NotEnoughData("no touch on a ball or the datum plane places the standard")
+    # the machine is held at what is known of it: a free size of the standard would take its scale
+    run = replace(run, touches=_without_sizes(run.touches))
     used = is_task | is_datum
     split = np.where(is_task[used], "test", "train")
     model = model or Model(run.touches.chain, ())
@@ -131,9 +134,20 @@ def _placed(
     return deviation, far
 
 
+def _without_sizes(touches: Touches) -> Touches:
+    """Touches of a standard whose size, its growth taken off, is not to be estimated."""
+    return replace(touches, setups=tuple(replace(s, body=None) for s in touches.setups))
+
+
+def _size_columns(touches: Touches) -> Array:
+    """Deviation per standard uncertainty of temperature and expansion of the standard, (N, K)."""
+    sizes = body_errors(touches)
+    return columns(sizes, touches) * [p.sd for one in sizes for p in one.parameters]
+
+
 def _placed_columns(run: Run, is_datum: BoolArray, calibration: Array) -> Array:
     """What calibration does to deviations that are seen from the datum features, (N, Q), mm."""
-    S = columns(setup_errors(run.touches), run.touches)
+    S = columns(placing_errors(run.touches), run.touches)
     placed = np.linalg.lstsq(S[is_datum], calibration[is_datum], rcond=1e-9)[0]
     return np.asarray(calibration - S @ placed)
 

@@ -23,7 +23,8 @@ from twin.thermal import ThermalLag
 Disturbance = Callable[[Touches], Contribution]
 
 _PER_TOUCH = (
-    "q", "length", "radius", "point", "normal", "time", "approach", "feature", "pose", "offset"
+    "q", "length", "radius", "point", "normal", "time", "approach", "feature", "pose", "offset",
+    "body_temperature",
 )  # fmt: skip
 
 

@@ -23,6 +23,9 @@ workspace is known so many times worse than the probed volume, nearly all of it 
 
 _NEARLY_ALL = 0.9
 
+AT_20 = "That holds for a standard at 20 °C, or corrected by its known temperature."
+"""What every figure of a design supposes: 1 K of steel is 3 µm over 300 mm."""
+
 EQUAL = 1.05
 """Ratio of two predicted errors up to which they are called equal: no user would notice it."""
 
@@ -42,7 +45,7 @@ def verdict_of_design(placement: Placement, workspace: Mapping[str, tuple[float,
         placement: Standard, touches, rivals.
         workspace: Smallest and largest reading by axis, mm or rad.
     """
-    told = [_left_unknown(placement), _extrapolated(placement, workspace)]
+    told = [_left_unknown(placement), _extrapolated(placement, workspace), AT_20]
     return " ".join(filter(None, told))
 
 

@@ -6,11 +6,14 @@ from typing import Any
 import diagnosis.remarks as noticed
 from diagnosis.fit import MistakenUnit, UnitMistake
 from report.numbers import unit_words, with_uncertainty
-from twin.units import UM
+from twin.units import T_REF, UM
 from twin.words import listed
 
 NONE_CERTAIN = ", none of which stands with all rows in use"
 """Behind a way of choosing of which nothing came."""
+
+STEEL = 11e-6
+"""Expansion of steel, 1/K."""
 
 LISTED = 20
 """Gross errors whose lines are told."""
@@ -26,6 +29,33 @@ def memory_words(correlation: float, step: float, by_place: bool) -> str:
     """What noise remembers, `correlation 0.82 from touch to touch`."""
     over = f"over {step:.3g} s" if step else "from touch to touch"
     return f"correlation {correlation:.2f} {over}{' at one place' if by_place else ''}"
+
+
+def _body_size(r: noticed.BodySize) -> str:
+    """How large the standard was, and what that leaves open in every scale."""
+    of = f"the standard of {r.run}" if r.run else "the standard"
+    over = f"over its {r.length:.0f} mm"
+    if r.body is None:
+        each = STEEL * r.length / UM
+        lacks = "expansion and temperature are" if r.temperature is None else "expansion is"
+        at = "" if r.temperature is None else f"; T_body_degC reads {r.temperature:.1f} on average"
+        return (
+            f"scales hold for a standard at 20 °C: of {of} the {lacks} not stated, and every "
+            f"kelvin of steel is {1e6 * STEEL:g} ppm, {each:.1f} µm {over}{at} (`standard` in the "
+            "head of the run)"
+        )
+    u = f"a standard uncertainty of {1e6 * r.u:.1f} ppm, {r.u * r.length / UM:.1f} µm"
+    if r.temperature is None:
+        return (
+            f"the temperature of {of} is not stated: {T_REF:g} ± {r.body.u_temperature:g} °C is "
+            f"assumed, which leaves {u} {over}, in every scale; body_degC or a column T_body_degC "
+            "states it"
+        )
+    taken = r.strain * r.length / UM
+    return (
+        f"{of} was at {r.temperature:.1f} ± {r.body.u_temperature:g} °C: its growth of "
+        f"{1e6 * r.strain:+.1f} ppm, {taken:+.1f} µm {over}, is taken off; {u} stays in every scale"
+    )
 
 
 def _noise_remembers(r: noticed.NoiseRemembers) -> str:
@@ -175,6 +205,7 @@ def _harmonics_alike(r: noticed.HarmonicsAlike) -> str:
 
 _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     UnitMistake: _units,
+    noticed.BodySize: _body_size,
     noticed.NoiseRemembers: _noise_remembers,
     noticed.ChosenByPrediction: _chosen,
     noticed.FieldShares: _field_shares,

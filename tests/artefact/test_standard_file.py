@@ -113,3 +113,27 @@ def test_missing_and_cut_off_files(standard, tmp_path):
     cut.write_text(text_of(standard, tmp_path)[:5000])
     with pytest.raises(BadFile, match="whole, valid TOML file"):
         read_standard(cut)
+
+
+@pytest.mark.parametrize("temperature", [15.0, 30.0])
+def test_a_warm_standard_is_larger_in_every_length(standard, temperature):
+    """Every surface point moves away from the origin by 10.5e-6 a kelvin, normals stay."""
+    warm, k = standard.at(temperature), 1.0 + 10.5e-6 * (temperature - 20.0)
+    for name, surface in standard.features.items():
+        uv = np.array([[0.1, 0.2], [-0.7, 0.4], [1.0, 1.1]])
+        at = uv if name.startswith("SPH") else k * uv  # angles of a ball, lengths of a face
+        grown = warm.features[name]
+        np.testing.assert_allclose(grown.point(at), k * surface.point(uv), rtol=0.0, atol=1e-10)
+        np.testing.assert_allclose(grown.normal(at), surface.normal(uv), rtol=0.0, atol=1e-12)
+    assert [s.radius for s in warm.spheres] == [k * s.radius for s in standard.spheres]
+
+
+def test_the_uncertainty_of_the_expansion_is_kept(standard, tmp_path):
+    known = replace(standard, material=replace(standard.material, u_expansion=3e-7))
+    write_standard(tmp_path / "standard.toml", known)
+    assert "expansion_u_1_K = 3e-07" in (tmp_path / "standard.toml").read_text(encoding="utf-8")
+    assert equal(known, read_standard(tmp_path / "standard.toml"))
+    text = (tmp_path / "standard.toml").read_text(encoding="utf-8")
+    (tmp_path / "bad.toml").write_text(text.replace("1.05e-05", "11.5"), encoding="utf-8")
+    with pytest.raises(BadFile, match=r"material.expansion_1_K: found 11.5"):
+        read_standard(tmp_path / "bad.toml")

@@ -1,6 +1,7 @@
 """`matstd simulate`: the thin command round it all."""
 
 import json
+import re
 import shutil
 from dataclasses import replace
 from datetime import timedelta
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from artefact.body.standard_file import write_standard
+from diagnosis.fit.identification import fit_run
 from matstd.cli import main
 from probe_paths.campaign.contact_solver import FIRST_MORNING
 from probe_paths.emit.program import make_programs
@@ -17,6 +19,8 @@ from probe_paths.plan.planner import plan_touches
 from probe_paths.plan.probe import Probe
 from probe_paths.plan.touch_plan import PlanOptions
 from twin.files.run_file import read_run
+from twin.model.model import Model
+from twin.record.touches import Body
 from twin.units import NM, UM
 
 MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
@@ -256,6 +260,71 @@ def test_what_the_sensors_read_stands_in_the_run_file_and_drives_the_effect(fold
     assert np.abs(run.deviation).max() > 10.0 * UM
     assert command(folder, *more, "--force") == 0
     assert np.abs(read_run(folder / "out" / "run.csv").deviation).max() < NM
+
+
+def left(run):
+    """What a set-up alone leaves of a run of a perfect machine, mm."""
+    return np.abs(fit_run(run, Model(run.touches.chain, ())).residual).max()
+
+
+def test_a_standard_that_is_warm(folder, capsys):
+    """The twin's surfaces are 10.5e-6 * 10 K larger; what is taken off follows from points alone.
+
+    At a steep place a surface 20 um beside meets the ball 20 um aside: second order, nanometres.
+    """
+    warm = ("--body-degC", "30", "--noise-um", "0")
+    assert command(folder, *warm, "--logs", str(folder / "logs")) == 0
+    assert "was at 30.0 ± 0.3 °C: its growth of +105.0 ppm" in capsys.readouterr().out
+    path = folder / "out" / "run.csv"
+    known = read_run(path)
+    assert known.touches.setups[0].body == Body(10.5e-6, pytest.approx(1.05e-6), 0.3, True)
+    assert left(known) < 20.0 * NM
+    text = path.read_text(encoding="utf-8")
+    path.write_text(re.sub("# standard = .*\n", "", text), encoding="utf-8")
+    free = replace(known, touches=read_run(path).touches)
+    assert left(read_run(path)) > 1.0 * UM
+    assert left(free) < 20.0 * NM  # and not because a size was free in the fit
+    # the logs know no temperature: by option, or in doubt
+    assert evaluated(folder) == 0
+    assert (
+        "20 ± 2 °C is assumed, which leaves a standard uncertainty of 21.0 ppm"
+        in capsys.readouterr().out
+    )
+    unknown = read_run(folder / "read" / "run.csv")
+    assert np.abs(unknown.deviation - read_run(path).deviation).max() < NM
+    assert evaluated(folder, "--body-degC", "30", "--body-u-K", "0.1", "--force") == 0
+    assert "30.0 ± 0.1 °C" in capsys.readouterr().out
+    assert np.abs(read_run(folder / "read" / "run.csv").deviation - known.deviation).max() < NM
+
+
+def test_a_thermometer_on_the_standard_counts_touch_by_touch(folder, capsys):
+    """30 degC by the record are those of the option."""
+    assert command(folder, "--body-degC", "30", "--noise-um", "0", "--logs", f"{folder}/logs") == 0
+    sensors = folder / "sensors.csv"
+    times = (FIRST_MORNING - timedelta(hours=1), FIRST_MORNING + timedelta(hours=9))
+    rows = [f"{at.isoformat()},30.0" for at in times]
+    sensors.write_text("\n".join(["clock,T_body_degC", *rows]) + "\n", encoding="utf-8")
+    assert evaluated(folder, "--sensors", str(sensors)) == 0
+    assert "was at 30.0 ± 0.3 °C" in capsys.readouterr().out
+    read, made = (read_run(folder / name / "run.csv") for name in ("read", "out"))
+    assert np.abs(read.deviation - made.deviation).max() < NM
+    apart = ("--sensors", str(sensors), "--body-degC", "22", "--force")
+    assert evaluated(folder, *apart) == 2
+    assert "body_degC: found 22, where T_body_degC is 30.00" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        (("--body-degC", "295"), "--body-degC 295 (in kelvin?): expected the temperature of"),
+        (("--body-degC", "25", "--body-u-K", "-1"), "--body-u-K -1: expected a standard unc"),
+        (("--body-u-K", "1"), "--body-u-K 1: expected --body-degC as well"),
+    ],
+)
+def test_a_temperature_that_cannot_be(folder, capsys, more, told):
+    assert command(folder, *more) == 2
+    assert told in capsys.readouterr().err
+    assert not (folder / "out").exists()
 
 
 def test_a_standard_that_stands_beside_its_place(folder):

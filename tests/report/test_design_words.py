@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from report.words.design_words import best_rival, design_lines, verdict_of_design
+from report.words.design_words import AT_20, best_rival, design_lines, verdict_of_design
 from twin.machine import Chain
 from twin.units import UM
 
@@ -58,7 +58,7 @@ def test_scatter_that_nobody_can_build_is_no_rival() -> None:
     alone = placement(1.0, 2.0)
     alone.rivals = (alone.own, alone.rivals[-1])
     assert best_rival(alone) is None
-    assert verdict_of_design(alone, {}).endswith("in your workspace (predicted).")
+    assert verdict_of_design(alone, {}).endswith(f"in your workspace (predicted). {AT_20}")
 
 
 def test_the_probed_volume_comes_second_and_by_name() -> None:

@@ -16,7 +16,15 @@ from twin.effects.periodic import (
 )
 from twin.effects.position_table import PositionTable
 from twin.effects.probe import ProbeRadius, normal_in_tool
-from twin.effects.setup_error import SHIFT_SD, TURN_SD, Free, StylusError, setup_errors
+from twin.effects.setup_error import (
+    SHIFT_SD,
+    TURN_SD,
+    Free,
+    StylusError,
+    body_errors,
+    placing_errors,
+    setup_errors,
+)
 
 __all__ = [
     "MARK",
@@ -36,8 +44,10 @@ __all__ = [
     "ProbeRadius",
     "StylusError",
     "again",
+    "body_errors",
     "component",
     "normal_in_tool",
+    "placing_errors",
     "setup_errors",
     "usual_distance",
 ]

@@ -22,7 +22,7 @@ from twin.model import (
     sensors,
 )
 from twin.record import Touches
-from twin.units import T_REF, UM, URAD
+from twin.units import UM, URAD
 
 HOUR = 3600.0
 """Drift is told per hour, s."""
@@ -38,7 +38,8 @@ class ArtefactExpansion:
     """The standard expands with the temperature of a sensor.
 
     It expands from the origin of the table frame, which carries it along, in every direction alike;
-    p is the contact point in the table frame. One temperature holds for the whole body.
+    p is the contact point in the table frame. One temperature holds for the whole body. What it
+    grows by the temperature that its run states is taken off already: here is what it grows beyond.
 
     Attributes:
         sensor: Name of the sensor.
@@ -65,7 +66,7 @@ class ArtefactExpansion:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A shift of the standard."""
-        warmth = sensor_record(touches, self.sensor) - T_REF
+        warmth = sensor_record(touches, self.sensor) - touches.body_temperature
         p = touches.point_table
         return tuple(Term(0, Where("shift", 0, i), warmth * p[:, i]) for i in range(3))
 
@@ -166,7 +167,10 @@ def _make_expansion(chain: Chain, arguments: Sequence[str]) -> Effect:
 def _propose_expansion(touches: Touches) -> Iterable[Effect]:
     if not touches.instrument.is_ball_on_standard:
         return ()
-    return (ArtefactExpansion(sensor) for sensor in sensors(touches))
+    stated = touches.body_temperature
+    return (
+        ArtefactExpansion(s) for s in sensors(touches) if np.any(touches.temperature[s] != stated)
+    )
 
 
 def _propose_slip(touches: Touches) -> Iterable[Effect]:
@@ -186,7 +190,7 @@ EXPANSION = Kind(
     arguments="sensor",
     title="thermal expansion of the standard",
     synonyms="growth of the artefact, temperature of the part, artefact expansion",
-    formula="shift = alpha (T - 20 degC) p",
+    formula="shift = alpha (T - T_body) p, T_body as the run states it, else 20 degC",
     units="alpha: µm/(m K)",
     typical="steel 10 to 12, aluminium 23, Invar 0.6 to 1.6 µm/(m K)",
     source="ISO 1 (20 degC)",

@@ -1,4 +1,4 @@
-"""Free with every run: where the standard stands in every set-up, and every further stylus."""
+"""Free with every run: where the standard stands, every further stylus, and how large it is."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from twin.frames import Array
 from twin.model import Parameter, Term, Where
-from twin.record import Touches
-from twin.units import UM
+from twin.record import Body, Touches
+from twin.units import T_REF, UM
 
 SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3
@@ -115,13 +116,96 @@ class StylusError:
         return [*moves, Term(3, Where("bias"), here)]
 
 
-Free = SetupError | StylusError
+@dataclass(frozen=True)
+class BodyTemperature:
+    """How far the standard of one run is from its stated temperature, or from 20 degC without one.
+
+    ``shift = alpha dT p``, p from the origin of the standard: one scale of all its touches, within
+    the uncertainty of the temperature. A common scale of X, Y and Z looks the same, so that what it
+    leaves open stays in the uncertainty of theirs.
+
+    Attributes:
+        run: Name of the run.
+        body: Its standard.
+    """
+
+    run: str
+    body: Body
+
+    kind = "body-temperature"
+
+    @property
+    def name(self) -> str:
+        """`body-temperature`, of several runs with the name of the run."""
+        return f"{self.kind}({self.run})" if self.run else self.kind
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """The temperature beyond the stated one."""
+        return (Parameter("temperature", "K", self.body.u_temperature),)
+
+    def here(self, touches: Touches) -> NDArray[np.bool_]:
+        """Touches of this run, (N,)."""
+        own = np.array([s.run == self.run and s.body == self.body for s in touches.setups])
+        return np.asarray(own[touches.setup])
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Shifts of the standard."""
+        return _grown(touches, self.here(touches).astype(float) * self.body.alpha)
+
+
+@dataclass(frozen=True)
+class BodyExpansion:
+    """How far the expansion of the standard is from the stated one.
+
+    ``shift = dalpha (T - 20 degC) p``. Runs that state the same standard share it.
+    """
+
+    body: Body
+
+    kind = "body-expansion"
+
+    @property
+    def name(self) -> str:
+        """`body-expansion(1.05e-05)`."""
+        return f"{self.kind}({self.body.alpha:g})"
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """The expansion beyond the stated one."""
+        return (Parameter("expansion", "1/K", self.body.u_alpha),)
+
+    def here(self, touches: Touches) -> NDArray[np.bool_]:
+        """Touches of a standard of this expansion, (N,)."""
+        stated = (self.body.alpha, self.body.u_alpha)
+        own = [
+            s.body is not None and (s.body.alpha, s.body.u_alpha) == stated for s in touches.setups
+        ]
+        return np.asarray(np.array(own)[touches.setup])
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Shifts of the standard."""
+        return _grown(touches, self.here(touches) * (touches.body_temperature - T_REF))
+
+
+def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
+    """Shifts of a standard that is larger by a strain (N,) per unit."""
+    arm = touches.point_table - touches.T_table_artefact[:, :3, 3]
+    return [Term(0, Where("shift", 0, i), strain * arm[:, i]) for i in range(3)]
+
+
+Free = SetupError | StylusError | BodyTemperature | BodyExpansion
 """What is estimated beside the model of the machine."""
 
 
 def setup_errors(touches: Touches) -> tuple[Free, ...]:
+    """What places every set-up and further stylus, and what the standard's size leaves open."""
+    return (*placing_errors(touches), *body_errors(touches))
+
+
+def placing_errors(touches: Touches) -> tuple[SetupError | StylusError, ...]:
     """One for every set-up that was touched, and for every stylus but the first."""
-    out: list[Free] = []
+    out: list[SetupError | StylusError] = []
     for index, setup in enumerate(touches.setups):
         rows = touches.setup == index
         if rows.any():
@@ -129,6 +213,16 @@ def setup_errors(touches: Touches) -> tuple[Free, ...]:
             turns_only = touches.instrument.reads_angle
             out.append(SetupError(setup.name, (float(x), float(y), float(z)), turns_only))
     return (*out, *_styli(touches))
+
+
+def body_errors(touches: Touches) -> tuple[BodyTemperature | BodyExpansion, ...]:
+    """What is not known of the size of every standard that states its expansion."""
+    stated = [touches.setups[i] for i in np.unique(touches.setup)]
+    pairs = dict.fromkeys((s.run, s.body) for s in stated if s.body is not None)
+    warm = [BodyTemperature(run, body) for run, body in pairs]
+    grown = {(b.alpha, b.u_alpha): BodyExpansion(b) for _, b in pairs}
+    at = touches.body_temperature != T_REF
+    return (*warm, *(one for one in grown.values() if np.any(at & one.here(touches))))
 
 
 def _styli(touches: Touches) -> tuple[StylusError, ...]:

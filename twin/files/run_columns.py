@@ -12,7 +12,7 @@ from twin.files.pose_file import FARTHEST
 from twin.files.table import KELVIN, CsvTable
 from twin.frames import Array
 from twin.machine import Chain
-from twin.record import IntArray, Labels, Moved, Touches, implied_approach
+from twin.record import BODY, IntArray, Labels, Moved, Touches, implied_approach
 from twin.units import DEG, UM
 
 BoolArray = NDArray[np.bool_]
@@ -156,9 +156,10 @@ def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Ar
         filled = _mended(table, column, values, gaps, at, remarks)
         if filled is not None:
             out[match.group(1)] = filled
-            if np.ptp(filled) == 0.0:
+            if np.ptp(filled) == 0.0 and match.group(1) != BODY:
                 remarks.append(
-                    f"{column} is constant at {filled[0]:g} degC: it cannot explain anything"
+                    f"{column} is constant at {filled[0]:g} degC: what varies within the run does "
+                    "not follow from it"
                 )
     return out
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field
 
-from twin.errors import BadFile
+from twin.errors import BadFile, BadValue
 from twin.files import run_columns as columns
 from twin.files.machine_file import Coordinate, Vector, read_machine
 from twin.files.pose_file import FARTHEST, reading_columns, readings
@@ -16,14 +16,17 @@ from twin.files.toml import Table, check_format, checked, is_file, parse_toml, r
 from twin.frames import fixed_xyz, pose
 from twin.machine import Chain
 from twin.record import (
+    BODY,
     Instrument,
     IntArray,
     Moved,
     Run,
     Setup,
+    StatedBody,
     Touches,
     aligned,
     computed_deviation,
+    with_body,
 )
 from twin.units import DEG, UM
 
@@ -65,6 +68,15 @@ class SetupTable(Table):
         return Setup(name, pose(rotation, np.array(self.origin_mm)), self.run)
 
 
+class BodyTable(Table):
+    """`standard`: what the calibrated piece expands by, and how its temperature is known."""
+
+    expansion_1_K: float  # noqa: N815  (K is the kelvin)
+    expansion_u_1_K: float | None = None  # noqa: N815
+    body_degC: float | None = None  # noqa: N815
+    body_u_K: float | None = None  # noqa: N815
+
+
 class HeadTable(Table):
     """The head of a run file."""
 
@@ -73,6 +85,7 @@ class HeadTable(Table):
     probe: ProbeTable
     instrument: Instrument = Field(default=Instrument.TOUCH_PROBE, strict=False)
     u_um: float | None = Field(default=None, ge=columns.FINEST, le=columns.COARSEST)
+    standard: BodyTable | None = None
     setup: dict[str, SetupTable] = Field(default_factory=dict)
 
 
@@ -102,6 +115,8 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     remarks = list(chain.remarks)
     columns.put_in_order(table, remarks)
     stated = _assemble(table, chain, head, remarks)
+    if head.standard is not None:
+        stated = _with_body(stated, head.standard, table)
     run = stated
     moved: tuple[Moved, ...] = ()
     if "dev_um" not in table:
@@ -118,6 +133,22 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
         refusal.facts["run"] = stated  # for whoever can say which mistake makes it so
         raise
     return replace(run, remarks=tuple(remarks))
+
+
+def _with_body(run: Run, stated: BodyTable, table: CsvTable) -> Run:
+    """The run with the growth of its standard taken off; raises BadFile."""
+    column = f"T_{BODY}_degC"
+    if column in table and BODY not in run.touches.temperature:
+        values, gaps = table.temperatures(column)
+        row = int(np.argmax(gaps))
+        raise table.bad(
+            row, column, f"{values[row]:g}", "the temperature of the standard in degC (not kelvin)"
+        )
+    try:
+        return with_body(run, StatedBody(**stated.model_dump()))
+    except BadValue as error:
+        within = "" if error.facts["key"] == column else "standard"
+        raise BadFile.of(table.path, error, within) from None
 
 
 def _split_head(text: str, path: str | Path) -> tuple[str, str, int]:

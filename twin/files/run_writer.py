@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from twin.errors import ShapeMismatch
 from twin.files.pose_file import reading_columns
 from twin.files.run_columns import FORCE, NORMAL, POINT, RADIUS, TARGET
 from twin.files.whole import write_whole
 from twin.frames import Array, fixed_xyz_angles
-from twin.record import Instrument, Run, implied_approach
+from twin.record import BODY, Instrument, Run, Touches, implied_approach
 from twin.units import DEG, UM
 
 
@@ -19,7 +20,8 @@ def write_run(path: str | Path, run: Run, machine: str) -> None:
     """Write a run file, whole or not at all; `read_run` gives the same measurements back.
 
     Args:
-        run: Measurements with one stated uncertainty or one a row.
+        run: Measurements with one stated uncertainty or one a row; their deviations are written as
+            from the standard at 20 degC, for the reader to take its growth off.
         machine: Path of the machine file as it shall stand in the head (relative to `path`).
     """
     write_whole(path, run_text(run, machine))
@@ -42,6 +44,7 @@ def run_text(run: Run, machine: str) -> str:
         out.write(f'# instrument = "{t.instrument.value}"\n')
     if common_u:
         out.write(f"# u_um = {float(run.u[0]) / UM:.12g}\n")
+    out.write(_body_line(t))
     for setup in t.setups:
         T = setup.T_table_artefact
         angles = np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 10) + 0.0  # no minus before a zero
@@ -55,6 +58,24 @@ def run_text(run: Run, machine: str) -> str:
     writer.writerow(columns)
     writer.writerows(zip(*columns.values(), strict=True))
     return out.getvalue()
+
+
+def _body_line(touches: Touches) -> str:
+    """Line of the head that states the size of the standard; empty where nothing is stated.
+
+    Raises:
+        ShapeMismatch: Several standards.
+    """
+    bodies = {s.body for s in touches.setups}
+    body = bodies.pop()
+    if bodies:
+        raise ShapeMismatch("set-ups of several standards, expected a run file for each")
+    if body is None:
+        return ""
+    line = f"expansion_1_K = {body.alpha!r}, expansion_u_1_K = {body.u_alpha!r}"
+    if body.is_known and BODY not in touches.temperature:
+        line += f", body_degC = {float(touches.body_temperature[0])!r}"
+    return f"# standard = {{ {line}, body_u_K = {body.u_temperature!r} }}\n"
 
 
 def _has_targets(run: Run) -> bool:
@@ -90,7 +111,7 @@ def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
     columns |= {f"V_{name}": [f"{v:.9g}" for v in values] for name, values in t.value.items()}
     columns |= _optional_columns(run, common_u)
     # the deviation is in the readings, but only to their digits; instruments state it themselves
-    columns["dev_um"] = _cells(run.deviation / UM, 6)
+    columns["dev_um"] = _cells(run.raw_deviation / UM, 6)
     return columns
 
 

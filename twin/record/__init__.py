@@ -5,11 +5,13 @@ units. A new quantity that is recorded at every touch becomes a field of it; `Ru
 """
 
 from twin.record.alignment import Moved, aligned, rigid_motion
+from twin.record.body import BODY, StatedBody, with_body
 from twin.record.copies import without_copies
 from twin.record.instrument import Instrument
 from twin.record.run import Run
 from twin.record.several_runs import joined
 from twin.record.touches import (
+    Body,
     IntArray,
     Labels,
     Setup,
@@ -21,12 +23,15 @@ from twin.record.touches import (
 )
 
 __all__ = [
+    "BODY",
+    "Body",
     "Instrument",
     "IntArray",
     "Labels",
     "Moved",
     "Run",
     "Setup",
+    "StatedBody",
     "Touches",
     "aligned",
     "at_poses",
@@ -35,5 +40,6 @@ __all__ = [
     "joined",
     "linear_approach",
     "rigid_motion",
+    "with_body",
     "without_copies",
 ]

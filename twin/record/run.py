@@ -18,7 +18,7 @@ class Run(Shown):
 
     Attributes:
         touches: Where, when and in which state.
-        deviation: Signed distance along the normal, (N,), mm.
+        deviation: Signed distance along the normal, the growth of the standard taken off, (N,), mm.
         u: Standard uncertainty of each deviation as stated, (N,), mm.
         split: "train", "test" or "" for each row, (N,).
         repeat: Number of the repetition, equal points share everything else; None if not recorded.
@@ -49,11 +49,19 @@ class Run(Shown):
         return len(self.touches)
 
     @property
+    def raw_deviation(self) -> Array:
+        """Deviations from the standard at 20 degC, as they stand in files, (N,), mm."""
+        return np.asarray(self.deviation + self.touches.growth)
+
+    @property
     def fingerprint(self) -> str:
-        """Short digest of readings, points and deviations: the same run has it whenever read."""
+        """Short digest of readings, points and deviations: the same run has it whenever read.
+
+        Whatever is stated of the temperature of its standard, it is the same measurement.
+        """
         t = self.touches
         digest = hashlib.sha256()
-        for values in (t.q, t.point, t.normal, self.deviation):
+        for values in (t.q, t.point, t.normal, self.raw_deviation):
             digest.update((np.round(values, 9) + 0.0).tobytes())  # + 0.0: no negative zeros
         return digest.hexdigest()[:16]
 

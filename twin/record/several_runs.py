@@ -42,7 +42,7 @@ def joined(runs: Mapping[str, Run]) -> Run:
     every = [part.touches for part in parts]
     starts = _starts(every)
     setups = [
-        Setup(f"{name}/{s.name}", s.T_table_artefact, name, begin)
+        replace(s, name=f"{name}/{s.name}", run=name, start=begin)
         for name, t, begin in zip(names, every, starts, strict=True)
         for s in t.setups
     ]

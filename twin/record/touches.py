@@ -20,6 +20,7 @@ from twin.machine import (
     tip,
 )
 from twin.record.instrument import Instrument
+from twin.units import T_REF
 
 IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]
@@ -27,6 +28,23 @@ Labels = NDArray[np.str_]
 
 METRE = 1000.0
 """Arm, mm, at which a deviation in µm is as many µrad."""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """The standard as a body that expands.
+
+    Attributes:
+        alpha: Coefficient of linear expansion, 1/K.
+        u_alpha: Its standard uncertainty, 1/K.
+        u_temperature: That of its temperature, K, the same error at all touches of a run.
+        is_known: Whether its temperature is stated; else points stay those of 20 degC.
+    """
+
+    alpha: float
+    u_alpha: float
+    u_temperature: float
+    is_known: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +56,14 @@ class Setup:
         T_table_artefact: Pose (4, 4), takes artefact coordinates to table coordinates.
         run: Name of the run that it belongs to, where several were joined.
         start: Time at which that run started, s.
+        body: The standard as it expands; None where the run does not state it.
     """
 
     name: str
     T_table_artefact: Array = field(default_factory=lambda: np.eye(4))
     run: str = ""
     start: float = 0.0
+    body: Body | None = None
 
 
 class Signature:
@@ -95,6 +115,7 @@ class Touches:
         pose: Label of the table pose, (N,).
         instrument: What measured them all.
         value: Columns of the user's own by name and unit (`coolant_l_min`), each (N,).
+        body_temperature: Of the standard as far as it is stated, else 20, (N,), degC.
     """
 
     chain: Chain
@@ -115,15 +136,19 @@ class Touches:
     instrument: Instrument = Instrument.TOUCH_PROBE
     value: Mapping[str, Array] = field(default_factory=dict)
     offset: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    body_temperature: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         n = len(checked_readings(self.chain, self.q))
-        if len(self.feature) == 0 and n:
-            object.__setattr__(self, "feature", np.full(n, "", dtype="U1"))
-        if len(self.offset) == 0 and n:
-            object.__setattr__(self, "offset", np.zeros((n, 2)))
-        if len(self.pose) == 0 and n:
-            object.__setattr__(self, "pose", np.zeros(n, dtype=np.int64))
+        unstated = {
+            "feature": np.full(n, "", dtype="U1"),
+            "offset": np.zeros((n, 2)),
+            "pose": np.zeros(n, dtype=np.int64),
+            "body_temperature": np.full(n, T_REF),
+        }
+        for name, default in unstated.items():
+            if len(getattr(self, name)) == 0:
+                object.__setattr__(self, name, default)
         for name in PER_TOUCH:
             value = getattr(self, name)
             if value is not None and len(value) != n:
@@ -189,6 +214,13 @@ class Touches:
     def normal_table(self) -> Array:
         """Outward normals in the table frame, (N, 3)."""
         return turn(self.T_table_artefact, self.normal)
+
+    @cached_property
+    def growth(self) -> Array:
+        """How far the surface stands outside its place at 20 degC, (N,), mm: ``alpha dT n . p``."""
+        alpha = np.array([0.0 if s.body is None else s.body.alpha for s in self.setups])[self.setup]
+        along = np.einsum("ni,ni->n", self.normal, self.point)
+        return np.asarray(alpha * (self.body_temperature - T_REF) * along)
 
     @cached_property
     def ball_artefact(self) -> Array:
@@ -309,8 +341,9 @@ def motion(q: Array, time: Array) -> Array:
 def computed_deviation(touches: Touches) -> Array:
     """Measured deviation of every touch from its readings, (N,), mm.
 
-    ``dev = n . (nominal ball centre - p) - radius``: the signed distance along the normal by which
-    a controller that believes in the nominal machine sees the surface outside its place.
+    ``dev = n . (nominal ball centre - p) - radius - growth``: the signed distance along the normal
+    by which a controller that believes in the nominal machine sees the surface outside its place,
+    at the temperature of the standard.
     """
     offset = touches.ball_artefact - touches.point
-    return np.einsum("ni,ni->n", touches.normal, offset) - touches.radius
+    return np.einsum("ni,ni->n", touches.normal, offset) - touches.radius - touches.growth

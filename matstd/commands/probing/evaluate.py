@@ -2,7 +2,7 @@
 
 import argparse
 
-from matstd.options import add_output, seen_from
+from matstd.options import add_body, add_output, body_stated, seen_from, with_size
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,7 +36,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--sensors",
         metavar="SENSORS.csv",
         help="temperatures by the clock of the control: columns clock (2031-05-06T07:08:09) and "
-        "T_<sensor>_degC",
+        "T_<sensor>_degC; T_body_degC is that of the standard",
+    )
+    add_body(
+        parser, "temperature of the standard while it was probed, °C; else that of T_body_degC"
     )
     add_output(parser, "RUN.csv")
 
@@ -64,8 +67,7 @@ def run(args: argparse.Namespace) -> int:
 
     _check_numbers(args)
     refuse_to_overwrite(args.output, args.force)
-    chain = read_machine(args.machine)
-    standard = read_standard(args.standard)
+    chain, standard = read_machine(args.machine), read_standard(args.standard)
     parts = [part for path in args.logs for part in read_log(path, chain.rotary_axes)]
     dialect, u, limit = Dialect(result_height=args.z), args.u_um * UM, args.probe_limit_um * UM
     changes = ball_changes(parts, standard, chain, u, dialect)
@@ -85,8 +87,9 @@ def run(args: argparse.Namespace) -> int:
         record = read_sensors(args.sensors)
         twice = [name for name in measured.touches.temperature if name in record.temperature]
         measured = record.joined(measured, min(part.begin for part in parts))
-    write_run(args.output, measured, seen_from(Path(args.output).parent, args.machine))
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
+    measured, size = with_size(measured, body_stated(args, standard))
+    write_run(args.output, measured, seen_from(Path(args.output).parent, args.machine))
     say(
         f"{args.output}: {len(measured)} touches at {len(np.unique(measured.touches.pose))} table "
         f"poses, deviations {rms:.3f} µm rms after the set-up was fitted"
@@ -95,7 +98,7 @@ def run(args: argparse.Namespace) -> int:
     say_each(told)
     if not changes and any(part.is_ball for part in parts):
         say_each(["the ball was measured once: whether the probe has changed is not known"])
-    say_each(measured.remarks)
+    say_each([*size, *measured.remarks])
     say_each(f"T_{name}_degC: that of {args.sensors} counts, not the log's" for name in twice)
     say_each(
         f"{part.path}: {part.program} stopped after {len(part.number)} touches"

@@ -6,7 +6,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.options import add_effects, add_output, load_effects, seen_from
+from matstd.options import (
+    add_body,
+    add_effects,
+    add_output,
+    body_stated,
+    load_effects,
+    seen_from,
+    with_size,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,6 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "believed of it",
     )
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
+    add_body(
+        parser, "temperature of the standard, °C, which the run states; 20, not stated, without it"
+    )
     add_planted(parser)
     parser.add_argument(
         "--sensors",
@@ -69,8 +80,8 @@ def run(args: argparse.Namespace) -> int:
     checked_noise(args)
     refuse_to_overwrite(args.output, args.force)
     standard = read_standard(args.standard)
-    real = read_standard(args.real_standard) if args.real_standard else standard
-    _check_piece(args.real_standard, real, standard)
+    stated = body_stated(args, standard)
+    real = _piece(args, standard)
     for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
     record = read_sensors(args.sensors) if args.sensors else None
     dialect = read_dialect(args.control)
@@ -84,8 +95,9 @@ def run(args: argparse.Namespace) -> int:
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
     for name, text in campaign.logs.items() if args.logs else ():
         write_whole(Path(args.logs) / name, text, newline="\r\n")
-    write_run(args.output, run, seen_from(Path(args.output).parent, args.machine))
     rms = float(np.sqrt(np.mean(run.deviation**2))) / UM
+    run, size = with_size(run, stated) if args.body_degC is not None else (run, [])
+    write_run(args.output, run, seen_from(Path(args.output).parent, args.machine))
     minutes = campaign.runs[-1].end / 60.0
     say(
         f"{args.output}: {len(run)} touches in {minutes:.0f} min, "
@@ -96,22 +108,31 @@ def run(args: argparse.Namespace) -> int:
     u = max(machine.noise, SMALLEST_U)
     changes = ball_changes(campaign.parts, standard, machine.chain, u, dialect)
     radii = effective_radii(campaign.parts, machine.chain, u, dialect)
-    say_each(ball_lines(changes, radii=radii))
-    say_each(run.remarks)
+    say_each([*ball_lines(changes, radii=radii), *size, *run.remarks])
     return 0
 
 
-def _check_piece(path: str, real: Standard, believed: Standard) -> None:
-    """Refuse the calibration of another standard than the design that is believed of the piece."""
-    from twin.errors import BadFile
+def _piece(args: argparse.Namespace, believed: Standard) -> Standard:
+    """The standard as it really is, at its temperature.
 
+    Raises:
+        BadFile: The calibration of another standard than the design that is believed of it.
+        DesignError: The uncertainty of a temperature that is not stated.
+    """
+    from artefact.body import read_standard
+    from twin.errors import BadFile, DesignError
+
+    if args.body_degC is None and args.body_u_K is not None:
+        raise DesignError(f"--body-u-K {args.body_u_K:g}: expected --body-degC as well")
+    real = read_standard(args.real_standard) if args.real_standard else believed
     if real.known and not believed.known and real.known.nominal != believed.fingerprint:
         raise BadFile(
-            path,
+            args.real_standard,
             "calibration.nominal",
             real.known.nominal,
             f"{believed.fingerprint}, the fingerprint of '{believed.name}' (--standard)",
         )
+    return real if args.body_degC is None else real.at(args.body_degC)
 
 
 def _search(

@@ -1,0 +1,124 @@
+"""The size of a standard: its expansion, its temperature, and the one place that takes growth off.
+
+Calibrated points hold at 20 degC. A standard at T stands ``alpha (T - 20 degC) p`` beside them, p
+from its own origin: where it is really held only displaces it, which the set-up takes up.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.errors import BadValue
+from twin.frames import Array
+from twin.record.run import Run
+from twin.record.touches import Body
+from twin.units import T_REF
+
+BODY = "body"
+"""Name of the sensor that sits on the standard: column `T_body_degC`."""
+
+U_SHARE = 0.1
+"""Relative standard uncertainty of an expansion stated without one. JCGM 100:2008, H.1.3.3: steel
+within 2e-6 of 11.5e-6 1/K, rectangular, u = 1.2e-6."""
+
+U_KNOWN = 0.3
+"""Standard uncertainty of a temperature stated without one, K: a resistance thermometer of class B
+is within 0.4 K (IEC 60751), rectangular 0.23, and it sits on the standard, not in it."""
+
+U_UNKNOWN = 2.0
+"""Standard uncertainty, about 20 degC, of a temperature that is not stated, K: rooms of machine
+tools keep within 3 or 4 K of it, and a standard that comes from elsewhere takes hours."""
+
+COLDEST, HOTTEST = 0.0, 50.0
+"""Temperatures of a standard (degC) lie between: beyond, it is another body's, or kelvin."""
+
+KELVIN = 270.0
+"""Temperatures above are in kelvin."""
+
+LARGEST = 1e-3
+"""Expansions (1/K) are below: rubber has 2e-4, steel 11.5e-6."""
+
+LARGEST_U = 20.0
+"""Standard uncertainties of a temperature (K) are below: it says nothing any more."""
+
+APART = 2.0
+"""Standard uncertainties by which two statements of one temperature may differ."""
+
+
+@dataclass(frozen=True, slots=True)
+class StatedBody:
+    """What is stated of a standard, by the names that it has in files; None where nothing is.
+
+    Raises:
+        BadValue: A number in another unit, or of something else.
+    """
+
+    expansion_1_K: float  # noqa: N815  (K is the kelvin)
+    expansion_u_1_K: float | None = None  # noqa: N815
+    body_degC: float | None = None  # noqa: N815
+    body_u_K: float | None = None  # noqa: N815
+
+    def __post_init__(self) -> None:
+        for key in ("expansion_1_K", "expansion_u_1_K"):
+            value = getattr(self, key)
+            if value is not None and not 0.0 <= value < LARGEST:
+                raise BadValue(key, f"{value:g}", f"0 to {LARGEST:g} 1/K: of steel 11.5e-6")
+        if self.body_degC is not None:
+            _check_temperature("body_degC", self.body_degC)
+        if self.body_u_K is not None and not 0.0 <= self.body_u_K <= LARGEST_U:
+            expected = f"a standard uncertainty from 0 to {LARGEST_U:g} K"
+            raise BadValue("body_u_K", f"{self.body_u_K:g}", expected)
+
+
+def with_body(run: Run, stated: StatedBody) -> Run:
+    """A run whose deviations are those from its standard at its own temperature.
+
+    The one place where the growth of a standard is taken off; `raw_deviation` gives it back.
+
+    Args:
+        run: Of calibrated points at 20 degC, sensors included.
+        stated: Of its standard; readings of the sensor `body` stand for the one temperature.
+
+    Raises:
+        BadValue: An instrument without a standard, or temperatures that cannot be.
+    """
+    touches = run.touches
+    if not touches.instrument.is_ball_on_standard:
+        found = f"expansion of a standard in a run of a {touches.instrument.value}"
+        raise BadValue("expansion_1_K", found, "it for a touch-probe alone")
+    at, common = touches.temperature.get(BODY), stated.body_degC
+    is_known = at is not None or common is not None
+    u = stated.body_u_K
+    if u is None:
+        u = U_KNOWN if is_known else U_UNKNOWN
+    if at is not None:
+        _check_readings(at, common, u)
+    else:
+        at = np.full(len(touches), T_REF if common is None else common)
+    alpha, u_alpha = stated.expansion_1_K, stated.expansion_u_1_K
+    body = Body(alpha, U_SHARE * alpha if u_alpha is None else u_alpha, u, is_known)
+    setups = tuple(replace(s, body=body) for s in touches.setups)
+    warm = replace(touches, setups=setups, body_temperature=at)
+    return replace(run, touches=warm, deviation=run.raw_deviation - warm.growth)
+
+
+def _check_readings(at: Array, common: float | None, u: float) -> None:
+    """Refuse a sensor that is not on the standard, or says something else than is stated."""
+    for value in (at.min(), at.max()):
+        _check_temperature(f"T_{BODY}_degC", float(value))
+    if common is not None and abs(common - float(at.mean())) > APART * u:
+        raise BadValue(
+            "body_degC",
+            f"{common:g}, where T_{BODY}_degC is {at.mean():.2f} on average",
+            f"one of the two, or both within {APART * u:g} K",
+        )
+
+
+def _check_temperature(key: str, value: float) -> None:
+    if not COLDEST <= value <= HOTTEST:
+        why = "in kelvin" if value > KELVIN else "of another body"
+        raise BadValue(
+            key,
+            f"{value:g} ({why}?)",
+            f"the temperature of the standard, {COLDEST:g} to {HOTTEST:g} degC",
+        )
