@@ -35,6 +35,7 @@ RUNS: dict[str, tuple[str, ...]] = {
     "description_faults": (),
     "noise_with_memory": ("--jobs", "2"),
     "large_effects": ("--jobs", "2"),
+    "flat_plate": (),
     "real_records": (),
     "standard_temperature": (),
     "thermal_laws": (),

@@ -18,7 +18,7 @@ from twin.display import Tabular
 from twin.frames import Array
 from twin.library import ordinary_model
 from twin.model import Model
-from twin.record import Run, without_copies
+from twin.record import Run, with_commanded, without_copies
 from twin.units import UM
 
 
@@ -185,7 +185,7 @@ def compare(
     Raises:
         NotEnoughData: So few touches that nothing can be said.
     """
-    run = without_copies(run)
+    run = with_commanded(without_copies(run))
     model = model or ordinary_model(run.touches.chain)
     if estimates is None:
         fit = fit_run(run, model)

@@ -9,6 +9,7 @@ from diagnosis.answer.alike import period_value
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.collinear import check_distinct, not_significant, weakest
 from diagnosis.answer.detectable import detectable
+from diagnosis.answer.nearest import named_probability, nearest, to_repeat
 from diagnosis.answer.next_measurement import (
     Plan,
     candidate_targets,
@@ -32,7 +33,6 @@ from diagnosis.evidence import (
     Progress,
     ResidualSpace,
     ScaledEffect,
-    f_probability,
     projected,
     quiet,
 )
@@ -54,7 +54,7 @@ from diagnosis.search import (
 from twin.compute import one_blas_thread
 from twin.library import ordinary_model, parse_effect
 from twin.model import Effect, Model, moved_components
-from twin.record import Run, Touches, without_copies
+from twin.record import Run, Touches, with_commanded, without_copies
 from twin.thermal import ThermalField
 
 PERIODS_PLANNED = 8
@@ -97,9 +97,9 @@ def diagnose(
         DesignError: Named effects that these touches cannot tell from one another.
 
     Example:
-        ``diagnose(read_run("run.csv")).verdict`` is one of three phrases.
+        ``diagnose(read_run("run.csv")).verdict`` is one of four phrases.
     """
-    run = without_copies(run)
+    run = with_commanded(without_copies(run))
     start = model or ordinary_model(run.touches.chain)
     belief = prior_for(run, start) if prior is None else prior
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
@@ -163,24 +163,26 @@ def _result(
     final, classes, gross = tested.state, tested.classes, final.base.gross
     left = _beyond_doubt((*final.nameless, *final.left), steps[-1].fit)
     unexplained = bool(left) and not _is_covered(steps[-1].fit)
-    verdict = (
-        Verdict.UNEXPLAINED
-        if unexplained
-        else Verdict.MISSING
-        if len(steps) > 1 + len(added)
-        else Verdict.NONE
-    )
+    repeat = to_repeat(steps[-1].fit)
+    if unexplained:
+        verdict = Verdict.UNEXPLAINED
+    elif len(steps) > 1 + len(added):
+        verdict = Verdict.MISSING
+    else:
+        verdict = Verdict.UNDECIDED if len(repeat) else Verdict.NONE
     start = _structures(final, progress)
+    candidates, depends_on = _candidates(final), _dependences(left if unexplained else start)
+    beside = (*added, *final.effects)
     progress(0.8, "what the run could have shown")
     seen = final.library.sample
     return Diagnosis(
         run=task.run,
         verdict=verdict,
         steps=steps,
-        candidates=_candidates(final),
+        candidates=candidates,
         structure=start,
         left=left,
-        depends_on=_dependences(left if unexplained else start),
+        depends_on=depends_on,
         where=_where(steps, verdict),
         detectable=detectable(seen, final.effects, len(final.library.complement.u)),
         plans=_plans(task, added, classes, gross, rng),
@@ -191,6 +193,10 @@ def _result(
         ),
         faults=description_faults(steps[0].fit, progress),
         remarks=(*not_significant(steps), *_remarks(steps, final)),
+        nearest=nearest(task, beside, gross, steps[-1].fit, candidates, depends_on)
+        if unexplained
+        else (),
+        repeat=repeat if verdict is Verdict.UNDECIDED else repeat[:0],
     )
 
 
@@ -257,20 +263,12 @@ def _steps(
     for k, sized in enumerate(effects):
         fit = task.fit(effects[: k + 1], gross)
         i = order[k - len(added)] if k >= len(added) else -1
-        p = p_values[i] if i >= 0 else _named_probability(out[-1].fit, fit)
+        p = p_values[i] if i >= 0 else named_probability(out[-1].fit, fit)
         confusion = classes[i] if i >= 0 else None
         out.append(
             Step(effect=sized.effect, fit=fit, p_value=p, reported=told[k], confusion=confusion)
         )
     return tuple(out)
-
-
-def _named_probability(before: Fit, after: Fit) -> float:
-    """Probability by chance of the fall that an effect named by the user brings: no scan paid."""
-    k = max(after.solution.effective_parameters - before.solution.effective_parameters, 0.5)
-    scale = (before.noise.factor / after.noise.factor) ** 2
-    drop = before.solution.objective * scale - after.solution.objective
-    return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
 
 
 def _by_worth(final: SearchState) -> list[int]:

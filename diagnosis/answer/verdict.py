@@ -1,8 +1,10 @@
 """Result of a diagnosis: verdict, steps in which the error falls, and what stays open."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
+
+import numpy as np
 
 from diagnosis.answer.ambiguity import ConfusionClass
 from diagnosis.answer.detectable import Detectable
@@ -16,7 +18,7 @@ from diagnosis.remarks import Remark
 from diagnosis.residual import Region, Structure
 from twin.display import Tabular
 from twin.model import Effect
-from twin.record import Run
+from twin.record import IntArray, Run
 from twin.units import UM
 
 
@@ -26,6 +28,7 @@ class Verdict(Enum):
     NONE = "no missing effect"
     MISSING = "missing effect"
     UNEXPLAINED = "unexplained"
+    UNDECIDED = "undecided"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +68,21 @@ class Candidate:
     log_odds: float
 
 
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """An effect that comes near what is left, and is named to be added by hand.
+
+    Attributes:
+        effect: Its name, for `--add`.
+        p_value: Probability by chance of so large a fall beside what was found.
+        test_rms: Error of held-out touches with it, mm.
+    """
+
+    effect: str
+    p_value: float
+    test_rms: float
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Dependence:
     """A variable on which a residual depends.
@@ -85,7 +103,8 @@ class Diagnosis(Tabular):
     """All that a run tells about what its model lacks.
 
     Attributes:
-        verdict: One of three.
+        verdict: One of four; undecided where the noise would have to be far above the stated one
+            and no repeats show it.
         steps: The error falling, effect by effect.
         candidates: Library effects by themselves, best first.
         structure: What the residual of the starting model varies with.
@@ -99,6 +118,8 @@ class Diagnosis(Tabular):
         remarks: What else a user should know.
         choice: How the set was chosen by prediction; None where the search left nothing to choose.
         trend: What changed between several runs; None for a single one.
+        nearest: Effects nearest to what is unexplained.
+        repeat: Rows of the touches whose repetition would decide, where the verdict is undecided.
     """
 
     run: Run
@@ -116,6 +137,8 @@ class Diagnosis(Tabular):
     remarks: tuple[Remark, ...]
     choice: Choice | None = None
     trend: Trend | None = None
+    nearest: tuple[Offer, ...] = ()
+    repeat: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def columns(self) -> dict[str, list[Any]]:
         """Every step in which the error falls; the first is the starting model."""

@@ -175,6 +175,7 @@ def recomputed(run: Run, touches: Touches) -> Run:
 
     Where the standard stands was perhaps found with the wrong description.
     """
+    touches = replace(touches, commanded=None)
     if _is_computed(run):
         return with_setups_placed(
             replace(run, touches=touches, deviation=computed_deviation(touches))

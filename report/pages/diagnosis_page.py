@@ -89,7 +89,7 @@ def write_diagnosis_page(
             {"variable": d.variable, "words": structure_words(d.structure), "p": d.p_value}
             for d in result.depends_on
         ],
-        is_bad=result.verdict is Verdict.UNEXPLAINED,
+        is_bad=result.verdict in (Verdict.UNEXPLAINED, Verdict.UNDECIDED),
         um=UM,
         steps=[_step(step) for step in result.steps],
         effects=[_effect(result, i, place) for i in range(1, len(result.steps))],

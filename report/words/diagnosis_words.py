@@ -266,6 +266,37 @@ def _covered(diagnosis: Diagnosis) -> str:
     )
 
 
+def _nearest(diagnosis: Diagnosis) -> str:
+    """The effect nearest to what is left, with what it is worth; empty where there is none."""
+    if not diagnosis.nearest:
+        return ""
+    best, *others = diagnosis.nearest
+    before, after = microns(diagnosis.fit.test_rms), microns(best.test_rms)
+    also = f"; next: {listed([o.effect for o in others])}" if others else ""
+    return (
+        f" The nearest effect is {best.effect} (p = {best.p_value:.0e}): with it the error of "
+        f'held-out touches goes from {before} to {after}; add it with --add "{best.effect}"{also}.'
+    )
+
+
+def _undecided(diagnosis: Diagnosis) -> str:
+    """That the noise alone would explain the run, if it were so large."""
+    noise = diagnosis.fit.noise
+    lines = [str(line) for line in sorted(diagnosis.run.line[diagnosis.repeat])]
+    shown = (
+        "no touch was repeated"
+        if noise.replicates is None
+        else f"{noise.replicates_dof} repeated touches show {digits(noise.replicates, 2)} times it"
+    )
+    size = noise.factor * stated_noise(diagnosis.run)
+    return (
+        f"Whether an effect is missing cannot be decided: the noise would have to be "
+        f"{microns(size)}, {digits(noise.factor, 2)} times the stated one, and {shown}. Repeat the "
+        f"touches of lines {listed(lines)} three times each, all else unchanged; a residual that "
+        f"comes again is no noise."
+    )
+
+
 def verdict_sentence(diagnosis: Diagnosis) -> str:
     """The verdict in one plain sentence, with numbers and standard uncertainties."""
     most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
@@ -285,11 +316,13 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         )
         was = "was" if len(steps) == 1 else "were"
         what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
+        rest = "" if diagnosis.nearest else " that no effect of the library accounts for"
         return (
-            f"Something is left that no effect of the library accounts for: "
-            f"{_left(diagnosis)}. It is not noise: "
-            f"{words or 'it varies with nothing that was recorded'}.{what}"
+            f"Something is left{rest}: {_left(diagnosis)}. It is not noise: "
+            f"{words or 'it varies with nothing that was recorded'}.{what}{_nearest(diagnosis)}"
         )
+    if diagnosis.verdict is Verdict.UNDECIDED:
+        return _undecided(diagnosis)
     fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""
     return (
         f"Nothing{' more' if named else ''} is missing that this run could have shown: the error "

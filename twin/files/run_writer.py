@@ -103,7 +103,9 @@ def _columns_out(run: Run, common_u: bool) -> dict[str, list[str]]:
     names = reading_columns(t.chain)
     for axis in t.chain.programmed_axes:
         column, factor = names[axis]
-        columns[column] = _cells(t.reading(axis) / factor, 7 if factor == 1.0 else 9)
+        columns[column] = _cells(
+            t.q[:, t.chain.axis_index(axis)] / factor, 7 if factor == 1.0 else 9
+        )
     columns |= {p: _cells(t.point[:, i], 7) for i, p in enumerate(POINT)}
     columns |= {n: _cells(t.normal[:, i], 12) for i, n in enumerate(NORMAL)}
     columns |= {f"dir{axis}": _cells(t.last_move(axis), 0) for axis in _stated_directions(run)}

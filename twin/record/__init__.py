@@ -6,6 +6,7 @@ units. A new quantity that is recorded at every touch becomes a field of it; `Ru
 
 from twin.record.alignment import Moved, aligned, rigid_motion
 from twin.record.body import BODY, StatedBody, with_body
+from twin.record.commanded import with_commanded
 from twin.record.copies import without_copies
 from twin.record.instrument import Instrument
 from twin.record.run import Run
@@ -41,5 +42,6 @@ __all__ = [
     "linear_approach",
     "rigid_motion",
     "with_body",
+    "with_commanded",
     "without_copies",
 ]

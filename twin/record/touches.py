@@ -98,6 +98,8 @@ class Touches:
 
     Attributes:
         q: Axis readings at the trigger, (N, A), mm and rad.
+        commanded: The same without what was measured, (N, A), which is what errors are functions
+            of; None where `q` is that already (`with_commanded`).
         length: Probe length to the ball centre, (N,), mm.
         offset: Of the ball centre, or of a reflector, from the tool axis, x and y of the tool
             frame, (N, 2), mm; on the axis where nothing is given.
@@ -136,6 +138,7 @@ class Touches:
     instrument: Instrument = Instrument.TOUCH_PROBE
     value: Mapping[str, Array] = field(default_factory=dict)
     offset: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    commanded: Array | None = None
     body_temperature: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
@@ -173,8 +176,12 @@ class Touches:
         return replace(self, temperature=temperature, value=own, **picked)
 
     def reading(self, axis: str) -> Array:
-        """Readings of one axis, (N,), mm or rad; raises UnknownAxis."""
-        return self.q[:, self.chain.axis_index(axis)]
+        """Where one axis was sent, (N,), mm or rad; raises UnknownAxis.
+
+        Its readings, but for those that hold the measured value and its noise (`commanded`).
+        """
+        q = self.q if self.commanded is None else self.commanded
+        return q[:, self.chain.axis_index(axis)]
 
     def last_move(self, axis: str) -> Array:
         """Sign of the last motion of one axis, (N,); raises UnknownAxis."""

@@ -1,0 +1,116 @@
+"""What would decide a diagnosis that names nothing: nearest effects, and touches to repeat.
+
+A pattern that no effect of the library describes well still has a nearest one, and a table of
+positions of the axis that it depends on describes whatever repeats over that axis. Noise larger
+than it is stated has only one witness: the same touch again.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from diagnosis.answer.verdict import Candidate, Dependence, Offer
+from diagnosis.evidence import ScaledEffect, f_probability, quiet
+from diagnosis.fit import Fit
+from diagnosis.regression import GrossErrors
+from diagnosis.search import DiagnosisTask, refined_named
+from twin.library import parse_effect
+from twin.machine import LETTERS
+from twin.model import Effect
+from twin.record import IntArray, Touches
+
+CERTAIN = 1e-6
+"""Probability by chance from which a library effect is named however little it leaves better."""
+
+LIKELY = 1e-3
+"""The same where held-out touches are predicted better with it."""
+
+LIBRARY = 6
+"""Library effects, the best ones by themselves, that are tried beside what was found."""
+
+NAMED = 3
+"""Effects that are named."""
+
+DOUBTFUL = 2.5
+"""Noise over the stated one that a run does not show by repeats and is not believed: statements
+are wrong by a factor of two, not more, on public records whose noise is known."""
+
+FEWEST_REPEATS = 5
+"""Degrees of freedom of repeats that show the noise within a third."""
+
+SHOWN = 1.5
+"""Noise of a run over that of its repeats up to which they account for it."""
+
+REPEATED = 6
+"""Touches to repeat: three times each they give twelve degrees of freedom."""
+
+
+def nearest(
+    task: DiagnosisTask,
+    found: Sequence[ScaledEffect],
+    gross: GrossErrors,
+    last: Fit,
+    candidates: Sequence[Candidate],
+    depends_on: Sequence[Dependence],
+) -> tuple[Offer, ...]:
+    """Effects nearest to what is left, those that predict best first.
+
+    Args:
+        found: Effects in the last model.
+        last: Its fit.
+        candidates: Library effects by themselves, best first.
+        depends_on: Variables of what is left.
+    """
+    known = {sized.effect.name for sized in found}
+    certain = {c.effect for c in candidates if c.p_value < CERTAIN} - known
+    library = [c.effect for c in candidates if c.effect not in known][:LIBRARY]
+    effects = [parse_effect(name, task.model.chain) for name in library]
+    effects += [e for e in _tables(last.run.touches, depends_on) if e.name not in known]
+    offers = []
+    for effect in effects:
+        fit = task.fit([*found, *refined_named(task, [effect], quiet)], gross)
+        p = min(1.0, len(effects) * named_probability(last, fit))
+        offers.append(Offer(effect.name, p, float(fit.test_rms)))
+    offers.sort(key=lambda offer: offer.test_rms)
+    likely = [o for o in offers if o.p_value < LIKELY and o.test_rms < last.test_rms]
+    return tuple((likely or [o for o in offers if o.effect in certain])[:NAMED])
+
+
+def _tables(touches: Touches, depends_on: Sequence[Dependence]) -> Iterator[Effect]:
+    """Tables of positions of every component of the axes that what is left depends on."""
+    for found in depends_on:
+        axis, _, unit = found.variable.rpartition("_")
+        if unit in ("mm", "deg") and axis in touches.chain.programmed_axes:
+            for letter in LETTERS:
+                yield parse_effect(f"position-table(E{letter}{axis})", touches.chain)
+
+
+def named_probability(before: Fit, after: Fit) -> float:
+    """Probability by chance of the fall that a named effect brings: no scan is paid for."""
+    k = max(after.solution.effective_parameters - before.solution.effective_parameters, 0.5)
+    scale = (before.noise.factor / after.noise.factor) ** 2
+    drop = before.solution.objective * scale - after.solution.objective
+    return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
+
+
+def to_repeat(fit: Fit) -> IntArray:
+    """Rows to repeat where the noise would have to be doubtfully large; empty where it need not.
+
+    The largest residual of each of the worst poses: a fault of the model comes again there, noise
+    does not.
+    """
+    noise = fit.noise
+    is_shown = (
+        noise.replicates is not None
+        and noise.replicates_dof >= FEWEST_REPEATS
+        and noise.factor < SHOWN * noise.replicates
+    )
+    if noise.factor <= DOUBTFUL or is_shown:
+        return np.zeros(0, dtype=np.int64)
+    touches = fit.run.touches
+    off = np.where(fit.used, np.abs(fit.residual) / fit.run.u, -1.0)
+    worst = np.argsort(-off, kind="stable")
+    places = np.column_stack([touches.setup, touches.pose])[worst]
+    first = np.sort(np.unique(places, axis=0, return_index=True)[1])
+    rows = [*worst[first], *np.delete(worst, first)]
+    return np.array([row for row in rows if fit.used[row]][:REPEATED], dtype=np.int64)

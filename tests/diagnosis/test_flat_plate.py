@@ -1,0 +1,60 @@
+"""Readings of a trigger probe are no regressors; noise that nothing shows is not believed."""
+
+import numpy as np
+import pytest
+from flat_plate import HEIGHT, lag, write_plate
+
+from diagnosis.answer.run_diagnosis import diagnose
+from diagnosis.answer.verdict import Verdict
+from report.words.diagnosis_words import verdict_sentence
+from twin.files.run_file import read_run
+from twin.record.commanded import with_commanded
+from twin.units import UM
+
+
+def test_commanded_readings_are_those_of_the_plane(tmp_path):
+    """The plane stands at one height: where Z was sent is one number, whatever was measured."""
+    run = with_commanded(read_run(write_plate(tmp_path, 1, noise=5.0)))
+    touches = run.touches
+    assert np.ptp(touches.q[:, 2]) > 20 * UM
+    # the rigid motion that fits 144 touches of 5 µm noise best is what is left of it
+    tilted = np.column_stack([np.ones(len(run)), touches.point[:, :2]])
+    z = touches.reading("Z")
+    off = z - tilted @ np.linalg.lstsq(tilted, z, rcond=None)[0]
+    assert np.abs(off).max() < 1e-9
+    np.testing.assert_allclose(z, HEIGHT + 103.0, atol=5 * UM)
+    np.testing.assert_array_equal(touches.reading("X"), touches.q[:, 0])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_of_a_plate_is_noise(tmp_path, seed):
+    result = diagnose(read_run(write_plate(tmp_path, seed)))
+    assert result.verdict is Verdict.NONE, verdict_sentence(result)
+
+
+def test_a_lag_behind_a_plate_is_found(tmp_path):
+    """It was a positioning error of Z of 14 µm with p = 1e-295."""
+    result = diagnose(read_run(write_plate(tmp_path, 3, lag)))
+    assert result.verdict is Verdict.MISSING
+    (step,) = result.steps[1:]
+    assert step.effect.kind == "thermal-lag"
+    told = {r.quantity: r.value for r in step.reported}
+    assert abs(told["amplitude"] + 10.0) < 1.5  # the plane is met lower
+    assert abs(told["tau"] - 5.0) < 1.5
+
+
+def test_noise_that_nothing_shows_is_undecided(tmp_path):
+    result = diagnose(read_run(write_plate(tmp_path, 5, noise=4.0)))
+    assert result.verdict is Verdict.UNDECIDED
+    words = verdict_sentence(result)
+    assert "cannot be decided" in words
+    assert "no touch was repeated" in words
+    lines = [str(line) for line in sorted(result.run.line[result.repeat])]
+    assert len(lines) == 6
+    assert all(line in words for line in lines)
+
+
+def test_repeats_show_the_noise(tmp_path):
+    result = diagnose(read_run(write_plate(tmp_path, 5, noise=4.0, again=2)))
+    assert result.verdict is Verdict.NONE
+    assert len(result.repeat) == 0
