@@ -5,6 +5,7 @@ to notice is a record here, and a function that makes it.
 """
 
 from diagnosis.remarks.order import JumpInOrder
+from diagnosis.remarks.other_run import OfAnotherRun
 from diagnosis.remarks.run_remarks import (
     ChosenByPrediction,
     FewDegreesOfFreedom,
@@ -45,6 +46,7 @@ __all__ = [
     "NoiseMisstated",
     "NoiseRemembers",
     "NotSignificant",
+    "OfAnotherRun",
     "OutliersKept",
     "OutliersLeftOut",
     "PriorWidened",

@@ -9,6 +9,7 @@ import numpy as np
 
 from diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
 from diagnosis.remarks.order import JumpInOrder, jump_in_order
+from diagnosis.remarks.other_run import OfAnotherRun
 from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from twin.elastic import short_beams
 
@@ -250,6 +251,7 @@ Remark = (
     | JumpInOrder
     | ShortBeam
     | LoadTooSmall
+    | OfAnotherRun
 )
 
 
