@@ -12,6 +12,7 @@ from diagnosis.files import SavedModel, check_machine, read_model
 from diagnosis.fit import MIN_TOUCHES
 from matstd.options import load_effects
 from report.geometry import copy_lines, fault_sentences
+from report.words import remark_sentence
 from twin.errors import BadFile, DesignError, NotEnoughData
 from twin.files import read_run
 from twin.library import (
@@ -54,12 +55,12 @@ def read_inputs(
         try_kind(kind, run.touches, own[kind.word])
     if model_file is None:
         return run, None
-    saved = read_model(model_file)
+    saved = read_model(model_file, runs=[run])
     check_machine(saved, run.touches.chain, model_file)
+    told = [remark_sentence(one) for one in saved.left_out]
     if is_learnt_from(saved, run):
-        remark = f"{model_file} was learnt from this very run, {same}"
-        run = replace(run, remarks=(*run.remarks, remark))
-    return run, saved
+        told.append(f"{model_file} was learnt from this very run, {same}")
+    return replace(run, remarks=(*run.remarks, *told)), saved
 
 
 def _joined(run_files: Sequence[str], held_out: Sequence[str]) -> Run:

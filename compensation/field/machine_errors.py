@@ -72,7 +72,9 @@ class MachineErrors:
         effects, mean = saved.model.effects, saved.estimates.mean
         theta = np.split(mean, np.cumsum([len(e.parameters) for e in effects])[:-1])
         known = list(zip(effects, theta, strict=True))
-        return cls._of_machine(saved.model.chain, known, saved.estimates.root, state)
+        out = cls._of_machine(saved.model.chain, known, saved.estimates.root, state)
+        others = (one.effect.name for one in saved.left_out)
+        return replace(out, left_out=(*out.left_out, *others))
 
     @classmethod
     def of_errors(

@@ -25,6 +25,7 @@ from diagnosis.faults.suspects import (
     with_setups_placed,
 )
 from diagnosis.fit import Fit, fit_run, unit_mistake
+from diagnosis.geometry import FoundNumber
 from diagnosis.regression import PRIOR_DOF, solve
 from twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, body_errors, placing_errors
 from twin.errors import NotEnoughData
@@ -67,21 +68,6 @@ with the standard turned about, one axis the other way looks like another."""
 
 STEPS = 3
 """Turns in which a number is found and moved exactly: a zero wrong by a degree needs two."""
-
-
-@dataclass(frozen=True, slots=True)
-class FoundNumber:
-    """A number of the description as the run has it, mm or rad.
-
-    Attributes:
-        name: `radius`, `length`, `EX0C`.
-        change: What has to be added to what is stated.
-        u: Its standard uncertainty.
-    """
-
-    name: str
-    change: float
-    u: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from diagnosis.faults import DescriptionFault
+from diagnosis.files.geometry_table import number_table
 from twin.units import UM
 
 
@@ -17,10 +18,7 @@ def _fault(fault: DescriptionFault) -> dict[str, Any]:
         "mistake": fault.fault.value,
         "axes": list(fault.axes),
         "chain": fault.notation or None,
-        "numbers": [
-            {"name": n.name, "change": _digits(n.change), "uncertainty": _digits(n.u)}
-            for n in fault.numbers
-        ],
+        "numbers": [number_table(n) for n in fault.numbers],
         "log_odds": _digits(fault.log_odds),
         "test_rms_um": [_digits(v / UM) for v in fault.test_rms],
         "errors_over_expected": [_digits(v) for v in fault.widened],

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from diagnosis.geometry import Estimate, GeometryRow, LearntGeometry
+from diagnosis.geometry import Estimate, FoundNumber, GeometryRow, LearntGeometry
 from twin.units import UM, URAD
 
 UNITS = {"mm": ("um", UM), "rad": ("urad", URAD), "1": ("ppm", 1e-6)}
@@ -27,10 +27,18 @@ def geometry_table(geometry: LearntGeometry) -> dict[str, Any]:
                 "stated": list(c.stated),
                 "found": [float(f"{v:.9g}") for v in c.found],
                 "uncertainty": [None if u is None else _digits(u) for u in c.u],
+                "cannot_be_told_from": [number_table(n) for n in c.rivals],
             }
             for c in geometry.corrections
         ],
+        "all_far_lines_cannot_be_told_from": [number_table(n) for n in geometry.together],
     }
+
+
+def number_table(number: FoundNumber) -> dict[str, Any]:
+    """A number of the description, mm or rad."""
+    change, u = _digits(number.change), _digits(number.u)
+    return {"name": number.name, "change": change, "uncertainty": u}
 
 
 def _row(row: GeometryRow) -> dict[str, Any]:

@@ -1,15 +1,16 @@
 """Model file (TOML, "model/1"): a machine, its effects, and what was learnt of their parameters."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
 from diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from diagnosis.regression import Memory
+from diagnosis.remarks import OfAnotherRun
 from twin.errors import BadFile, DesignError
 from twin.files import (
     MachineTables,
@@ -20,10 +21,10 @@ from twin.files import (
     read_text,
 )
 from twin.frames import Array
-from twin.library import parse_effect
+from twin.library import owner_of, parse_effect
 from twin.machine import Chain
 from twin.model import Effect, Model, Tunable
-from twin.record import Run
+from twin.record import Run, Touches, without_copies
 from twin.units import DEG, UM
 
 FORMAT = "model/1"
@@ -51,13 +52,16 @@ class EffectEntry(Table):
     """`[[effect]]`: its name, its inner parameters, and the estimates of the others.
 
     `told` are its numbers as they were told of the run, which rest on the touches alone where the
-    estimates lean on what is usual.
+    estimates lean on what is usual. `run` and `share_um` stand at effects that are not the
+    machine's: the fingerprint of their run, and the rms that they made at its touches.
     """
 
     name: str
     inner: dict[str, float] = Field(default_factory=dict)
     estimate: dict[str, float]
     told: list[ToldEntry] = Field(default_factory=list)
+    run: str = ""
+    share_um: float = Field(default=0.0, ge=0.0)
 
 
 class MemoryEntry(Table):
@@ -74,7 +78,8 @@ class SourceEntry(Table):
 
     `revision` counts the runs that the model has learnt from, one after the other; `learnt_from`
     has their fingerprints, so that no touch is counted twice. `held_out_um` is the plain error that
-    the model promises for rows it has not seen; 0 where it promises none.
+    the model promises for rows it has not seen; 0 where it promises none. `probes` are lengths and
+    radii of the probes that touched, mm.
     """
 
     run: str
@@ -87,6 +92,9 @@ class SourceEntry(Table):
     held_out_um: float = 0.0
     held_out_gross_errors: list[int] = Field(default_factory=list)
     memory: MemoryEntry | None = None
+    probes: list[Annotated[list[float], Field(min_length=2, max_length=2)]] = Field(
+        default_factory=list
+    )
 
 
 class ModelTable(Table):
@@ -109,6 +117,7 @@ class SavedModel:
         source: The run that they were learnt from.
         from_inner: Root (P, T) of the part of the covariance that uncertain inner parameters add.
         told: Numbers of effects as they were told of that run, by name.
+        left_out: What the file has beside that and is not to be applied here.
     """
 
     model: Model
@@ -116,6 +125,25 @@ class SavedModel:
     source: SourceEntry
     from_inner: Array
     told: dict[str, tuple[Reported, ...]]
+    left_out: tuple[OfAnotherRun, ...] = ()
+
+    def without(self, left_out: Sequence[OfAnotherRun]) -> "SavedModel":
+        """The model without some effects, as far as what is known of the others goes."""
+        names = {one.effect.name for one in left_out}
+        if not names:
+            return self
+        kept = [e.name not in names for e, _ in self.model.parameters]
+        root = self.estimates.root[kept]
+        return replace(
+            self,
+            model=Model(
+                self.model.chain, tuple(e for e in self.model.effects if e.name not in names)
+            ),
+            estimates=Prior.of_estimates(self.estimates.mean[kept], root @ root.T),
+            from_inner=self.from_inner[kept],
+            told={name: numbers for name, numbers in self.told.items() if name not in names},
+            left_out=tuple(left_out),
+        )
 
     def learnt(self, run: Run) -> Learnt | None:
         """What the fit to a run is made again from; None where the last run was another.
@@ -168,12 +196,18 @@ def check_machine(saved: SavedModel, chain: Chain, path: str | Path) -> None:
         raise BadFile(path, f"machine.{key}", here, f"{there}, as of the machine of the run{way}")
 
 
-def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
-    """Model with its estimates.
+def read_model(
+    path: str | Path, known: Sequence[Effect] = (), runs: Sequence[Run] = ()
+) -> SavedModel:
+    """Model with its estimates, as far as it is to be applied to some runs.
+
+    A slip, a drift or a jump happened in the run that it was learnt from: it is in the model only
+    where that is the run. What belongs to a probe is in it where a run has the same probe.
 
     Args:
         known: Effects whose names the library cannot read back, such as those with a prior of a
             project's own; others are made from their names.
+        runs: To which the model is applied, each by itself; none leaves what is the machine's.
 
     Raises:
         BadFile: File, key, what stood there, what was expected.
@@ -196,13 +230,46 @@ def read_model(path: str | Path, known: Sequence[Effect] = ()) -> SavedModel:
         factors += [factor for _, factor in keys]
     covariance = _covariance(table.covariance, np.array(factors), path)
     model = Model(chain, tuple(effects))
-    return SavedModel(
+    whole = SavedModel(
         model=model,
         estimates=Prior.of_estimates(np.array(mean), covariance),
         source=table.source,
         from_inner=_from_inner(table.from_inner, np.array(factors), path),
         told={entry.name: tuple(_reported(t) for t in entry.told) for entry in table.effect},
     )
+    return whole.without(list(_of_others(table, effects, [without_copies(run) for run in runs])))
+
+
+def probes_of(touches: Touches) -> list[tuple[float, float]]:
+    """Lengths and radii of the probes that touched, mm, as a model file has them."""
+    if not touches.instrument.is_ball_on_standard:
+        return []
+    pairs = zip(touches.length.tolist(), touches.radius.tolist(), strict=True)
+    return sorted({(round(length, 6), round(radius, 6)) for length, radius in pairs})
+
+
+def _of_others(
+    table: ModelTable, effects: Sequence[Effect], runs: Sequence[Run]
+) -> Iterator[OfAnotherRun]:
+    """Effects of a file that are not to be applied to some runs.
+
+    A file that does not say which run an effect is of has it of the last that it was learnt from.
+    """
+    source, prints = table.source, {run.fingerprint for run in runs}
+    touched = {probe for run in runs for probe in probes_of(run.touches)}
+    is_probe = bool(touched) and touched <= {(p[0], p[-1]) for p in source.probes}
+    last = source.learnt_from[-1] if source.learnt_from else ""
+    for entry, effect in zip(table.effect, effects, strict=True):
+        owner = owner_of(effect)
+        is_here = prints == {entry.run or last} or (owner == "probe" and is_probe)
+        if owner != "machine" and not is_here:
+            yield OfAnotherRun(
+                effect=effect,
+                owner=owner,
+                inner=entry.inner,
+                run=source.run,
+                share=entry.share_um * UM,
+            )
 
 
 def _reported(told: ToldEntry) -> Reported:

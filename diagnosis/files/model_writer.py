@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys
+from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys, probes_of
 from diagnosis.fit import Fit, Learnt, Reported, inner_unit
 from diagnosis.geometry import standing, state_of_standing
 from diagnosis.regression import Memory
 from twin.files import write_whole
 from twin.frames import Array
+from twin.library import owner_of
 from twin.machine import Chain
-from twin.model import Effect, inner_values
+from twin.model import Effect, columns, inner_values
 from twin.units import DEG, UM
 
 
@@ -69,6 +70,9 @@ def model_text(
         numbers = (told or {}).get(effect.name, ())
         if numbers:
             entry["told"] = [_told(r) for r in numbers]
+        if owner_of(effect) != "machine":
+            entry["run"] = fit.run.fingerprint
+            entry["share_um"] = _share(fit, effect, values) / UM
         factors += [factor for _, factor in keys]
         entries.append(entry)
     scale = np.array(factors)
@@ -100,8 +104,18 @@ def _source(
         "made_with": made_with,
         "held_out_um": float(fit.test_rms if held_out is None else held_out) / UM,
         "held_out_gross_errors": [int(line) for line in fit.run.line[fit.gross_test_rows]],
+        "probes": [list(probe) for probe in probes_of(fit.run.touches)],
         **({} if fit.memory is None else {"memory": _memory(fit.memory)}),
     }
+
+
+def _share(fit: Fit, effect: Effect, theta: Array) -> float:
+    """What an effect makes at the touches used that no set-up can take up, rms, mm."""
+    touches = fit.run.touches[fit.used]
+    moved = columns([effect], fit.run.touches)[fit.used] @ theta
+    free = columns(fit.setups, touches)
+    left = moved - free @ np.linalg.lstsq(free, moved, rcond=None)[0]
+    return float(np.sqrt(np.mean(left**2)))
 
 
 def _told(number: Reported) -> dict[str, Any]:

@@ -13,12 +13,8 @@ from diagnosis.geometry.changes import (
     state_of_standing,
     with_changes,
 )
+from diagnosis.geometry.corrections import Correction, key_of
 from diagnosis.geometry.learnt import (
-    CHANGED,
-    CLEAR,
-    Correction,
-    Estimate,
-    GeometryRow,
     LearntGeometry,
     Rung,
     changed_runs,
@@ -26,6 +22,8 @@ from diagnosis.geometry.learnt import (
     learnt_geometry,
 )
 from diagnosis.geometry.quantities import Quantity
+from diagnosis.geometry.rivals import FoundNumber
+from diagnosis.geometry.rows import CHANGED, CLEAR, Estimate, GeometryRow
 
 __all__ = [
     "CHANGED",
@@ -33,6 +31,7 @@ __all__ = [
     "Correction",
     "Estimate",
     "FoundArm",
+    "FoundNumber",
     "GeometryRow",
     "LearntGeometry",
     "Quantity",
@@ -42,6 +41,7 @@ __all__ = [
     "changing",
     "found_arm",
     "geometry_rows",
+    "key_of",
     "learnt_geometry",
     "standing",
     "state_of_standing",

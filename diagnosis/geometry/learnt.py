@@ -9,7 +9,7 @@ Where the run leaves more than a third of what was expected beforehand, the esti
 expectation: such a quantity is no result, and it is told what it cannot be separated from.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -17,23 +17,18 @@ import numpy as np
 
 from diagnosis.fit import Fit, Prior, fit_run
 from diagnosis.geometry.changes import changed_since, of_first, since_first_run, standing, state
+from diagnosis.geometry.corrections import Correction, corrections
 from diagnosis.geometry.expected import expected_size, stated_sizes
 from diagnosis.geometry.functionals import functionals
 from diagnosis.geometry.quantities import Functional, Quantity
+from diagnosis.geometry.rivals import FoundNumber
+from diagnosis.geometry.rows import Estimate, GeometryRow, is_clear
 from twin.frames import Array
-from twin.machine import LETTERS, Link
 from twin.model import Model
 
 DETERMINED = 3.0
 """Expected over remaining standard deviation from which a quantity is a result: with less the
 expectation has a say of more than a tenth, ``1 / 3^2``, in the estimate."""
-
-CLEAR = 3.0
-"""Standard uncertainties from which what exceeds the expectation is no chance."""
-
-CHANGED = 4.0
-"""Standard uncertainties from which a change is none: some fifty quantities are looked at, of which
-one in three hundred such tables exceeds this by chance; of 3 one in eight would."""
 
 SHARED = 0.3
 """Correlation of estimates from which a parameter is named as one that a quantity is shared with;
@@ -41,84 +36,6 @@ four parameters that share one direction evenly have a third each."""
 
 NAMED = 4
 """Parameters that are named so."""
-
-
-@dataclass(frozen=True, slots=True)
-class Estimate:
-    """A value with its standard uncertainty."""
-
-    value: float
-    u: float
-
-
-@dataclass(frozen=True, slots=True)
-class GeometryRow:
-    """One quantity of the machine's geometry.
-
-    Attributes:
-        quantity: What it is.
-        symbol: Its ISO 230-1 name, such as EC0Y for the squareness of Y to X.
-        axes: The axis, or the two of a squareness, the reference first.
-        unit: "mm", "rad", or "1" for a scale.
-        estimate: In that unit; of a straightness, an angular error or an error motion the
-            peak-to-valley over the probed readings.
-        lever: What the estimate is multiplied by to say what it does at the ends, mm per unit.
-        expected: Standard deviation before the run.
-        is_determined: Whether the run, rather than the expectation, decides it.
-        shared_with: Parameters that it cannot be separated from, where it is not determined.
-        before: The same in an earlier model, or in the first of several runs.
-        change: Now less before; None without a before.
-        course: The same in every run, in their order, where there are several; None in a run that
-            does not determine it.
-        steps: What changed into every run but the first; None where either is not determined.
-    """
-
-    quantity: Quantity
-    symbol: str
-    axes: tuple[str, ...]
-    unit: str
-    estimate: Estimate
-    lever: float
-    expected: float
-    is_determined: bool
-    shared_with: tuple[str, ...] = ()
-    before: Estimate | None = None
-    change: Estimate | None = None
-    course: tuple[Estimate | None, ...] = ()
-    steps: tuple[Estimate | None, ...] = ()
-
-    @property
-    def at_ends(self) -> Estimate:
-        """What it does over the whole travel of its axis, mm."""
-        return Estimate(abs(self.estimate.value) * self.lever, self.estimate.u * self.lever)
-
-    @property
-    def is_beyond_expected(self) -> bool:
-        """Whether it exceeds what such a machine was expected to have by more than chance."""
-        bound = CLEAR * float(np.hypot(self.expected, self.estimate.u))
-        return self.is_determined and abs(self.estimate.value) > bound
-
-    @property
-    def has_changed(self) -> bool:
-        """Whether it differs from before, or one run from the next, by more than chance."""
-        return (self.is_determined and _is_clear(self.change)) or any(map(_is_clear, self.steps))
-
-    @property
-    def has_changed_since_model(self) -> bool:
-        """Whether the first run differs from an earlier model by more than chance."""
-        first = self.course[0] if self.course else self.estimate if self.is_determined else None
-        if first is None or self.before is None:
-            return False
-        u = float(np.hypot(first.u, self.before.u))
-        return _is_clear(Estimate(first.value - self.before.value, u))
-
-    def has_changed_into(self, run: int) -> bool:
-        """Whether it differs from the run before by more than chance; the first run is 0."""
-        return run > 0 and _is_clear(self.steps[run - 1])
-
-
-def _is_clear(change: Estimate | None) -> bool:
-    return change is not None and abs(change.value) > CHANGED * change.u
 
 
 class Rung(Enum):
@@ -146,23 +63,6 @@ class LadderStep:
     test_rms: float
 
 
-@dataclass(frozen=True, slots=True)
-class Correction:
-    """A number of the machine file as the run has it.
-
-    Attributes:
-        key: `axis.C.point`, `axis.Y.direction`, `probe.length_mm`.
-        stated: What the file says, mm.
-        found: What the run says.
-        u: Standard uncertainty of every number; of those that stay as stated it is None.
-    """
-
-    key: str
-    stated: tuple[float, ...]
-    found: tuple[float, ...]
-    u: tuple[float | None, ...]
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class LearntGeometry:
     """What a run says of the geometry of its machine.
@@ -171,11 +71,14 @@ class LearntGeometry:
         rows: Every quantity, axis by axis.
         ladder: The error from the set-up alone to everything in the model.
         corrections: Numbers of the machine file as the run has them.
+        together: Numbers each of which explains by itself all lines far from where they are stated,
+            where several keys of the machine file would have to be changed instead.
     """
 
     rows: tuple[GeometryRow, ...]
     ladder: tuple[LadderStep, ...]
     corrections: tuple[Correction, ...]
+    together: tuple[FoundNumber, ...] = ()
 
 
 def learnt_geometry(
@@ -194,7 +97,7 @@ def learnt_geometry(
         before = of_first(before, fit.model)
         fit = fit_run(fit.run, since_first_run(fit.model), gross=fit.gross)
     rows = geometry_rows(fit, before)
-    return LearntGeometry(rows, rungs, corrections(fit, rows))
+    return LearntGeometry(rows, rungs, *corrections(fit, rows))
 
 
 def geometry_rows(fit: Fit, before: Prior | None = None) -> tuple[GeometryRow, ...]:
@@ -236,7 +139,7 @@ def _differs(fit: Fit, w: Array, one: Array, other: Array, prior: Array) -> bool
     """Whether a quantity is determined in two states and differs between them."""
     most = float(np.linalg.norm(w @ prior)) / DETERMINED
     is_known = max(_of(fit, w @ one).u, _of(fit, w @ other).u) < most
-    return is_known and _is_clear(_of(fit, w @ other - w @ one))
+    return is_known and is_clear(_of(fit, w @ other - w @ one))
 
 
 def _machine(fit: Fit) -> Array:
@@ -279,7 +182,14 @@ def _row(
         change=change,
         course=course if steps else (),
         steps=tuple(steps),
+        usual=_usual(fit, one) if one.quantity is Quantity.ROTARY_LINE else None,
     )
+
+
+def _usual(fit: Fit, one: Functional) -> float | None:
+    """Usual size of the location error that a line is named by, if the model has it."""
+    name = f"location({one.symbol})"
+    return next((p.sd for e, p in fit.model.parameters if e.name == name), None)
 
 
 def _of(fit: Fit, weights: Array) -> Estimate:
@@ -331,57 +241,3 @@ def ladder(geometry: Fit, effects: Fit | None = None) -> tuple[LadderStep, ...]:
         fits.insert(1, (rung, fit_run(geometry.run, common, prior, gross=geometry.gross)))
     fits += [] if effects is None else [(Rung.EFFECTS, effects)]
     return tuple(LadderStep(rung, fit.rms, fit.test_rms) for rung, fit in fits)
-
-
-def corrections(fit: Fit, rows: Sequence[GeometryRow]) -> tuple[Correction, ...]:
-    """Points and directions of axes as the run has them, where they differ clearly.
-
-    A displacement of a rotary axis's line moves its point, a tilt and a squareness turn the
-    direction, ``d' = d + omega x d``. Only what the run determines by itself.
-
-    Args:
-        fit: That the rows were made from.
-        rows: As from `learnt_geometry`.
-    """
-    kinds = (Quantity.ROTARY_LINE, Quantity.SQUARENESS)
-    clear = [
-        r
-        for r in rows
-        if r.quantity in kinds and r.is_determined and abs(r.estimate.value) > CLEAR * r.estimate.u
-    ]
-    out = []
-    for name in dict.fromkeys(r.axes[-1] for r in clear):
-        link = fit.model.chain.link(name)
-        own = {LETTERS.index(r.symbol[1]): r.estimate for r in clear if r.axes[-1] == name}
-        moved = {c: e for c, e in own.items() if c < 3}
-        turned = {c - 3: e for c, e in own.items() if c >= 3}
-        if moved:
-            out.append(_moved_point(link, moved))
-        if turned:
-            out.append(_turned_direction(link, turned))
-    return tuple(out)
-
-
-def _moved_point(link: Link, moved: Mapping[int, Estimate]) -> Correction:
-    point = tuple(float(v) for v in link.point)
-    return Correction(
-        key=f"axis.{link.name}.point",
-        stated=point,
-        found=tuple(v + (moved[i].value if i in moved else 0.0) for i, v in enumerate(point)),
-        u=tuple(moved[i].u if i in moved else None for i in range(3)),
-    )
-
-
-def _turned_direction(link: Link, turned: Mapping[int, Estimate]) -> Correction:
-    omega = np.array([turned[i].value if i in turned else 0.0 for i in range(3)])
-    u_omega = np.array([turned[i].u if i in turned else 0.0 for i in range(3)])
-    d = link.direction
-    found = d + np.cross(omega, d)
-    found = found / np.linalg.norm(found)
-    u = np.sqrt((np.abs(np.cross(np.diag(u_omega), d)) ** 2).sum(axis=0))
-    return Correction(
-        key=f"axis.{link.name}.direction",
-        stated=tuple(float(v) for v in d),
-        found=tuple(float(v) for v in found),
-        u=tuple(float(v) if v > 0.0 else None for v in u),
-    )

@@ -6,6 +6,7 @@ to notice is a record here, and a function that makes it.
 
 from diagnosis.remarks.body_size import BodySize, body_sizes
 from diagnosis.remarks.order import JumpInOrder
+from diagnosis.remarks.other_run import OfAnotherRun
 from diagnosis.remarks.run_remarks import (
     ChosenByPrediction,
     FewDegreesOfFreedom,
@@ -47,6 +48,7 @@ __all__ = [
     "NoiseMisstated",
     "NoiseRemembers",
     "NotSignificant",
+    "OfAnotherRun",
     "OutliersKept",
     "OutliersLeftOut",
     "PriorWidened",

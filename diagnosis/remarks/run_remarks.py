@@ -10,6 +10,7 @@ import numpy as np
 from diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
 from diagnosis.remarks.body_size import BodySize, body_sizes
 from diagnosis.remarks.order import JumpInOrder, jump_in_order
+from diagnosis.remarks.other_run import OfAnotherRun
 from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from twin.elastic import short_beams
 
@@ -252,6 +253,7 @@ Remark = (
     | JumpInOrder
     | ShortBeam
     | LoadTooSmall
+    | OfAnotherRun
 )
 
 

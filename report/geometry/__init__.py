@@ -12,10 +12,10 @@ from report.geometry.geometry_words import (
     correction_line,
     estimate_words,
     geometry_lines,
-    geometry_section,
     quantity_name,
     shown_unit,
 )
+from report.geometry.page_section import geometry_section
 from report.geometry.trend_words import change_sentences
 
 __all__ = [

@@ -7,7 +7,7 @@ from diagnosis.faults import DescriptionFault
 from diagnosis.geometry import LearntGeometry
 from report.geometry.copied_numbers import copy_lines
 from report.geometry.fault_words import fault_sentences
-from report.geometry.geometry_words import ladder_sentence, noted_lines
+from report.geometry.geometry_words import far_lines, ladder_sentence, noted_lines
 from report.geometry.trend_words import trend_lines
 from twin.record import Touches
 
@@ -29,5 +29,5 @@ def console_lines(
     first = [(text, True) for text in fault_sentences(faults)]
     first += [(text, False) for text in copy_lines(touches, geometry, faults)]
     first += [(text, True) for text in trend_lines(trend)]
-    noted = noted_lines(geometry) if trend is None else []
+    noted = noted_lines(geometry) if trend is None else far_lines(geometry)
     return first + [(text, False) for text in (ladder_sentence(geometry), *noted)]

@@ -1,14 +1,30 @@
-"""Numbers to copy into a machine file or into the head of a run, as the run has them."""
+"""Numbers to copy into a machine file or a run, with all others that explain the run equally."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from diagnosis.faults import DescriptionFault, Fault
-from diagnosis.geometry import Correction, GeometryRow, LearntGeometry
+from diagnosis.geometry import Correction, FoundNumber, LearntGeometry, key_of
 from report.geometry.geometry_words import correction_line
+from report.numbers import with_uncertainty
 from twin.machine import LETTERS, Chain
 from twin.record import Touches
+from twin.units import DEG
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One way to put a description right.
+
+    Attributes:
+        key: Of the file, or the error that does the same where no key states it.
+        line: What to write, or what is wrong.
+    """
+
+    key: str
+    line: str
 
 
 def copy_lines(
@@ -17,56 +33,110 @@ def copy_lines(
     """What would have to stand in the files: mistakes undone, and lines of axes far from theirs.
 
     Errors of a usual size are left to the model, which knows them better than a machine file can.
+    Where several numbers explain the run equally none of them alone is one to copy.
 
     Args:
         touches: Of the run, as it is described.
         geometry: What was learnt of it; None where it could not be fitted.
         faults: Mistakes that were named, each with those that look alike.
     """
-    found = [c for f in faults for one in (f, *f.alike) for c in _undone(touches, one)]
-    if geometry is None:
-        return _told(found)
-    keys = {c.key for c in found}
-    far = {_key(row) for row in geometry.rows if row.is_beyond_expected}
-    found += [c for c in geometry.corrections if c.key not in keys and c.key in far]
-    return _told(found)
+    corrections = {} if geometry is None else {c.key: c for c in geometry.corrections}
+    rows = () if geometry is None else geometry.rows
+    groups = [[w for one in (f, *f.alike) for w in _undone(touches, one)] for f in faults]
+    told = {way.key for group in groups for way in group}
+    far = dict.fromkeys(key_of(row) for row in rows if row.is_beyond_expected or row.is_far)
+    keys = [key for key in far if key in corrections]
+    if geometry is not None and geometry.together:
+        lines = " together with ".join(correction_line(corrections[key]) for key in keys)
+        same = [group for group in groups if any(way.key in far for way in group)]
+        single = [way for group in same for way in group if way.key not in far]
+        groups = [group for group in groups if group not in same]
+        groups.append([Way("", lines), *single, *(_way(touches, (n,)) for n in geometry.together)])
+        told |= set(keys)
+    for key in keys:
+        if key not in told:
+            groups.append([Way(key, correction_line(corrections[key]))])
+            told |= {key, *(w.key for w in _rivals(touches, corrections[key]))}
+    return [_told(touches, group, corrections) for group in groups if group]
 
 
-def _told(found: Sequence[Correction]) -> list[str]:
-    return [f"to copy: {correction_line(c)}" for c in found]
+def file_lines(touches: Touches, geometry: LearntGeometry) -> list[str]:
+    """All corrections of the machine file, and below each what explains the run equally."""
+    out = []
+    for correction in geometry.corrections:
+        out.append(correction_line(correction))
+        out += [f"# or {way.line}" for way in _rivals(touches, correction)]
+    return out
 
 
-def _key(row: GeometryRow) -> str:
-    """The key of a machine file that a line or a squareness would be put right in."""
-    return f"axis.{row.axes[-1]}.{'direction' if row.symbol[1] in 'ABC' else 'point'}"
+def _told(touches: Touches, group: Sequence[Way], corrections: Mapping[str, Correction]) -> str:
+    """Ways to put one thing right, with all that the run does not distinguish from them."""
+    ways = {way.key: way.line for way in group}
+    for way in group:
+        if way.key in corrections:
+            for rival in _rivals(touches, corrections[way.key]):
+                ways.setdefault(rival.key, rival.line)
+    alike = "cannot be distinguished by this run; one of them is wrong, copy one at most: "
+    first, *others = ways.values()
+    return alike + "; or ".join([first, *others]) if others else f"to copy: {first}"
 
 
-def _undone(touches: Touches, fault: DescriptionFault) -> Iterator[Correction]:
-    """The keys that a mistake stands in, where it is a number or a direction."""
-    match fault.fault:
-        case Fault.TOOL_LENGTH:
-            yield _number("probe.length_mm", float(np.median(touches.length)), fault)
-        case Fault.BALL_RADIUS:
-            yield _number("probe.radius_mm", float(np.median(touches.radius)), fault)
-        case Fault.PIVOT:
-            yield _point(touches.chain, fault)
-        case Fault.AXIS_REVERSED:
-            for axis in fault.axes:
-                d = tuple(float(v) for v in touches.chain.link(axis).direction)
-                found = tuple(0.0 - v for v in d)
-                yield Correction(f"axis.{axis}.direction", d, found, (None,) * len(d))
+def _rivals(touches: Touches, correction: Correction) -> Iterator[Way]:
+    for number in correction.rivals:
+        yield _way(touches, (number,))
 
 
-def _number(key: str, stated: float, fault: DescriptionFault) -> Correction:
-    (number,) = fault.numbers
-    return Correction(key, (stated,), (stated + number.change,), (number.u,))
+def _undone(touches: Touches, fault: DescriptionFault) -> Iterator[Way]:
+    """What a mistake stands in, where it is a number or a direction."""
+    if fault.fault is Fault.AXIS_REVERSED:
+        for axis in fault.axes:
+            d = tuple(float(v) for v in touches.chain.link(axis).direction)
+            found = tuple(0.0 - v for v in d)
+            yield _line(Correction(f"axis.{axis}.direction", d, found, (None,) * len(d)))
+    elif fault.numbers:
+        yield _way(touches, fault.numbers)
 
 
-def _point(chain: Chain, fault: DescriptionFault) -> Correction:
-    stated = tuple(float(v) for v in chain.link(fault.axes[0]).point)
-    moved = {LETTERS.index(n.name[1]): n for n in fault.numbers}
+def _way(touches: Touches, numbers: Sequence[FoundNumber]) -> Way:
+    """Numbers that are wrong together, as a line of a file where one states them."""
+    number, name = numbers[0], numbers[0].name
+    if name in ("length", "radius"):
+        stated = float(np.median(getattr(touches, name)))
+        found = (stated + number.change,)
+        return _line(Correction(f"probe.{name}_mm", (stated,), found, (number.u,)))
+    size = with_uncertainty(number.change, number.u, "mm")
+    if name[3:] == "t":
+        return Way(name, f"the ball stands {size} beside the tool axis in {name[1]}")
+    axis, chain = name[3:], touches.chain
+    link = chain.link(axis)
+    if LETTERS.index(name[1]) == link.own_component:
+        if link.kind == "rotary":
+            size = with_uncertainty(number.change / DEG, number.u / DEG, "°")
+        return Way(name, f"{axis} is not at zero where it reads zero, by {size}")
+    if name[1] in "ABC":
+        omega, u = (v * np.eye(3)[LETTERS.index(name[1]) - 3] for v in (number.change, number.u))
+        d = link.direction + np.cross(omega, link.direction)
+        spread = np.abs(np.cross(u, link.direction))
+        return _line(
+            Correction(
+                key=f"axis.{axis}.direction",
+                stated=tuple(float(v) for v in link.direction),
+                found=tuple(float(v) for v in d / np.linalg.norm(d)),
+                u=tuple(float(v) if v > 0.0 else None for v in spread),
+            )
+        )
+    return _line(_point(chain, axis, numbers))
+
+
+def _line(correction: Correction) -> Way:
+    return Way(correction.key, correction_line(correction))
+
+
+def _point(chain: Chain, axis: str, numbers: Sequence[FoundNumber]) -> Correction:
+    stated = tuple(float(v) for v in chain.link(axis).point)
+    moved = {LETTERS.index(n.name[1]): n for n in numbers}
     return Correction(
-        key=f"axis.{fault.axes[0]}.point",
+        key=f"axis.{axis}.point",
         stated=stated,
         found=tuple(v + (moved[i].change if i in moved else 0.0) for i, v in enumerate(stated)),
         u=tuple(moved[i].u if i in moved else None for i in range(3)),

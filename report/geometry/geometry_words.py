@@ -1,7 +1,6 @@
 """The machine's geometry in words: what was learnt, what it does, what changed."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from diagnosis.geometry import (
     CLEAR,
@@ -111,7 +110,10 @@ def _line(row: GeometryRow) -> GeometryLine:
             note=f"the run leaves {digits(row.estimate.u / factor, 2)} {unit} open{shared}",
             is_noted=False,
         )
-    notes = ["beyond what was expected"] if row.is_beyond_expected else []
+    notes = []
+    if row.is_beyond_expected or row.is_far:
+        size = row.usual if row.is_far and row.usual is not None else row.expected
+        notes.append(f"beyond what was expected (± {digits(size / factor, 2)} {unit})")
     if row.has_changed and row.change is not None:
         notes.append(f"changed by {_value(row.change.value, row.change.u, factor, unit)}")
     is_noted = bool(notes)
@@ -163,19 +165,12 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
     Without such, squareness and scales, zeros of joints and lengths of links, the clearest first;
     of a run that tells none of them, whatever it does tell.
     """
-    noted = [r for r in geometry.rows if r.has_changed or r.is_beyond_expected or _is_of_arm(r)]
+    noted = [r for r in geometry.rows if r.has_changed or _is_beyond(r) or _is_of_arm(r)]
     if not noted:
         known = [r for r in geometry.rows if r.is_determined]
         noted = [r for r in known if _is_usual(r)] or known
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
-    told = []
-    for row in by_size[:NOTED]:
-        line = _line(row)
-        where = "at the end of the arm" if row.quantity in ARM else "over the travel"
-        at_ends = f", {line.at_ends} {where}" if line.at_ends else ""
-        span = ", peak to valley" if row.quantity in SPANS else ""
-        note = f"; {line.note}" if line.note else ""
-        told.append(f"{line.name}{span}: {line.value}{at_ends}{note}")
+    told = [_noted(r) for i, r in enumerate(by_size) if i < NOTED or r.is_far]
     more = len(noted) - len(told)
     told += [f"and {more} more in the table"] if more > 0 else []
     if any(step.rung is Rung.MODEL for step in geometry.ladder) and not any(
@@ -187,6 +182,25 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
             "beyond chance",
         )
     return told
+
+
+def far_lines(geometry: LearntGeometry) -> list[str]:
+    """Lines of rotary axes that are not where the machine file has them."""
+    return [_noted(row) for row in geometry.rows if row.is_far]
+
+
+def _noted(row: GeometryRow) -> str:
+    """One quantity on the console."""
+    line = _line(row)
+    where = "at the end of the arm" if row.quantity in ARM else "over the travel"
+    at_ends = f", {line.at_ends} {where}" if line.at_ends else ""
+    span = ", peak to valley" if row.quantity in SPANS else ""
+    note = f"; {line.note}" if line.note else ""
+    return f"{line.name}{span}: {line.value}{at_ends}{note}"
+
+
+def _is_beyond(row: GeometryRow) -> bool:
+    return row.is_beyond_expected or row.is_far
 
 
 def _is_of_arm(row: GeometryRow) -> bool:
@@ -224,15 +238,3 @@ def correction_line(correction: Correction) -> str:
     if len(correction.found) == 1:
         return f"{correction.key} = {numbers}  # was {was}, ± {u} {unit}"
     return f"[{table}] {key} = [{numbers}]  # was [{was}], ± [{u}] {unit}"
-
-
-def geometry_section(geometry: LearntGeometry) -> dict[str, Any]:
-    """What the template of a page's section on geometry needs."""
-    lines = geometry_lines(geometry)
-    return {
-        "lines": [line for line in lines if line.value != "not determined"],
-        "open": [line for line in lines if line.value == "not determined"],
-        "ladder": [(s.rung.value, s.rms / UM, s.test_rms / UM) for s in geometry.ladder],
-        "corrections": [correction_line(c) for c in geometry.corrections],
-        "has_before": any(row.before is not None for row in geometry.rows),
-    }

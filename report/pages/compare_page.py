@@ -67,7 +67,7 @@ def write_compare_page(
         pictures=residual_pictures(place, "residual", found.fit, z),
         patterns=pattern_pictures(place, found.fit, found.structure, rng),
         gross=gross_rows(found.fit),
-        geometry=geometry_section(found.geometry),
+        geometry=geometry_section(found.run.touches, found.geometry),
         worst_line=int(found.run.line[worst]),
         worst_um=float(found.residual[worst]) / UM,
         worst_normalised=float(found.normalised[worst]),

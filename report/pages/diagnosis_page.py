@@ -97,7 +97,7 @@ def write_diagnosis_page(
         before=residual_pictures(place, "before", result.start),
         after=residual_pictures(place, "after", result.fit) if len(result.steps) > 1 else [],
         on_standard=_on_standard(result, place),
-        geometry=geometry_section(result.geometry),
+        geometry=geometry_section(result.run.touches, result.geometry),
         trend=trend_section(result.trend, place),
         detectable=_detectable(result.detectable),
         scanned=scanned_sentence(result.detectable),

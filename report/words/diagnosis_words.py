@@ -7,10 +7,12 @@ import numpy as np
 
 from diagnosis.answer import Comparison, Detectable, Diagnosis, Step, Verdict
 from diagnosis.fit import SINE, Fit, Reported, Role
+from diagnosis.remarks import OfAnotherRun
 from diagnosis.residual import Condition, Shape, Side, Structure
 from report.effects import class_words, words_of_name
 from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
 from report.words.remark_words import memory_words
+from twin.library import title_of
 from twin.record import Run
 from twin.units import DEG, UM
 from twin.words import listed
@@ -370,14 +372,27 @@ BROKEN = 1.1
 scatter by a few per cent."""
 
 
-def promise_sentence(found: Comparison, promised: float) -> str:
-    """The error of a prediction beside the one that its model promised (mm), in plain words."""
+def promise_sentence(
+    found: Comparison, promised: float, others: Sequence[OfAnotherRun] = ()
+) -> str:
+    """The error of a prediction beside the one that its model promised (mm), in plain words.
+
+    Args:
+        others: What the model has of another run: the promise holds where nothing like it happens.
+    """
     word = "worse than" if found.rms > BROKEN * promised else "as good as"
     expected = float(np.sqrt(np.mean(found.u[found.counted] ** 2)))
     elsewhere = (
         f" At these touches, which are not those that it was made from, {microns(expected)} "
         "are to be expected of its uncertainty."
         if expected > BROKEN * promised
+        else ""
+    )
+    again = float(np.linalg.norm([promised, *(one.share for one in others)]))
+    elsewhere += (
+        f" Where this run had a {listed([title_of(one.effect).text for one in others], 'or a')} as "
+        f"large as there, {microns(again)} would be expected."
+        if again > BROKEN * promised
         else ""
     )
     return (

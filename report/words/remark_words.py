@@ -5,7 +5,8 @@ from typing import Any
 
 import diagnosis.remarks as noticed
 from diagnosis.fit import MistakenUnit, UnitMistake
-from report.numbers import unit_words, with_uncertainty
+from report.numbers import digits, unit_words, with_uncertainty
+from twin.library import title_of
 from twin.units import T_REF, UM
 from twin.words import listed
 
@@ -64,6 +65,17 @@ def _noise_remembers(r: noticed.NoiseRemembers) -> str:
     if r.is_noise:
         return f"the noise remembers ({words}): for everything slow, {count}"
     return f"what is left is slow ({words}): in probabilities and uncertainties {count}"
+
+
+def _of_another_run(r: noticed.OfAnotherRun) -> str:
+    inner = []
+    for key, value in r.inner.items():
+        name, _, unit = key.partition("_")
+        inner.append(f"{name} {value:.4g} {unit}".rstrip())
+    whose = f"the probe of {r.run}" if r.owner == "probe" else r.run
+    made = f", where it made {digits(r.share / UM)} µm rms" if r.share else ""
+    words = f"{title_of(r.effect).text} ({', '.join([r.effect.name, *inner])})"
+    return f"{words} belongs to {whose}{made}: it is not applied here"
 
 
 def _chosen(r: noticed.ChosenByPrediction) -> str:
@@ -209,6 +221,7 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.NoiseRemembers: _noise_remembers,
     noticed.ChosenByPrediction: _chosen,
     noticed.FieldShares: _field_shares,
+    noticed.OfAnotherRun: _of_another_run,
     noticed.ReaderRemark: "{r.text}",
     noticed.FewTouches: "{r.touches} touches for {r.parameters} errors that the machine may have "
     "there: what is usual decides the rest; single ones are not known, only what they do together "

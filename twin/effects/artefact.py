@@ -207,6 +207,7 @@ SLIP = Kind.of(
     typical="2 to 20 µm, some tens of µrad",
     source="clamping practice; rigid motion",
     propose=_propose_slip,
+    belongs_to="run",
 )
 DRIFT = Kind.of(
     Drift,
@@ -217,4 +218,5 @@ DRIFT = Kind.of(
     typical="1 to 5 µm/h",
     source="ISO 230-3 (environmental temperature variation error, drift tests)",
     propose=_propose_drift,
+    belongs_to="run",
 )

@@ -100,4 +100,5 @@ KIND = Kind(
     make=make,
     propose=lambda touches: (),
     classes=(Jump,),
+    belongs_to="run",
 )

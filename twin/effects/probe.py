@@ -121,6 +121,7 @@ LOBING = Kind.of(
     typical="3 to 8 µm with three lobes (kinematic), below 1 µm (strain gauge)",
     source="Estler et al., Precision Engineering 19 (1996): pre-travel of touch probes",
     propose=partial(_if_touching, ProbeLobing),
+    belongs_to="probe",
 )
 RADIUS = Kind.of(
     ProbeRadius,
@@ -131,6 +132,7 @@ RADIUS = Kind.of(
     typical="1 to 5 µm",
     source="ISO 10360-5 (effective size of the stylus tip)",
     propose=partial(_if_touching, ProbeRadius),
+    belongs_to="probe",
 )
 BENDING = Kind.of(
     StylusBending,
@@ -141,4 +143,5 @@ BENDING = Kind.of(
     typical="0.5 to 3 µm",
     source="cantilever F l^3/(3 E I); Estler et al. 1996",
     propose=partial(_if_touching, StylusBending),
+    belongs_to="probe",
 )

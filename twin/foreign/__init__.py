@@ -16,7 +16,7 @@ from twin.foreign.other_frame import in_measured_frame, in_nominal_frame, measur
 from twin.foreign.point_list import joined_points, misplaced
 from twin.foreign.points import linear_machine, points_run, read_points
 from twin.foreign.positioning import PositioningTest, read_positioning
-from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
+from twin.foreign.serial_arm import arm_from_dh, joint_readings, misfit, tracker_run
 
 __all__ = [
     "PositioningTest",
@@ -33,6 +33,7 @@ __all__ = [
     "machine_text",
     "mapped_run",
     "measured_frames",
+    "misfit",
     "misplaced",
     "one_axis_machine",
     "points_run",

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.errors import BadFile, DesignError
+from twin.errors import BadFile, DesignError, NotEnoughData
 from twin.foreign.axis_log import loads, own_columns, temperatures
-from twin.foreign.reflectors import placed, reflector_places
+from twin.foreign.reflectors import Placement, placed, reflector_places
 from twin.frames import Array, pose, rotation
 from twin.machine import Axis, Chain, make_chain, table_to_tool
 from twin.record import (
@@ -141,10 +141,7 @@ def joint_readings(sheet: Sheet, axes: Sequence[str] = ()) -> tuple[Array, tuple
     Raises:
         BadFile: No such columns, or a number twice or left out.
     """
-    names = [bare(c).upper() for c in sheet.columns]
-    found: dict[int, int] = {}
-    if axes and all(axis in names for axis in axes):
-        found = {k: names.index(axis) for k, axis in enumerate(axes)}
+    found = _named_joints(sheet, axes)
     for i, column in enumerate(() if found else sheet.columns):
         match = _JOINT.search(column)
         if match and found.setdefault(int(match.group(1)), i) != i:
@@ -160,9 +157,38 @@ def joint_readings(sheet: Sheet, axes: Sequence[str] = ()) -> tuple[Array, tuple
     return np.stack(q, axis=1), tuple(sheet.columns[i] for i in columns)
 
 
+def _named_joints(sheet: Sheet, axes: Sequence[str]) -> dict[int, int]:
+    """Columns that have the names of axes, `Z` before `z`; empty unless all are there.
+
+    Raises:
+        BadFile: Two columns of one name.
+    """
+    plain = [bare(c) for c in sheet.columns]
+    found = {}
+    for k, axis in enumerate(axes):
+        same = [i for i, name in enumerate(plain) if name == axis]
+        same = same or [i for i, name in enumerate(plain) if name.upper() == axis]
+        if len(same) > 1:
+            both = " and ".join(repr(sheet.columns[i]) for i in same[:2])
+            raise BadFile(sheet.path, "header", both, f"one column of the readings of {axis}")
+        if not same:
+            return {}
+        found[k] = same[0]
+    return found
+
+
+def misfit(
+    sheet: Sheet, chain: Chain, q: Array, u: float, reflector: Array | None = None,
+    joints: Sequence[str] = (),
+) -> float:  # fmt: skip
+    """What an arm and readings leave of the measured coordinates, rms, mm; as `tracker_run`."""
+    return _placed(sheet, chain, q, u, reflector, joints)[2].rms
+
+
 def tracker_run(
-    sheet: Sheet, chain: Chain, q: Array, u: float, reflector: Array | None = None
-) -> Run:
+    sheet: Sheet, chain: Chain, q: Array, u: float, reflector: Array | None = None,
+    joints: Sequence[str] = (),
+) -> Run:  # fmt: skip
     """Run of an arm under a tracker: three rows a reflector and pose, along x, y, z of the tracker.
 
     Args:
@@ -172,34 +198,29 @@ def tracker_run(
         q: Readings in the order of its axes, (N, A), mm and rad.
         u: Standard uncertainty of one coordinate, mm.
         reflector: In the tool frame, (3,), mm; None finds it.
+        joints: Columns of the readings, which are no places.
 
     Returns:
         The run; its set-up is the tracker's frame, `touches.target` has the reflector.
 
     Raises:
-        DesignError: Too few poses, or readings of other joints than the arm has.
+        DesignError: Readings of other joints than the arm has, or that no arm is measured with.
+        NotEnoughData: Poses too few or too alike to say where reflector and tracker are.
     """
     if q.shape[1] != len(chain.programmed_axes) or len(chain.axes) != len(chain.programmed_axes):
         raise DesignError(
             f"{sheet.path}: {q.shape[1]} columns of joints, expected "
             f"{len(chain.programmed_axes)}: {', '.join(chain.programmed_axes)}"
         )
-    place, names = reflector_places(sheet)
-    if reflector is not None and len(names) > 1:
-        raise DesignError(f"{sheet.path}: {len(names)} reflectors, expected one where it is stated")
+    place, names, found = _placed(sheet, chain, q, u, reflector, joints)
+    _check_placed(sheet, found, reflector is not None)
     clock = next((i for i, c in enumerate(sheet.columns) if _TIME.search(c)), None)
     time = np.zeros(len(q))
     if clock is not None:
         time = seconds(sheet, clock)
     force, own = loads(sheet), own_columns(sheet)
-    moved: NDArray[np.bool_] = np.all(np.isfinite(q), axis=1)
-    there = np.all(np.isfinite(place), axis=2) & moved[:, None]
-    shots = there.any(axis=1)
-    if shots.sum() < FEWEST:
-        raise DesignError(f"{sheet.path}: {int(shots.sum())} poses, expected {FEWEST} at least")
-    T_table_tool = table_to_tool(chain, q[shots])
-    stated = None if reflector is None else reflector[None]
-    T_table_tracker, target = placed(T_table_tool, place[shots], stated)
+    there = _shots(q, place)
+    target = found.reflector
     which, of = (np.repeat(k, 3) for k in np.nonzero(there))
     n = len(which)
     touches = Touches(
@@ -210,7 +231,7 @@ def tracker_run(
         radius=np.zeros(n),
         point=place[which, of],
         normal=np.tile(np.eye(3), (n // 3, 1)),
-        setups=(Setup("tracker", T_table_tracker),),
+        setups=(Setup("tracker", found.T_table_tracker),),
         setup=np.zeros(n, dtype=np.int64),
         time=time[which],
         approach=np.zeros((n, len(chain.axes))),
@@ -223,3 +244,50 @@ def tracker_run(
     )
     lines = np.array(sheet.lines)[which]
     return Run(touches, computed_deviation(touches), np.full(n, u), line=lines)
+
+
+def _shots(q: Array, place: Array) -> NDArray[np.bool_]:
+    """Which reflectors were measured at which poses, (N, K)."""
+    moved: NDArray[np.bool_] = np.all(np.isfinite(q), axis=1)
+    return np.all(np.isfinite(place), axis=2) & moved[:, None]
+
+
+def _placed(
+    sheet: Sheet,
+    chain: Chain,
+    q: Array,
+    u: float,
+    reflector: Array | None,
+    joints: Sequence[str],
+) -> tuple[Array, tuple[str, ...], Placement]:
+    """Measured places (N, K, 3), names of reflectors, and where all of them stand."""
+    place, names = reflector_places(sheet, joints)
+    if reflector is not None and len(names) > 1:
+        raise DesignError(f"{sheet.path}: {len(names)} reflectors, expected one where it is stated")
+    shots = _shots(q, place).any(axis=1)
+    if shots.sum() < FEWEST:
+        raise NotEnoughData(f"{sheet.path}: {int(shots.sum())} poses, expected {FEWEST} at least")
+    stated = None if reflector is None else reflector[None]
+    return place, names, placed(table_to_tool(chain, q[shots]), place[shots], stated, u)
+
+
+def _check_placed(sheet: Sheet, found: Placement, is_stated: bool) -> None:
+    """Refuse what the poses do not determine, and what no arm is measured with."""
+    if found.is_lost:
+        raise DesignError(
+            f"{sheet.path}: {found.rms:.4g} mm rms are left of measured places that spread by "
+            f"{found.spread:.4g} mm: these readings and places are not of one arm; expected joints "
+            "and places in the stated order, signs and units"
+        )
+    if found.free:
+        other = "" if is_stated else ", or --reflector X Y Z"
+        poses = "off one line" if is_stated else "that turn the tool about lines not parallel"
+        raise NotEnoughData(
+            f"{sheet.path}: the poses leave open {' and '.join(found.free)}; expected poses "
+            f"{poses}{other}"
+        )
+    if not found.is_settled:
+        raise DesignError(
+            f"{sheet.path}: the search for the reflector has not converged ({found.rms:.4g} mm rms "
+            "are left); expected --reflector X Y Z, or poses farther apart"
+        )

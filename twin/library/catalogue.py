@@ -55,6 +55,7 @@ __all__ = [
     "kinds",
     "load_installed_effects",
     "load_user_effects",
+    "owner_of",
     "parse_effect",
     "proposals",
     "register",
@@ -134,6 +135,12 @@ def title_of(effect: Effect) -> Title:
         return effect.title
     kind = _REGISTER.get(effect.kind)
     return Title(kind.title if kind is not None and kind.title else effect.name)
+
+
+def owner_of(effect: Effect) -> str:
+    """What an effect belongs to, one of `Kind.OWNERS`, as its kind says."""
+    kind = _REGISTER.get(effect.kind)
+    return "machine" if kind is None else kind.belongs_to
 
 
 def parse_effect(text: str, chain: Chain) -> Effect:
@@ -265,6 +272,9 @@ def _check_card(kind: Kind, path: Path) -> None:
     ):
         if not isinstance(getattr(kind, name), str):
             raise BadFile(path, f"Kind '{kind.word}'", f"{name} = {getattr(kind, name)!r}", "text")
+    if kind.belongs_to not in Kind.OWNERS:
+        expected = listed([repr(word) for word in Kind.OWNERS], "or")
+        raise BadFile(path, f"Kind '{kind.word}'", f"belongs_to = {kind.belongs_to!r}", expected)
     for name in ("make", "propose"):
         if not callable(getattr(kind, name)):
             raise BadFile(path, f"Kind '{kind.word}'", f"{name} of no function", "a function")

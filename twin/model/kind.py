@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,7 +32,11 @@ class Kind:
         about: What the family is, in one line; empty for the first line of its first class.
         title: What those who run machines call it.
         synonyms: Other words for it, commas between them.
+        belongs_to: One of OWNERS, which says where it is to be expected again: in every run of the
+            machine, in those with the same probe, or in no other run, as a slip on a certain day.
     """
+
+    OWNERS: ClassVar[tuple[str, ...]] = ("machine", "probe", "run")
 
     word: str
     arguments: str
@@ -45,6 +50,7 @@ class Kind:
     about: str = ""
     title: str = ""
     synonyms: str = ""
+    belongs_to: str = "machine"
 
     @classmethod
     def of(
@@ -57,6 +63,7 @@ class Kind:
         propose: Callable[[Touches], Iterable[Effect]] | None = None,
         title: str = "",
         synonyms: str = "",
+        belongs_to: str = "machine",
     ) -> "Kind":
         """The kind of an effect that takes no arguments, which is all that most users need.
 
@@ -69,6 +76,7 @@ class Kind:
             propose: The effect where it makes sense for some touches; None for always.
             title: What those who run machines call it.
             synonyms: Other words for it, commas between them.
+            belongs_to: As of the attribute.
         """
         word = effect().kind
 
@@ -88,6 +96,7 @@ class Kind:
             classes=(effect,) if isinstance(effect, type) else (),
             title=title,
             synonyms=synonyms,
+            belongs_to=belongs_to,
         )
 
     def matches(self, query: str) -> bool:

@@ -86,13 +86,16 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     return replace(run, touches=touches, deviation=computed_deviation(touches)), tuple(moved)
 
 
-def rigid_motion(a: Array, b: Array, stated: Array) -> Array:
-    """Pose that takes points a to points b best; what they do not tell stays as stated, (4, 4)."""
+def rigid_motion(a: Array, b: Array, stated: Array, flat: float = FLAT) -> Array:
+    """Pose that takes points a to points b best, (4, 4).
+
+    Points on a line, across which they spread by less than `flat`, do not turn what is stated.
+    """
     middle_a, middle_b = a.mean(axis=0), b.mean(axis=0)
     told = (a - middle_a) @ stated[:3, :3].T
     U, s, Vt = np.linalg.svd(told.T @ (b - middle_b))
     spread = np.sqrt(s / len(a))
-    if spread[1] < FLAT:  # touches on a line: a rotation about it is anybody's guess
+    if spread[1] < flat:  # touches on a line: a rotation about it is anybody's guess
         R = np.eye(3)
     else:
         sign = np.sign(np.linalg.det(Vt.T @ U.T))

@@ -128,7 +128,9 @@ def _errors(args: argparse.Namespace, state: State) -> MachineErrors:
     if parse_toml(read_text(args.model), args.model).get("format") != "machine/1":
         if args.errors is not None:
             raise DesignError(f"--errors {args.errors}: {args.model} has errors of its own")
-        return MachineErrors.of_model(read_model(args.model), state)
+        saved = read_model(args.model)
+        say_each(remark_sentence(one) for one in saved.left_out)
+        return MachineErrors.of_model(saved, state)
     if args.errors is None:
         raise DesignError(f"{args.model}: a machine without errors; expected --errors ERRORS.toml")
     chain = read_machine(args.model)

@@ -64,8 +64,8 @@ def _card(kind: Kind) -> Table:
     table = Table(box=None, show_header=False, padding=(0, 1))
     table.add_column(style="dim", no_wrap=True)
     table.add_column()
-    for label in ("formula", "units", "typical", "source"):
-        table.add_row(f"  {label}", escape(getattr(kind, label)))
+    for label in ("formula", "units", "typical", "source", "belongs_to"):
+        table.add_row(f"  {label.replace('_', ' ')}", escape(getattr(kind, label)))
     table.add_row()
     return table
 

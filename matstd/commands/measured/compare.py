@@ -107,7 +107,7 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None,
         for line in learnt_lines(found.learnt, saved.told):
             say(line)
     elif saved is not None and saved.source.held_out_um > 0.0:
-        say(promise_sentence(found, saved.source.held_out_um * UM))
+        say(promise_sentence(found, saved.source.held_out_um * UM, saved.left_out))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         is_off = abs(region.mean) > CLEAR * region.u

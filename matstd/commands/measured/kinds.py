@@ -129,6 +129,7 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         coupled,
         joint_readings,
         likely_mistake,
+        misfit,
         tracker_run,
     )
     from twin.sheets import read_sheet
@@ -147,7 +148,19 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         chain, turned = arm_from_dh(dh, q, is_modified=args.modified)
     stated = None if args.reflector is None else turned @ np.array(args.reflector)
     u = _uncertainty(args, "u_um", UM)
-    measured = tracker_run(sheet, chain, q, u, stated)
+
+    def left(arm: Chain, readings: Array) -> float:
+        return misfit(sheet, arm, readings, u, stated, columns)
+
+    other = None if dh is None else arm_from_dh(dh, q, is_modified=not args.modified)[0]
+    mistake = likely_mistake(q, chain, other, left)
+    likely = f"{mistake[1]:.4g} mm rms are left if {mistake[0]}" if mistake else ""
+    try:
+        measured = tracker_run(sheet, chain, q, u, stated, columns)
+    except DesignError as refusal:
+        if not likely:
+            raise
+        raise DesignError(f"{refusal}; {likely}") from refusal
     pairs = zip(columns, chain.programmed_axes, strict=True)
     say(f"- axes: {', '.join(f'{column} is {axis}' for column, axis in pairs)}")
     targets = dict(zip(measured.touches.feature, measured.touches.target, strict=True))
@@ -157,17 +170,10 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
             f"- {name} at ({at}) mm of the tool frame, as {'stated' if args.reflector else 'found'}"
         )
     say("- the tracker's frame is the set-up")
-
-    def left(arm: Chain, readings: Array) -> float:
-        run = tracker_run(sheet, arm, readings, u, stated)
-        return float(np.sqrt(np.mean(run.deviation**2)))
-
-    other = None if dh is None else arm_from_dh(dh, q, is_modified=not args.modified)[0]
-    mistake = likely_mistake(q, chain, other, left)
-    if mistake is not None:
+    if likely:
         say(
             f"- the arm and its readings do not agree: {left(chain, q):.4g} mm rms are left as "
-            f"described, {mistake[1]:.4g} mm if {mistake[0]}"
+            f"described; {likely}"
         )
     return measured, chain
 

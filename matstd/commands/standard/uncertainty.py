@@ -47,6 +47,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.stages.budgets import PLAIN, budgets
     from report.pages import write_uncertainty_page
     from report.task import measured_sentence, task_lines
+    from report.words import remark_sentence
     from twin.files import read_run, refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
@@ -64,7 +65,8 @@ def run(args: argparse.Namespace) -> int:
         f"{p}: {r}" for p, one in zip(args.run_files, runs, strict=True) for r in one.remarks
     ]
     if args.model:
-        saved = read_model(args.model)
+        saved = read_model(args.model, runs=runs)
+        remarks += [remark_sentence(one) for one in saved.left_out]
         for one in runs:
             check_machine(saved, one.touches.chain, args.model)
         models[f"with {args.model}"] = saved.model, saved.estimates

@@ -1,0 +1,101 @@
+"""Numbers of the machine file as a run has them, each with all others that explain it equally."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.fit import Fit
+from diagnosis.geometry.quantities import Quantity
+from diagnosis.geometry.rivals import Descriptions, FoundNumber
+from diagnosis.geometry.rows import CLEAR, Estimate, GeometryRow
+from twin.machine import LETTERS, Link
+
+
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """A number of the machine file as the run has it.
+
+    Attributes:
+        key: `axis.C.point`, `axis.Y.direction`, `probe.length_mm`.
+        stated: What the file says, mm.
+        found: What the run says.
+        u: Standard uncertainty of every number; of those that stay as stated it is None.
+        rivals: Other numbers that explain the run equally: of all of them one is wrong.
+    """
+
+    key: str
+    stated: tuple[float, ...]
+    found: tuple[float, ...]
+    u: tuple[float | None, ...]
+    rivals: tuple[FoundNumber, ...] = ()
+
+
+def corrections(
+    fit: Fit, rows: Sequence[GeometryRow]
+) -> tuple[tuple[Correction, ...], tuple[FoundNumber, ...]]:
+    """Points and directions of axes as the run has them, where they differ clearly.
+
+    A displacement of a rotary axis's line moves its point, a tilt and a squareness turn the
+    direction, ``d' = d + omega x d``. Only what the run determines by itself.
+
+    Args:
+        fit: That the rows were made from.
+        rows: As from `learnt_geometry`.
+
+    Returns:
+        The corrections, and numbers each of which explains by itself all lines that are far from
+        where they are stated: a zero of a rotary axis tilts and displaces the axes that it carries.
+    """
+    kinds = (Quantity.ROTARY_LINE, Quantity.SQUARENESS)
+    clear = [
+        r
+        for r in rows
+        if r.quantity in kinds and r.is_determined and abs(r.estimate.value) > CLEAR * r.estimate.u
+    ]
+    if not clear:
+        return (), ()
+    out = []
+    descriptions = Descriptions(fit)
+    for name in dict.fromkeys(r.axes[-1] for r in clear):
+        link = fit.model.chain.link(name)
+        own = {r.symbol: r.estimate for r in clear if r.axes[-1] == name}
+        for made, letters in ((_moved_point, LETTERS[:3]), (_turned_direction, LETTERS[3:])):
+            wrong = {s: e for s, e in own.items() if s[1] in letters}
+            if wrong:
+                rivals = descriptions.rivals([(s, e.value) for s, e in wrong.items()])
+                correction = made(link, {letters.index(s[1]): e for s, e in wrong.items()})
+                out.append(replace(correction, rivals=rivals))
+    far = [r for r in clear if r.is_far or r.is_beyond_expected]
+    together = descriptions.rivals([(r.symbol, r.estimate.value) for r in far])
+    return tuple(out), together if len({key_of(r) for r in far}) > 1 else ()
+
+
+def key_of(row: GeometryRow) -> str:
+    """The key of a machine file that a line or a squareness would be put right in."""
+    return f"axis.{row.axes[-1]}.{'direction' if row.symbol[1] in 'ABC' else 'point'}"
+
+
+def _moved_point(link: Link, moved: Mapping[int, Estimate]) -> Correction:
+    point = tuple(float(v) for v in link.point)
+    return Correction(
+        key=f"axis.{link.name}.point",
+        stated=point,
+        found=tuple(v + (moved[i].value if i in moved else 0.0) for i, v in enumerate(point)),
+        u=tuple(moved[i].u if i in moved else None for i in range(3)),
+    )
+
+
+def _turned_direction(link: Link, turned: Mapping[int, Estimate]) -> Correction:
+    omega = np.array([turned[i].value if i in turned else 0.0 for i in range(3)])
+    u_omega = np.array([turned[i].u if i in turned else 0.0 for i in range(3)])
+    d = link.direction
+    found = d + np.cross(omega, d)
+    found = found / np.linalg.norm(found)
+    u = np.sqrt((np.abs(np.cross(np.diag(u_omega), d)) ** 2).sum(axis=0))
+    return Correction(
+        key=f"axis.{link.name}.direction",
+        stated=tuple(float(v) for v in d),
+        found=tuple(float(v) for v in found),
+        u=tuple(float(v) if v > 0.0 else None for v in u),
+    )

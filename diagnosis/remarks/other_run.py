@@ -1,0 +1,25 @@
+"""Effects that a saved model has of another run than the one it is applied to."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from twin.model import Effect
+
+
+@dataclass(frozen=True, slots=True)
+class OfAnotherRun:
+    """An effect that a saved model has of another run, and that is not applied.
+
+    Attributes:
+        effect: At its inner parameters.
+        owner: What it belongs to, as its kind says: "probe" or "run".
+        inner: Its inner parameters, as in the file.
+        run: Name of the run that it was learnt from.
+        share: What it made there, rms, mm, beside where the standard stood; 0 where unknown.
+    """
+
+    effect: Effect
+    owner: str
+    inner: Mapping[str, float]
+    run: str
+    share: float

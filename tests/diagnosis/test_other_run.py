@@ -1,0 +1,182 @@
+"""What belongs to a run stays with it: a slip of one day is no error of the machine on another.
+
+Both runs come from the exact simulator, whose slip is a formula of its own.
+"""
+
+import json
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import simulator_effects as effects
+from simulator import probe, run_text
+from simulator_experiment import MACHINES, STATED_NOISE, placed, random_experiment
+
+from compensation.field import MachineErrors
+from diagnosis import compare, fit_run, read_model, write_model
+from matstd.cli import main
+from report.words import remark_sentence
+from twin.errors import BadFile
+from twin.files import read_run
+from twin.library import load_user_effects, ordinary_model, parse_effect
+from twin.model import Model
+from twin.record import without_copies
+from twin.units import UM
+
+SLIP, BACKLASH = 40.0, 30.0
+"""Planted in the first run, µm."""
+
+
+@dataclass
+class Visits:
+    """Two runs of one machine; the first as it was, and as it would have been without the slip."""
+
+    folder: Path
+
+    def path(self, name):
+        return str(self.folder / name)
+
+
+@pytest.fixture(scope="module")
+def visits(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("visits")
+    rng = np.random.default_rng(17)
+    first = random_experiment(rng, "hsm600u")
+    second = replace(first, actual=placed(rng, first.stated))
+    slip = replace(effects.slip(0.55, np.array([0.6, -0.64, 0.48])), amplitude=SLIP)
+    machine = replace(effects.backlash("X"), amplitude=BACKLASH)
+    noise = [rng.normal(0.0, STATED_NOISE, len(first.time)) for _ in range(2)]
+    texts = {
+        "slipped": run_text(first, probe(first, [slip, machine], noise[0]), with_speed=False),
+        "calm": run_text(first, probe(first, [machine], noise[0]), with_speed=False),
+        "second": run_text(second, probe(second, [machine], noise[1]), with_speed=False),
+    }
+    for name, text in texts.items():
+        (folder / f"{name}.csv").write_text(text, encoding="utf-8")
+    (folder / "machine.toml").write_text(MACHINES["hsm600u"], encoding="utf-8")
+    out = Visits(folder)
+    for name, added in (("slipped", ["artefact-slip"]), ("calm", [])):
+        words = ["diagnose", out.path(f"{name}.csv"), "--add", "backlash(X)", *added]
+        words += ["--only", "backlash", "--no-report", "-o", out.path(f"of_{name}")]
+        assert main(words) == 0
+    return out
+
+
+def compared(visits, run, model, out):
+    """What `matstd compare --model` leaves."""
+    model = visits.path(f"of_{model}/model.toml")
+    words = ["compare", visits.path(f"{run}.csv"), "--model", model, "--no-report", "-o", str(out)]
+    assert main(words) == 0
+    return json.loads((out / "comparison.json").read_text(encoding="utf-8"))
+
+
+def test_a_slip_of_one_run_is_not_predicted_for_another(visits, tmp_path, capsys):
+    """Applied to a run in which nothing slipped, the slip left 5.12 um of 0.62."""
+    found = compared(visits, "second", "slipped", tmp_path / "a")
+    said = " ".join(capsys.readouterr().out.split())
+    reference = compared(visits, "second", "calm", tmp_path / "b")
+    slipped, second = (read_run(visits.path(f"{name}.csv")) for name in ("slipped", "second"))
+    whole = read_model(visits.path("of_slipped/model.toml"), runs=[slipped])
+    before = compare(second, whole.model, whole.estimates).rms / UM
+    assert before > 5.0
+    assert found["rms_um"] < 1.05 * reference["rms_um"]
+    assert reference["rms_um"] == pytest.approx(STATED_NOISE / UM, rel=0.1)
+    told = "slip of the set-up (artefact-slip, instant 5935 s) belongs to slipped.csv"
+    assert told in said
+    assert "it is not applied here" in said
+    assert any(told in remark for remark in found["remarks"])
+    # what the model says of a run with such a slip is what the slip did to this one
+    again = re.search(r"had a slip of the set-up as large as there, ([\d.]+) µm", said)
+    assert again
+    assert float(again[1]) == pytest.approx(before, rel=0.03)
+
+
+def test_the_run_with_the_slip_has_the_figures_of_its_diagnosis(visits, tmp_path, capsys):
+    found = compared(visits, "slipped", "slipped", tmp_path / "a")
+    said = capsys.readouterr().out
+    diagnosis = json.loads((visits.folder / "of_slipped" / "diagnosis.json").read_text())
+    last = diagnosis["steps"][-1]
+    assert found["learnt"] == {key: last[key] for key in ("rms_um", "test_rms_um", "chi2_ratio")}
+    assert "is not applied" not in said
+    assert "slip of the set-up" in said
+
+
+def test_a_file_of_before_is_read_by_the_kind_of_its_effects(visits, tmp_path):
+    text = (visits.folder / "of_slipped" / "model.toml").read_text(encoding="utf-8")
+    old = re.sub(r"(?m)^(run = \"[0-9a-f]{16}\"|share_um = .*)\n", "", text)
+    old = re.sub(r"(?ms)^probes = \[\n.*?^\]\n", "", old)
+    assert not {"share_um", "probes"} & set(re.findall(r"\w+", old))
+    (tmp_path / "model.toml").write_text(old, encoding="utf-8")
+    slipped, second = (read_run(visits.path(f"{name}.csv")) for name in ("slipped", "second"))
+    for runs, is_there in (([slipped], True), ([second], False), ([slipped, second], False)):
+        saved = read_model(tmp_path / "model.toml", runs=runs)
+        assert ("artefact-slip" in {e.name for e in saved.model.effects}) == is_there
+        assert [one.effect.name for one in saved.left_out] == [] if is_there else ["artefact-slip"]
+
+
+def test_a_second_run_learns_without_the_slip_of_the_first(visits, tmp_path, capsys):
+    words = ["diagnose", visits.path("second.csv"), "--model", visits.path("of_slipped/model.toml")]
+    words += ["--only", "backlash", "--no-report", "-o", str(tmp_path / "out")]
+    assert main(words) == 0
+    assert "belongs to slipped.csv" in " ".join(capsys.readouterr().out.split())
+    second = read_model(tmp_path / "out" / "model.toml", runs=[read_run(visits.path("second.csv"))])
+    assert "artefact-slip" not in {e.name for e in second.model.effects}
+    assert "backlash(X)" in {e.name for e in second.model.effects}
+
+
+def saved_with(visits, tmp_path, *names):
+    """A model of the calm run with further effects, as a file; its path."""
+    run = without_copies(read_run(visits.path("calm.csv")))
+    start = ordinary_model(run.touches.chain)
+    added = tuple(parse_effect(name, run.touches.chain) for name in names)
+    fit = fit_run(run, Model(start.chain, (*start.effects, *added)))
+    write_model(tmp_path / "model.toml", fit, "calm.csv")
+    return tmp_path / "model.toml"
+
+
+def test_a_jump_is_not_compensated(visits, tmp_path):
+    """Counts that were lost one afternoon are not taken off the axis on the next day."""
+    path = saved_with(visits, tmp_path, "jump(EXX)", "backlash(X)")
+    errors = MachineErrors.of_model(read_model(path))
+    assert "backlash(X)" in {e.name for e in errors.effects}
+    assert "jump(EXX)" not in {e.name for e in errors.effects}
+    assert "jump(EXX)" in errors.left_out
+
+
+def test_what_the_probe_does_is_applied_where_the_same_probe_touched(visits, tmp_path):
+    path = saved_with(visits, tmp_path, "probe-radius")
+    second = read_run(visits.path("second.csv"))
+    longer = replace(second, touches=replace(second.touches, length=second.touches.length + 50.0))
+    for run, is_there in ((second, True), (longer, False)):
+        effects_there = {e.name for e in read_model(path, runs=[run]).model.effects}
+        assert ("probe-radius" in effects_there) == is_there
+    (one,) = read_model(path, runs=[longer]).left_out
+    assert "belongs to the probe of calm.csv" in remark_sentence(one)
+
+
+def test_what_is_left_is_known_as_well_as_before(visits):
+    """Without the slip the covariance of the others is that of the whole file: marginal."""
+    path, slipped = visits.path("of_slipped/model.toml"), read_run(visits.path("slipped.csv"))
+    whole, rest = read_model(path, runs=[slipped]), read_model(path)
+    kept = [e.name != "artefact-slip" for e, _ in whole.model.parameters]
+    covariance = whole.estimates.root @ whole.estimates.root.T
+    found = rest.estimates.root @ rest.estimates.root.T
+    sd = np.sqrt(np.diag(found))
+    np.testing.assert_allclose(
+        found / np.outer(sd, sd), covariance[np.ix_(kept, kept)] / np.outer(sd, sd), atol=1e-9
+    )
+    np.testing.assert_array_equal(rest.estimates.mean, whole.estimates.mean[kept])
+
+
+def test_an_effect_that_belongs_to_nothing_known_is_refused(tmp_path):
+    (tmp_path / "mine.py").write_text(
+        "from twin.effects.artefact import ArtefactSlip\nfrom twin.model import Kind\n"
+        "from dataclasses import dataclass\n"
+        "@dataclass(frozen=True)\nclass Mine(ArtefactSlip):\n    kind = 'mine'\n"
+        "    name = 'mine'\n"
+        "MINE = Kind.of(Mine, formula='a', belongs_to='weather')\n"
+    )
+    with pytest.raises(BadFile, match="belongs_to = 'weather', expected 'machine', 'probe' or"):
+        load_user_effects(tmp_path / "mine.py")
