@@ -37,11 +37,6 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         "touches": len(result.run),
         "u_um": _um(float(np.median(result.run.u))),
         "verdict": result.verdict.value,
-        "nearest": [
-            {"effect": o.effect, "p_value": o.p_value, "test_rms_um": _um(o.test_rms)}
-            for o in result.nearest
-        ],
-        "repeat_lines": [int(line) for line in result.run.line[result.repeat]],
         "steps": [_step(step) for step in result.steps],
         "candidates": [
             {
@@ -53,6 +48,11 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
             }
             for c in result.candidates
         ],
+        "nearest": [
+            {"effect": o.effect, "p_value": o.p_value, "test_rms_um": _um(o.test_rms)}
+            for o in result.nearest
+        ],
+        "repeat_lines": [int(line) for line in result.run.line[result.repeat]],
         "where": _where(result.where),
         "depends_on": [{"variable": d.variable, "p_value": d.p_value} for d in result.depends_on],
         "detectable": [_detectable(d) for d in result.detectable],

@@ -9,16 +9,15 @@ from report.words.design_words import best_rival, design_lines, proof_line, verd
 from report.words.diagnosis_words import (
     comparison_sentence,
     learnt_lines,
-    microns,
     promise_sentence,
     region_words,
     scanned_sentence,
     sizes,
-    stated_noise,
     structure_words,
     values,
     verdict_sentence,
 )
+from report.words.open_words import microns, stated_noise
 from report.words.probe_words import ball_lines, located_lines
 from report.words.remark_words import remark_sentence
 from report.words.sensitivity_words import (

@@ -11,9 +11,9 @@ from diagnosis.remarks import OfAnotherRun
 from diagnosis.residual import Condition, Shape, Side, Structure
 from report.effects import class_words, words_of_name
 from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
+from report.words.open_words import microns, nearest_clause, stated_noise, undecided_sentence
 from report.words.remark_words import memory_words
 from twin.library import title_of
-from twin.record import Run
 from twin.units import DEG, UM
 from twin.words import listed
 
@@ -110,17 +110,6 @@ def _sine_words(sines: Sequence[Reported]) -> tuple[str, str]:
 def sizes(step: Step, most: int) -> str:
     """The leading numbers of an added effect in one clause, its size first."""
     return ", ".join(" ".join(value) for value in values(step)[:most])
-
-
-def microns(value: float) -> str:
-    """A length in µm to two decimals, or to two digits where that would say nothing."""
-    um = value / UM
-    return f"{um:.2f} µm" if abs(um) >= 0.095 else f"{digits(um, 2)} µm"
-
-
-def stated_noise(run: Run) -> float:
-    """Stated standard uncertainty of a touch, root mean square, mm."""
-    return float((run.u**2).mean() ** 0.5)
 
 
 def noise_words(fit: Fit) -> str:
@@ -268,37 +257,6 @@ def _covered(diagnosis: Diagnosis) -> str:
     )
 
 
-def _nearest(diagnosis: Diagnosis) -> str:
-    """The effect nearest to what is left, with what it is worth; empty where there is none."""
-    if not diagnosis.nearest:
-        return ""
-    best, *others = diagnosis.nearest
-    before, after = microns(diagnosis.fit.test_rms), microns(best.test_rms)
-    also = f"; next: {listed([o.effect for o in others])}" if others else ""
-    return (
-        f" The nearest effect is {best.effect} (p = {best.p_value:.0e}): with it the error of "
-        f'held-out touches goes from {before} to {after}; add it with --add "{best.effect}"{also}.'
-    )
-
-
-def _undecided(diagnosis: Diagnosis) -> str:
-    """That the noise alone would explain the run, if it were so large."""
-    noise = diagnosis.fit.noise
-    lines = [str(line) for line in sorted(diagnosis.run.line[diagnosis.repeat])]
-    shown = (
-        "no touch was repeated"
-        if noise.replicates is None
-        else f"{noise.replicates_dof} repeated touches show {digits(noise.replicates, 2)} times it"
-    )
-    size = noise.factor * stated_noise(diagnosis.run)
-    return (
-        f"Whether an effect is missing cannot be decided: the noise would have to be "
-        f"{microns(size)}, {digits(noise.factor, 2)} times the stated one, and {shown}. Repeat the "
-        f"touches of lines {listed(lines)} three times each, all else unchanged; a residual that "
-        f"comes again is no noise."
-    )
-
-
 def verdict_sentence(diagnosis: Diagnosis) -> str:
     """The verdict in one plain sentence, with numbers and standard uncertainties."""
     most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
@@ -321,10 +279,11 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         rest = "" if diagnosis.nearest else " that no effect of the library accounts for"
         return (
             f"Something is left{rest}: {_left(diagnosis)}. It is not noise: "
-            f"{words or 'it varies with nothing that was recorded'}.{what}{_nearest(diagnosis)}"
+            f"{words or 'it varies with nothing that was recorded'}.{what}"
+            f"{nearest_clause(diagnosis)}"
         )
     if diagnosis.verdict is Verdict.UNDECIDED:
-        return _undecided(diagnosis)
+        return undecided_sentence(diagnosis)
     fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""
     return (
         f"Nothing{' more' if named else ''} is missing that this run could have shown: the error "

@@ -111,6 +111,8 @@ def test_keys_and_types_are_those_of_the_contract(table) -> None:
         "verdict",
         "steps",
         "candidates",
+        "nearest",
+        "repeat_lines",
         "where",
         "depends_on",
         "detectable",

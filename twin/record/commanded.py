@@ -49,6 +49,8 @@ def _less_setups(touches: Touches, deviation: Array) -> Array:
     for number in range(len(touches.setups)):
         rows = np.flatnonzero(touches.setup == number)
         usual = rows
+        if not len(rows):
+            continue
         for _ in range(2):  # a slip must not turn the standard
             size = np.linalg.lstsq(modes[usual], deviation[usual], rcond=1e-9)[0]
             off = np.abs(deviation[rows] - modes[rows] @ size)
