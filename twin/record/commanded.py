@@ -14,6 +14,11 @@ from twin.machine import linear_directions
 from twin.record.run import Run
 from twin.record.touches import Touches, computed_deviation
 
+FEW = 1 / 8
+"""Levels over touches from which an axis is taken to have moved by itself, not by what was
+measured. Errors are functions of the true reading: one of 450 µm shifts the argument of its own
+wave, which on commanded readings looks like an overtone."""
+
 FAR = 10.0
 """Deviations beyond so many times the median do not place a set-up."""
 
@@ -21,6 +26,7 @@ FAR = 10.0
 def with_commanded(run: Run) -> Run:
     """The run with the readings at which its touches were expected (`Touches.commanded`).
 
+    Axes are given so that stood at few places but for what was measured, as Z of a flat plate:
     ``q - D+ n r`` with D the directions of the linear axes, n the normal and r the deviation less
     the rigid motion of each set-up that fits it best: a set-up that stands elsewhere is met where
     it stands. Readings of instruments beside the machine are commanded as they are; a row counts
@@ -36,8 +42,13 @@ def with_commanded(run: Run) -> Run:
     linear = [touches.chain.axis_index(axis) for axis in touches.chain.linear_axes]
     directions = linear_directions(touches.chain, touches.q)  # (N, 3, axes)
     step = np.linalg.pinv(directions) @ touches.normal_table[:, :, None]
+    moved = step[:, :, 0] * residual[:, None]
     commanded = touches.q.copy()
-    commanded[:, linear] -= step[:, :, 0] * residual[:, None]
+    for column, by in zip(linear, moved.T, strict=True):
+        size = 2.0 * float(np.median(np.abs(by)))
+        at = touches.q[:, column] - by
+        if size > 0.0 and len(np.unique(np.round(at / size))) < FEW * len(at):
+            commanded[:, column] = at
     return replace(run, touches=replace(touches, commanded=commanded))
 
 
