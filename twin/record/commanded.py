@@ -14,10 +14,17 @@ from twin.machine import linear_directions
 from twin.record.run import Run
 from twin.record.touches import Touches, computed_deviation
 
+FAR_MOVED = 2000.0
+"""Range of an axis over usual deviations from which its readings stay as they are: noise is then
+small beside every period that is looked for. Errors are functions of the true reading; one of
+0.4 mm shifts the argument of its own wave, which over commanded readings looks like an overtone.
+"""
+
+LARGE = 0.05
+"""Usual deviation (mm) from which they stay as they are whatever the range."""
+
 FEW = 1 / 8
-"""Levels over touches from which an axis is taken to have moved by itself, not by what was
-measured. Errors are functions of the true reading: one of 450 µm shifts the argument of its own
-wave, which on commanded readings looks like an overtone."""
+"""Levels over touches up to which an axis has moved by little but what was measured."""
 
 FAR = 10.0
 """Deviations beyond so many times the median do not place a set-up."""
@@ -26,11 +33,11 @@ FAR = 10.0
 def with_commanded(run: Run) -> Run:
     """The run with the readings at which its touches were expected (`Touches.commanded`).
 
-    Axes are given so that stood at few places but for what was measured, as Z of a flat plate:
     ``q - D+ n r`` with D the directions of the linear axes, n the normal and r the deviation less
     the rigid motion of each set-up that fits it best: a set-up that stands elsewhere is met where
     it stands. Readings of instruments beside the machine are commanded as they are; a row counts
-    as such where its readings imply less than half of its deviation.
+    as such where its readings imply less than half of its deviation. Only axes are given so that
+    moved little (`FAR_MOVED`) or stood at few places, as Z of a flat plate.
     """
     touches = run.touches
     is_ball = touches.instrument.is_ball_on_standard & (touches.radius > 0.0)
@@ -45,11 +52,17 @@ def with_commanded(run: Run) -> Run:
     moved = step[:, :, 0] * residual[:, None]
     commanded = touches.q.copy()
     for column, by in zip(linear, moved.T, strict=True):
-        size = 2.0 * float(np.median(np.abs(by)))
+        usual = float(np.median(np.abs(by)))
         at = touches.q[:, column] - by
-        if size > 0.0 and len(np.unique(np.round(at / size))) < FEW * len(at):
+        is_near = usual < LARGE and np.ptp(at) < FAR_MOVED * usual
+        if is_near or _levels(at, 2.0 * usual) < FEW * len(at):
             commanded[:, column] = at
     return replace(run, touches=replace(touches, commanded=commanded))
+
+
+def _levels(values: Array, apart: float) -> int:
+    """Number of places that values apart by so much stand at."""
+    return len(np.unique(np.round(values / apart))) if apart > 0.0 else len(values)
 
 
 def _less_setups(touches: Touches, deviation: Array) -> Array:
