@@ -22,7 +22,15 @@ from probe_paths.control.structure import (
     program_name,
     promise,
 )
-from probe_paths.language import Dialect, Label, Q, interlocks, language_of, read_blocks
+from probe_paths.language import (
+    Dialect,
+    Label,
+    Q,
+    interlocks,
+    language_of,
+    read_blocks,
+    turn_tests,
+)
 from probe_paths.plan import Heading, Probe, ProgramFrame
 from twin.errors import BadFile
 from twin.machine import Chain
@@ -107,7 +115,8 @@ def interpret(
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
-    for test in interlocks(language_of(path), frame, stated.is_first):
+    language = language_of(path)
+    for test in (*interlocks(language, frame, stated.is_first), *turn_tests(language, frame)):
         for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
             runner.run(0, replace(_begun(path, frame, stated, head.is_tilted), fault=test, off=off))
     for touch in steps:

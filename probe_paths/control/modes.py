@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from probe_paths.control.state import State
-from probe_paths.language import TOOL_LENGTH, Block, Datum, Kind, language_of
+from probe_paths.language import TOOL_LENGTH, Block, Datum, Kind, Label, language_of
 from probe_paths.plan import LINEAR
 from twin.units import DEG
 
@@ -29,6 +29,8 @@ _CALIBRATED: Mapping[Datum, Callable[[State], float]] = {
     Datum.LENGTH: lambda state: state.frame.probe.tool_length,
     Datum.OFFSET_X: lambda _: 0.0,
     Datum.OFFSET_Y: lambda _: 0.0,
+    Datum.TOOL_X: lambda _: 0.0,
+    Datum.TOOL_Y: lambda _: 0.0,
     Datum.ROTATION: lambda _: 0.0,
     Datum.TOP: lambda state: state.frame.chain.link("Z").range[1],
 }
@@ -47,8 +49,20 @@ def system_datum(block: Block, state: State) -> float:
         raise state.refusal(block, "a position read ahead", f"{state.says.sync} before it")
     fault = state.fault
     is_off = fault is not None and datum == (fault.work or fault.datum)
+    if fault is not None and fault.label == Label.TURNED:  # the first move goes to zero
+        is_off = is_off and state.turns > 1
     value = _CALIBRATED[datum](state) if datum in _CALIBRATED else _place(datum, places, state)
     return value + is_off * state.off
+
+
+def read_datum(block: Block, state: State) -> None:
+    """Execute a read of a system datum; where a rotary axis stands is known by its parameter."""
+    q = int(block.word("q"))
+    state.write(block, q, system_datum(block, state))
+    system = language_of(state.path).SYSTEM
+    for letter in state.frame.chain.rotary_axes:
+        if block.word("datum") == system.get(Datum(letter)):
+            state.reached[q] = letter, 0.0
 
 
 def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
@@ -166,7 +180,10 @@ def _subtract(block: Block, state: State) -> None:
     value = state.value(block, int(block.word("from")))
     if not isinstance(value, float):
         raise state.refusal(block, repr(block.text), "a number, not the result of a touch")
+    held = state.reached.get(int(block.word("from")))
     state.write(block, int(block.word("q")), value - block.number("value"))
+    if held is not None:
+        state.reached[int(block.word("q"))] = held[0], held[1] + block.number("value")
 
 
 def _minus(block: Block, state: State) -> None:

@@ -100,6 +100,7 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
     if state.plane is not None:
         raise state.refusal(block, repr(block.text), f"{state.says.plane} before it")
     state.stale |= {Q.POSE, Q.SIDE_1, Q.SIDE_2}
+    state.turns, state.turn_tested = state.turns + 1, set()
     for letter in rotary:
         column = state.frame.chain.axis_index(letter)
         step = target[column] - state.q[column]

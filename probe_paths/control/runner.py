@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control.modes import check_cycle, set_mode, system_datum
+from probe_paths.control.modes import check_cycle, read_datum, set_mode
 from probe_paths.control.motion import retract_max, straight_line
 from probe_paths.control.state import State
 from probe_paths.control.steps import STATUS, Halt, Move, Print, ProbeStep, Result, Step, Value
@@ -139,7 +139,10 @@ class Runner:
             self._check_skip(i, block, state)
         target, limit = self.places[int(block.word("label"))] + 1, block.number("limit")
         if not isinstance(value, Result):
-            return target if (value < limit if is_less else value > limit) else i + 1
+            if value < limit if is_less else value > limit:
+                return target
+            state.note_test(q, int(block.word("label")), limit, is_less)
+            return i + 1
         if value.part != STATUS or limit != 0.0 or not is_less:
             raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
         touch = self.touches[value.touch]
@@ -183,7 +186,7 @@ class Runner:
         if block.kind is Kind.PROBE_PATH:
             return self._probing(i, state)
         if block.kind is Kind.READ:
-            state.write(block, int(block.word("q")), system_datum(block, state))
+            read_datum(block, state)
         else:
             set_mode(block, state)
         return None
@@ -194,6 +197,7 @@ class Runner:
         result = int(self.blocks[i - 2].word("q"))
         state.check_status_was_tested(block)
         state.check_ready(block, "a touch")
+        state.check_turn_was_tested(block)
         column = state.frame.chain.axis_index("Z")
         moving = [*state.frame.linear, *state.frame.rotary]
         if not np.all(np.isfinite(state.q[moving])):

@@ -7,13 +7,17 @@ from pathlib import Path
 import numpy as np
 
 from probe_paths.control.steps import Value
-from probe_paths.language import FREE, Block, Interlock, Says, language_of
+from probe_paths.language import ANGLE_LIMIT, FREE, Block, Interlock, Label, Says, language_of
 from probe_paths.plan import ProgramFrame
 from twin.errors import BadFile
 from twin.frames import Array
+from twin.units import DEG
 
 TOP = 20.0
 """How far below the upper end of Z's travel a retract with M91 may end, mm."""
+
+SAME_ANGLE = 1e-3
+"""Degrees by which a test may take off another reading than the one that was programmed."""
 
 SAME = 1e-6
 """Positions that differ by less are the same, mm or rad."""
@@ -50,6 +54,9 @@ class State:
         off: By how much, mm or degrees.
         is_search: Touches may be long where they come from above.
         is_first: One touch may be in the air, where it must meet nothing.
+        turns: Moves of rotary axes so far.
+        reached: Parameters that hold where a rotary axis stands, less a number, in degrees.
+        turn_tested: Rotary axes whose last turn was tested, by axis and side of the limit.
     """
 
     path: Path
@@ -78,13 +85,17 @@ class State:
     stale: set[int] = field(default_factory=set)
     is_search: bool = False
     is_first: bool = False
+    turns: int = 0
+    reached: dict[int, tuple[str, float]] = field(default_factory=dict)
+    turn_tested: set[tuple[str, bool]] = field(default_factory=set)
 
     def copied(self) -> "State":
         """A state that can run on its own."""
         other = copy.copy(self)
         other.q, other.side = self.q.copy(), self.side.copy()
         other.parameters, other.shift_off = dict(self.parameters), set(self.shift_off)
-        other.stale = set(self.stale)
+        other.stale, other.reached = set(self.stale), dict(self.reached)
+        other.turn_tested = set(self.turn_tested)
         return other
 
     @property
@@ -122,6 +133,28 @@ class State:
                 f"a test that stops the program before it (LBL {self.fault.label:d})",
             )
 
+    def check_turn_was_tested(self, block: Block) -> None:
+        """Rotary axes stand where they were sent, where a control may understand a turn otherwise.
+
+        A test takes the planned reading off the one that was read, and has both limits.
+        """
+        if not language_of(self.path).TESTS_TURNS:
+            return
+        for letter in self.frame.chain.rotary_axes:
+            if not {(letter, False), (letter, True)} <= self.turn_tested:
+                expected = f"a test of where {letter} stands, after its turn (O{Label.TURNED:d})"
+                raise self.refusal(block, "a touch", expected)
+
+    def note_test(self, q: int, label: int, limit: float, is_less: bool) -> None:
+        """Note a test of a turn that was passed."""
+        if q not in self.reached or label != Label.TURNED:
+            return
+        letter, planned = self.reached[q]
+        reading = float(self.q[self.frame.chain.axis_index(letter)]) / DEG
+        sign = -1.0 if is_less else 1.0
+        if abs(planned - reading) < SAME_ANGLE and 0.0 <= sign * limit <= ANGLE_LIMIT:
+            self.turn_tested.add((letter, is_less))
+
     def check_status_was_tested(self, block: Block) -> None:
         """Nothing may happen between a touch and the look at its status."""
         if self.untested is not None:
@@ -137,6 +170,7 @@ class State:
             raise self.refusal(block, f"Q{q}", f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}")
         self.parameters[q] = value
         self.stale.discard(q)
+        self.reached.pop(q, None)
 
     def value(self, block: Block, q: int) -> Value:
         """A Q parameter that has been set in this run; nothing left over from others counts."""

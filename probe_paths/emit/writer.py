@@ -7,6 +7,7 @@ import numpy as np
 
 from artefact.body import Standard
 from probe_paths.language import (
+    ANGLE_LIMIT,
     LANGUAGES,
     MAX_LINE,
     TOOL_LENGTH,
@@ -243,11 +244,14 @@ class Writer:
     def _alarms(self) -> list[str]:
         """What stops the program where a test fails; the number of the label is the alarm."""
         k = self.language
+        alarms = {test.label: test.what for test in reversed(self.tests)}
+        if self.rotary and k.TESTS_TURNS:
+            alarms[Label.TURNED] = "a rotary axis is not where it was sent"
         return [
             block
-            for test in self.tests
+            for label, what in sorted(alarms.items())
             for block in (
-                k.label(test.label, f"ALARM {test.label:d}: {test.what.upper()}"),
+                k.label(label, f"ALARM {label:d}: {what.upper()}"),
                 k.OPERATOR_STOP,
                 k.stop_with_error(ErrorText.INPUT_VALUE_INCORRECT),
             )
@@ -264,9 +268,19 @@ class Writer:
         if self.rotary:
             out += [k.turn(self._words(place)) for place in waypoints(here, visit.before)]
             out.append(k.line(self._words(visit.rotary), self.feeds.turning))
+            out += self._reached(visit.rotary) if k.TESTS_TURNS else []
         out += self._plane(visit)
         sides = zip((Q.SIDE_1, Q.SIDE_2), visit.side, strict=False)
         return [*out, k.assign(Q.POSE, visit.pose + 1), *(k.assign(q, s) for q, s in sides)]
+
+    def _reached(self, rotary: Array) -> list[str]:
+        """Test that the rotary axes stand where they were sent."""
+        out = [self.language.WAIT]
+        for letter, value in self._words(rotary).items():
+            what = f"turn of {letter}"
+            datum, limit = Datum(letter), ANGLE_LIMIT
+            out += self._tested(Interlock(Label.TURNED, what, datum, None, value, limit))
+        return out
 
     def _flat(self) -> list[str]:
         """End of a tilted plane, before the table turns."""

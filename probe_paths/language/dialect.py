@@ -65,6 +65,8 @@ class Label(IntEnum):
     PRESET_Z = 106
     ZERO_1 = 107
     ZERO_2 = 108
+    TURNED = 109
+    TOOL_OFFSET = 110
 
     @staticmethod
     def behind(count: int) -> int | None:

@@ -53,10 +53,22 @@ SYSTEM: Mapping[Datum, str] = {
     Datum.OFFSET_X: "#5401",
     Datum.OFFSET_Y: "#5402",
     Datum.TOOL: "#5400",
-    Datum.A: "#5423",
-    Datum.B: "#5424",
-    Datum.C: "#5425",
+    Datum.TOOL_X: "[0 + #5401]",
+    Datum.TOOL_Y: "[0 + #5402]",
+    Datum.ROTATION: "#[5210 + 20 * #5220]",
+    **{Datum(a): f"#<_abs_{a.lower()}>" for a in "XYZABC"},
+    **{
+        Datum(f"preset {a}"): f"[#<_abs_{a.lower()}> - #[{n} + 20 * #5220]{tool}]"
+        for n, a, tool in zip(
+            range(5201, 5207), "XYZABC", ("", "", f" - {LENGTH}", "", "", ""), strict=True
+        )
+    },
 }
+"""Offsets are those of the coordinate system in use, #5220 (1 is G54), whatever selected it."""
+
+TESTS_TURNS = True
+"""Rotary axes that INI files call wrapped take the sign of a word as a direction: C-100 ends at 100
+degrees."""
 
 SAYS = Says(
     reset=MODES,
@@ -101,6 +113,8 @@ G90
 O294 ENDIF
 O{TOUCH} ENDSUB"""
 
+AGAIN = 10_000  # added to the number of a test that stands again
+_TEST = re.compile(r"O([23]\d\d) (IF|ENDIF)")
 SKIP = 1000  # added to the number of a label: those of the tests are below
 
 _CLOCKS = {"SECONDS": WAIT, "CALENDAR": DATE}
@@ -249,15 +263,22 @@ def call(number: int) -> str:
 def listed(blocks: Sequence[str]) -> str:
     """The whole file: subprograms carry their number at both ends, that of a touch is added.
 
+    LinuxCNC takes every number of a test once, so a test that stands again has a number of its own.
+
     Raises:
         DesignError: A line too long or not ASCII, or a block that starts the spindle.
     """
     out: list[str] = []
     opened = ""
+    used: dict[str, int] = {}
     for text in (physical for block in blocks for physical in block.split(LINE_END)):
         match = re.match(r"O(\d+) SUB", text)
         opened = opened if match is None else match[1]
         if match is not None and int(opened) == Label.LOG:
             out += TOUCH_BODY.split(LINE_END)
+        if (test := _TEST.match(text)) is not None:
+            used[test[1]] = used.get(test[1], 0) + (test[2] == "IF")
+            again = used[test[1]] - 1
+            text = f"O{int(test[1]) + again * AGAIN}{text[test.end(1) :]}"
         out.append(f"O{opened} {text}" if text == LABEL_END else text)
     return LINE_END.join(checked_line(physical, MAX_LINE) for physical in out) + LINE_END

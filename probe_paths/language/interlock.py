@@ -17,6 +17,9 @@ PRESET_LIMIT = 1.0
 ANGLE_LIMIT = 0.05
 """Of basic rotation and rotary zeros, degrees: 0.2 mm at 200 mm."""
 
+OFFSET_LIMIT = 0.05
+"""Of a tool's offset beside the spindle axis, mm: the program moves by all of it."""
+
 RADIUS_LIMIT = 0.2
 """Of the calibrated ball, mm."""
 
@@ -54,6 +57,15 @@ _FIRST = (
 """What decides where the ball comes down, which a commissioning program tests."""
 
 
+def turn_tests(language: Language, frame: ProgramFrame) -> list[Interlock]:
+    """Tests behind every turn, where the control may understand one otherwise.
+
+    `planned` is the reading of the visit and stands in the program.
+    """
+    axes = frame.chain.rotary_axes if language.TESTS_TURNS else ()
+    return [Interlock(Label.TURNED, f"turn of {a}", Datum(a), None, 0.0, ANGLE_LIMIT) for a in axes]
+
+
 def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) -> list[Interlock]:
     """Tests of a program, in their order.
 
@@ -75,6 +87,8 @@ def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) 
     for letter, label in zip(chain.rotary_axes, (Label.ZERO_1, Label.ZERO_2), strict=False):
         work = Datum(f"preset {letter}")
         rows.append((label, f"zero of {letter}", Datum(letter), work, 0.0, ANGLE_LIMIT))
+    for datum in (Datum.TOOL_X, Datum.TOOL_Y):
+        rows.append((Label.TOOL_OFFSET, datum.value, datum, None, 0.0, OFFSET_LIMIT))
     tests = [Interlock(*row) for row in rows]
     known = {None, *language.SYSTEM}
     tests = [test for test in tests if test.datum in known and test.work in known]

@@ -227,6 +227,9 @@ SYSTEM: Mapping[Datum, str] = {
     **{Datum(f"preset {a}"): f"ID270 NR1 IDX{i}" for i, a in enumerate("XYZABC", start=1)},
 }
 
+TESTS_TURNS = False
+"""`M127` fixes the way of a turn, whatever the axis."""
+
 SAYS = Says(
     reset="M129",
     plane="PLANE RESET STAY",

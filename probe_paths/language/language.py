@@ -33,6 +33,8 @@ class Datum(StrEnum):
     A = "A"
     B = "B"
     C = "C"
+    TOOL_X = "offset of the tool table in X"
+    TOOL_Y = "offset of the tool table in Y"
     WORK_X = "preset X"
     WORK_Y = "preset Y"
     WORK_Z = "preset Z"
@@ -118,6 +120,7 @@ class Language(Protocol):
     LINE_END: str
     SAYS: Says
     SYSTEM: Mapping[Datum, str]
+    TESTS_TURNS: bool
     RESET: Sequence[str]
     UNWIND: Sequence[str]
     TILTING: Tilting | None

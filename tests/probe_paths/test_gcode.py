@@ -73,7 +73,7 @@ def test_the_collision_check_is_the_same(twins, small, chain, made):
     for i in (place, place + 3):  # to the start of the touch, and back to it
         lines[i] = re.sub(r"Z([+-][\d.]+)", lambda m: f"Z{float(m[1]) - 6.0:+.4f}", lines[i])
     dipped = interpret("\n".join([*lines, ""]).encode(), Path("MS_A_1.ngc"), {}.get, chain)
-    with pytest.raises(BadFile, match=r"line 1[34]\d: found a gap of"):
+    with pytest.raises(BadFile, match=r"line 2\d\d: found a gap of"):
         check_moves(dipped, small, chain)
 
 
@@ -178,9 +178,11 @@ def test_every_line_that_is_lost_is_noticed_or_a_remark(made, chain):
     lines = made.programs[1].text.splitlines()
     code = [i for i, line in enumerate(lines) if not line.startswith(";")]
     silent = [lines[i] for i in code if _is_taken(lines[:i] + lines[i + 1 :], chain)]
-    # these the control or the operator does not need, or a move or touch follows all the same
+    # these the control or the operator does not need, or a move or touch follows all the same; C
+    # stands at zero where its zero is tested, and the number before is zero too
     for line in silent:
-        assert re.match(r"M66 E0 L0$|M0$|G0 |G53 G0 Z", line), line
+        assert re.match(r"M66 E0 L0$|M0$|G0 |G53 G0 Z|#1614 = #<_abs_c>", line), line
+    assert silent.count("#1614 = #<_abs_c>") <= 1
 
 
 def _is_taken(lines, chain):
@@ -231,3 +233,49 @@ def test_the_interpreter_of_linuxcnc_takes_every_block(number, made, tmp_path):
     assert "PROGRAM_END" not in missed
     other_probe = re.sub(r"#1614 = .*", "#1614 = +5", program.text)
     assert "(ABORT,1011)" in rs274.interpreted(other_probe, tmp_path)
+
+
+@rs274.is_there
+@pytest.mark.parametrize(
+    ("offsets", "tool", "alarm"),
+    [
+        ({5221: 25.0}, "", 104),
+        ({5222: -1.5}, "", 105),
+        ({5223: -490.0}, "", 106),
+        ({5230: 2.0}, "", 102),
+        ({5226: 10.0}, "", 107),
+        ({5225: 5.0}, "", 108),
+        ({}, "X1.0", 110),
+        ({}, "Y-0.2", 110),
+        ({5220: 2.0, 5241: 25.0}, "", None),
+        ({5210: 1.0, 5211: 30.0}, "", None),
+    ],
+)
+def test_linuxcnc_stops_before_it_goes_down_where_it_is_not_set_up_so(
+    made, tmp_path, offsets, tool, alarm
+):
+    """Its own interpreter, with what an earlier job left in force; none of G55 and G92 matters."""
+    text = rs274.all_met(made.programs[0].text)
+    done = rs274.interpreted(text, tmp_path, offsets, tool)
+    if alarm is None:  # the program itself selects G54 and cancels G92
+        assert "PROGRAM_END" in done
+        return
+    assert "PROGRAM_END" not in done
+    assert "STRAIGHT_PROBE" not in done
+    assert "(ABORT,1011)" in done
+    lines = text.splitlines()
+    sub = next(i for i, line in enumerate(lines) if line.startswith(f"O{alarm} SUB"))
+    lines[sub + 2] = f"(ABORT,{alarm})"  # the subprogram that it went to
+    again = rs274.interpreted("\n".join([*lines, ""]), tmp_path, offsets, tool)
+    assert f"(ABORT,{alarm})" in again
+
+
+@rs274.is_there
+def test_linuxcnc_stops_where_a_turn_ended_elsewhere(made, tmp_path):
+    """As a wrapped rotary axis would: C-100 is a turn to 100 degrees."""
+    text = rs274.all_met(made.programs[0].text)
+    assert "\nG1 B+20.0000 C-100.0000 F1000" in text
+    wrapped = text.replace("\nG1 B+20.0000 C-100.0000 F", "\nG1 B+20.0000 C+100.0000 F", 1)
+    done = rs274.interpreted(wrapped, tmp_path)
+    assert "STRAIGHT_PROBE" not in done
+    assert "(ABORT,1011)" in done
