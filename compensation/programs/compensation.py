@@ -1,14 +1,17 @@
 """A part program compensated by the inverse of the exact twin, and what that does on the twin."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from compensation.field import MachineErrors, actual_tip, aligned, correction, shifted
-from compensation.part_programs import Keep, Motion, Paths, Program, forces
+from compensation.field import MachineErrors, actual_tip, aligned, shifted
+from compensation.part_programs import Keep, Motion, Program
+from compensation.programs.between import off_path
+from compensation.programs.path import ProgramPath, shares_of_lines
+from compensation.programs.times import Timed, in_time
 from compensation.tables import Header, point_spacing
 from twin.errors import OutsideTravel
 from twin.frames import Array
@@ -25,9 +28,6 @@ COARSEST = 20.0
 SHORTEST = 0.01
 """A line that is shorter is not divided, mm: controls round there."""
 
-RAPID = 10_000.0
-"""Speed of rapid motions where a time is needed, mm/min: drift does not feel the difference."""
-
 
 @dataclass(frozen=True, eq=False)
 class Compensated:
@@ -43,6 +43,9 @@ class Compensated:
         nominal: Tool point in the table frame as it should be, (N, 3), mm.
         before: Deviation of the tool point from there without compensation, (N, 3), mm.
         after: The same with it, rounded as it was written.
+        between: Largest distance of the tool point from the nominal path inside the line that ends
+            at every point, (N,), mm; nan where it is not looked at (`off_path`).
+        tolerance: That lines were divided for, mm.
         u: Standard uncertainty of both from that of the model at some points, (M,), mm.
         u_at: Those points, (M,).
         unmoved: Lines of motions that stay as they are, since no place is known there.
@@ -57,6 +60,8 @@ class Compensated:
     nominal: Array
     before: Array
     after: Array
+    between: Array
+    tolerance: float
     u: Array
     u_at: IntArray
     unmoved: tuple[int, ...]
@@ -85,92 +90,6 @@ def _aheads(motions: Sequence[Motion]) -> IntArray:
     return np.array([m.cycle.ahead if m.cycle else 0 for m in motions])
 
 
-class _Path:
-    """Every motion of a program on the machine that runs it."""
-
-    def __init__(self, program: Program, errors: MachineErrors) -> None:
-        self.program, self.errors = program, errors
-        self.motions, self.frame = program.motions, program.frame
-        self.paths = Paths(self.motions, self.frame.linear)
-        self.is_whole = np.array([m.is_rapid or m.cycle is not None for m in self.motions])
-        self.offset = np.array([m.offset for m in self.motions])
-        speed = np.array([RAPID if m.is_rapid else m.feed or np.inf for m in self.motions])
-        stated = np.array([m.minutes for m in self.motions])
-        self.seconds = (self.paths.travel / speed + stated) * MINUTE
-        self.begins = np.cumsum(self.seconds) - self.seconds
-        kinds = [(m.tcpm, m.length) for m in self.motions]
-        self.kinds = sorted(set(kinds))
-        self.kind = np.array([self.kinds.index(kind) for kind in kinds])
-        self.aim = self.frame.datum.deviation(errors)
-        self.last = self._last_moves() if _feels_approach(errors) else None
-        usual = np.array(errors.state.force or (0.0, 0.0, 0.0))
-        lines = [m.line for m in self.motions]
-        self.force = forces(lines, program.loads, usual) if program.loads else None
-
-    def readings(self, which: IntArray, at: Array) -> Array:
-        """Readings of program coordinates on some motions, (N, A)."""
-        return self._each(which, at, self.frame.readings)
-
-    def coordinates(self, which: IntArray, q: Array) -> Array:
-        """Program coordinates of readings on some motions, (N, A)."""
-        return self._each(which, q, self.frame.coordinates)
-
-    def _each(
-        self, which: IntArray, values: Array, convert: Callable[[Array, bool, float], Array]
-    ) -> Array:
-        out = np.empty_like(values)
-        for k, (tcpm, length) in enumerate(self.kinds):
-            rows = self.kind[which] == k
-            if rows.any():
-                out[rows] = convert(values[rows], tcpm, length)
-        return out
-
-    def touches(self, which: IntArray, share: Array) -> Touches:
-        """Poses on some motions, with their time and the side that each axis comes from."""
-        q = self.readings(which, self.paths.at(which, share))
-        length = np.array([length for _, length in self.kinds])[self.kind[which]]
-        approach = None if self.last is None else self._approach(which, share)
-        elapsed = self.begins[which] + share * self.seconds[which]
-        touches = self.errors.touches(q, length, approach, elapsed)
-        return touches if self.force is None else replace(touches, force=self.force[which])
-
-    def needed(self, which: IntArray, share: Array) -> Array:
-        """Program coordinates that bring the tool point where it should be, (N, A)."""
-        touches = self.touches(which, share)
-        added = correction(self.errors, touches, self.aim)
-        return self.coordinates(which, touches.q + added)
-
-    def _moving(self, which: IntArray, share: Array) -> Array:
-        """Sign of every axis's motion, (N, A); 0 where it stands."""
-        ends = [np.clip(share + step, 0.0, 1.0) for step in (-_STEP, _STEP)]
-        before, after = (self.readings(which, self.paths.at(which, s)) for s in ends)
-        return np.where(np.abs(after - before) > 1e-9, np.sign(after - before), 0.0)
-
-    def _last_moves(self) -> Array:
-        """Sign of the last motion of every axis before each motion begins, (M, A)."""
-        at_end = self._moving(np.arange(len(self.motions)), np.ones(len(self.motions)))
-        out = np.zeros_like(at_end)
-        for k in range(1, len(out)):
-            out[k] = np.where(at_end[k - 1] != 0.0, at_end[k - 1], out[k - 1])
-        return out
-
-    def _approach(self, which: IntArray, share: Array) -> Array:
-        moving = self._moving(which, share)
-        assert self.last is not None
-        return np.where(moving != 0.0, moving, self.last[which])
-
-
-_STEP = 1e-4
-"""Of a motion, over which its direction is taken."""
-
-
-def _feels_approach(errors: MachineErrors) -> bool:
-    """Whether anything depends on the side that an axis comes from."""
-    q = np.zeros((1, len(errors.chain.axes)))
-    sides = [errors.contribution(errors.touches(q, 0.0, np.full_like(q, s))) for s in (1.0, -1.0)]
-    return not np.array_equal(sides[0].twist, sides[1].twist)
-
-
 def compensated(
     program: Program, errors: MachineErrors, head: Header, tolerance: float = TOLERANCE
 ) -> Compensated:
@@ -188,10 +107,11 @@ def compensated(
     Raises:
         OutsideTravel: A compensated point beyond the travel of an axis.
     """
-    path = _Path(program, errors)
+    path = ProgramPath(program, errors)
     which, share, at = _divided(path, _begun(path, tolerance), tolerance)
     _shift_cycles(path, which, at)
-    written = _rounded(path, which, at)
+    done = in_time(path, which, share, path.rounded(which, at), tolerance)
+    which, share, written, _ = done
     touches = path.touches(which, share)
     q = path.readings(which, written)
     _check_travel(path, which, q)
@@ -201,7 +121,7 @@ def compensated(
     spread = aligned(nominal[some], errors.columns(touches[some])) @ errors.root
     return Compensated(
         program=program,
-        text=_text(path, head, which, share, written),
+        text=_text(path, head, done),
         motion=which,
         elapsed=touches.time - errors.state.time,
         q=touches.q,
@@ -209,6 +129,8 @@ def compensated(
         nominal=nominal,
         before=actual_tip(errors, touches) - aim,
         after=actual_tip(errors, shifted(touches, q - touches.q)) - aim,
+        between=off_path(path, which, share, written),
+        tolerance=tolerance,
         u=np.sqrt(np.einsum("nik,nik->n", spread, spread)),
         u_at=some,
         unmoved=tuple(k.line for k in program.items if isinstance(k, Keep) and k.moves),
@@ -217,7 +139,7 @@ def compensated(
 
 def passed(program: Program, errors: MachineErrors) -> Touches:
     """Poses that a program passes, as it is, in the order of the motion."""
-    path = _Path(program, errors)
+    path = ProgramPath(program, errors)
     which, share = _shares(_begun(path, TOLERANCE))
     return path.touches(which, share)
 
@@ -226,7 +148,7 @@ MOST_U = 200
 """Points at which the uncertainty is taken: it varies slowly along a program."""
 
 
-def _begun(path: _Path, tolerance: float) -> IntArray:
+def _begun(path: ProgramPath, tolerance: float) -> IntArray:
     """Lines that every motion is divided into at first, (M,)."""
     spacing = point_spacing(path.errors, path.frame.datum)
     far = np.abs(path.paths.end - path.paths.start)
@@ -247,7 +169,9 @@ def _begun(path: _Path, tolerance: float) -> IntArray:
     return pieces.astype(np.int64)
 
 
-def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray, Array, Array]:
+def _divided(
+    path: ProgramPath, pieces: IntArray, tolerance: float
+) -> tuple[IntArray, Array, Array]:
     """Motions, shares and compensated coordinates of the ends of all lines, in order."""
     which, share = _shares(pieces)
     at = path.needed(which, share)
@@ -281,7 +205,7 @@ def _divided(path: _Path, pieces: IntArray, tolerance: float) -> tuple[IntArray,
     return which[order], share[order], at[order]
 
 
-def _shift_cycles(path: _Path, which: IntArray, at: Array) -> None:
+def _shift_cycles(path: ProgramPath, which: IntArray, at: Array) -> None:
     """Give the motions of a canned cycle what its bottom needs, in place: each is one line."""
     ahead = _aheads(path.motions)
     own = np.flatnonzero(ahead)
@@ -297,23 +221,7 @@ def _shares(pieces: IntArray) -> tuple[IntArray, Array]:
     return which, (number + 1.0) / pieces[which]
 
 
-def _rounded(path: _Path, which: IntArray, at: Array) -> Array:
-    """Coordinates as they are written; axes that a motion does not turn stay as they were."""
-    chain = path.errors.chain
-    out = at.copy()
-    offset = path.offset[which]
-    unit = np.array([m.unit for m in path.motions])[which]
-    for axis in chain.programmed_axes:
-        k = chain.axis_index(axis)
-        is_length = chain.link(axis).kind == "linear"
-        one = unit if is_length else DEG
-        places = path.program.language.decimals(is_length, unit)
-        step = one * 10.0**-places
-        out[:, k] = np.round((at[:, k] - offset[:, k]) / step) * step + offset[:, k]
-    return out
-
-
-def _check_travel(path: _Path, which: IntArray, q: Array) -> None:
+def _check_travel(path: ProgramPath, which: IntArray, q: Array) -> None:
     chain = path.errors.chain
     low, high = np.array([chain.link(a).range for a in chain.axes]).T
     beyond = (q < low - UM) | (q > high + UM)
@@ -325,13 +233,12 @@ def _check_travel(path: _Path, which: IntArray, q: Array) -> None:
         raise OutsideTravel(f"{message}; move the datum")
 
 
-def _text(path: _Path, head: Header, which: IntArray, share: Array, written: Array) -> str:
+def _text(path: ProgramPath, head: Header, done: Timed) -> str:
     """The compensated program: its blocks in their order, every motion as its lines."""
     language = path.program.language
-    begins = np.searchsorted(which, np.arange(len(path.motions) + 1)).tolist()
-    shown = _shown(path, written - path.offset[which])
-    parts = np.diff(share, prepend=0.0)
-    parts = np.where(parts > 0.0, parts, share).tolist()
+    begins = np.searchsorted(done.which, np.arange(len(path.motions) + 1)).tolist()
+    shown = _shown(path, done.written - path.offset[done.which])
+    parts = shares_of_lines(done.which, done.share).tolist()
     blocks: list[str] = []
     number = 0
     for item in path.program.items:
@@ -340,7 +247,11 @@ def _text(path: _Path, head: Header, which: IntArray, share: Array, written: Arr
         else:
             axes, rows = shown[item.turned]
             own = slice(begins[number], begins[number + 1])
-            blocks += language.lines(item, axes, rows[own], parts[own])
+            given = item, axes, rows[own], parts[own]
+            if number in done.motions:
+                blocks += language.timed_lines(*given, path.seconds[number] / MINUTE)
+            else:
+                blocks += language.lines(*given)
             number += 1
     start = next(k for k, block in enumerate(blocks) if not language.OPENS.match(block))
     blocks[start:start] = [*map(language.comment, head.lines()), *language.begin()]
@@ -348,7 +259,7 @@ def _text(path: _Path, head: Header, which: IntArray, share: Array, written: Arr
 
 
 def _shown(
-    path: _Path, at: Array
+    path: ProgramPath, at: Array
 ) -> dict[tuple[str, ...], tuple[tuple[str, ...], list[list[float]]]]:
     """Axes that lines name, with their coordinates, mm and degrees, by the axes that are turned."""
     chain = path.errors.chain

@@ -3,7 +3,6 @@
 import asyncio
 import json
 import os
-import pwd
 import shutil
 import subprocess
 import tempfile
@@ -14,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bench import LENGTH
+from control import AXES, AXIS, INI, a_user
 
 from compensation.field.machine_errors import MachineErrors
 from compensation.linuxcnc.control_files import SOCKET, Control, write_control_files
@@ -34,62 +34,6 @@ LATCH = 0.5 * UM
 """0.1 mm/s in a servo period, and as much again where the rig's own loop is late."""
 
 LIMITS = OutputLimits(most=200.0 * UM, rate=RATE, patience=0.3, hold=1.0)
-INI = """[EMC]
-VERSION = 1.1
-MACHINE = matstd
-[DISPLAY]
-DISPLAY = ./scenario.py
-[TASK]
-TASK = milltask
-CYCLE_TIME = 0.005
-[RS274NGC]
-PARAMETER_FILE = machine.var
-[EMCMOT]
-EMCMOT = motmod
-COMM_TIMEOUT = 4.0
-SERVO_PERIOD = 1000000
-[HAL]
-HALFILE = machine.hal
-HALFILE = corrector.hal
-[TRAJ]
-COORDINATES = X Y Z B C
-LINEAR_UNITS = mm
-ANGULAR_UNITS = degree
-DEFAULT_LINEAR_VELOCITY = 200
-MAX_LINEAR_VELOCITY = 200
-DEFAULT_LINEAR_ACCELERATION = 4000
-MAX_LINEAR_ACCELERATION = 4000
-[KINS]
-KINEMATICS = trivkins coordinates=XYZBC kinstype=BOTH
-JOINTS = 5
-[EMCIO]
-EMCIO = io
-CYCLE_TIME = 0.100
-TOOL_TABLE = tool.tbl
-"""
-AXIS = """[AXIS_{0}]
-OFFSET_AV_RATIO = 0.2
-MIN_LIMIT = {2}
-MAX_LIMIT = {3}
-MAX_VELOCITY = 250
-MAX_ACCELERATION = 5000
-[JOINT_{1}]
-TYPE = {4}
-MIN_LIMIT = {2}
-MAX_LIMIT = {3}
-MAX_VELOCITY = 250
-MAX_ACCELERATION = 5000
-FERROR = 1.0
-MIN_FERROR = 1.0
-HOME_SEQUENCE = 0
-"""
-AXES = (
-    ("X", -350, 400, "LINEAR"),
-    ("Y", -300, 300, "LINEAR"),
-    ("Z", -500, 1, "LINEAR"),  # homed away from its end
-    ("B", -110, 30, "ANGULAR"),
-    ("C", -360, 360, "ANGULAR"),
-)
 HAL = """loadrt [KINS]KINEMATICS
 loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
 loadrt comp count=2
@@ -119,20 +63,6 @@ net stop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
 net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
 net change iocontrol.0.tool-change => iocontrol.0.tool-changed
 """
-
-
-def a_user():
-    """Who can run LinuxCNC here; it refuses root."""
-    if shutil.which("linuxcnc") is None or shutil.which("halsampler") is None:
-        pytest.skip("LinuxCNC is not installed")
-    if LOCK.exists():
-        pytest.skip("LinuxCNC runs already on this computer")
-    if os.geteuid() != 0:
-        return None
-    ordinary = [u.pw_name for u in pwd.getpwall() if 1000 <= u.pw_uid < 60000]
-    if not ordinary:
-        pytest.skip("LinuxCNC refuses root, and there is no other user")
-    return ordinary[-1]
 
 
 def errors_of(chain):
@@ -183,7 +113,11 @@ def rows(bench_chain, datum):
     user = a_user()
     folder = Path(tempfile.mkdtemp(prefix="matstd-offsets-"))
     axes = [AXIS.format(a, i, low, high, kind) for i, (a, low, high, kind) in enumerate(AXES)]
-    texts = {"machine.ini": INI + "".join(axes), "machine.hal": HAL, "tool.tbl": "T1 P1 Z0 D1\n"}
+    texts = {
+        "machine.ini": INI.replace("#more", "HALFILE = corrector.hal") + "".join(axes),
+        "machine.hal": HAL,
+        "tool.tbl": "T1 P1 Z0 D1\n",
+    }
     for name, text in texts.items():
         (folder / name).write_text(text)
     (folder / "machine.var").write_text("")
