@@ -72,6 +72,16 @@ class Compensated:
         return self._ahead[self.motion] == 0
 
     @property
+    def is_cut(self) -> bool:
+        """Whether a motion with a feed is looked at between the ends of its lines."""
+        return bool(np.isfinite(self.between).any())
+
+    @property
+    def worst_between(self) -> float:
+        """Largest distance from the path between line ends, mm; zero where none is looked at."""
+        return float(np.nanmax(self.between)) if self.is_cut else 0.0
+
+    @property
     def leans(self) -> Array:
         """How far the top of every hole lies off the axis through its bottom, (H,), mm."""
         tops = np.flatnonzero(self._ahead[self.motion] == 1)

@@ -23,6 +23,7 @@ def write_trajectory(path: str | Path, done: Compensated) -> None:
     names += [f"{a}_{'deg' if chain.link(a).kind == 'rotary' else 'mm'}" for a in axes]
     names += [f"added_{a}_um" for a in "XYZ"] + [f"{c}_mm" for c in "xyz"]
     names += [f"{when}_d{c}_um" for when in ("before", "after") for c in "xyz"]
+    names += ["between_um"]
     lines = np.array([m.line for m in done.program.motions])[done.motion]
     table = np.column_stack(
         [
@@ -33,8 +34,9 @@ def write_trajectory(path: str | Path, done: Compensated) -> None:
             done.nominal,
             done.before / UM,
             done.after / UM,
+            done.between / UM,
         ]
     )
-    form = "%d,%.3f," + ",".join(["%.5f"] * len(axes)) + ",%.3f" * 3 + ",%.5f" * 3 + ",%.3f" * 6
+    form = "%d,%.3f," + ",".join(["%.5f"] * len(axes)) + ",%.3f" * 3 + ",%.5f" * 3 + ",%.3f" * 7
     rows = (form % tuple(row) for row in table.tolist())
     write_whole(path, "\n".join([",".join(names), *rows]) + "\n")

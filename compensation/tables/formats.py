@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from compensation.field import Datum, MachineErrors, Result, result_of
+from compensation.field import Datum, MachineErrors, Result, result_of, rms
 from compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
 from compensation.tables.acceptance import Acceptance, acceptance
 from compensation.tables.along_axes import (
@@ -16,9 +16,11 @@ from compensation.tables.along_axes import (
 )
 from compensation.tables.by_name import NamedTables, interpolation_bound, sampled, unheld_by_name
 from compensation.tables.header import Header
+from twin.errors import DesignError
 from twin.files import write_whole
 from twin.frames import Array
 from twin.machine import Chain
+from twin.units import NM, UM
 
 Tables = NamedTables | AxisTables
 
@@ -36,7 +38,7 @@ class Format:
 
     name: str
     make: Callable[[MachineErrors, Datum, Array], Tables]
-    write: Callable[[Tables, Header, MachineErrors, Datum], dict[str, str]]
+    write: Callable[..., dict[str, str]]  # of its own kind of tables, and a header
     read: Callable[[Path, Chain], tuple[Tables, Header]]
 
 
@@ -61,9 +63,27 @@ class Played:
     by_name: bool
     acceptance: Acceptance
 
+    def refuse_worse(self) -> None:
+        """Refuse tables with which the machine errs more than without.
 
-def _named(most: int) -> Callable[[MachineErrors, Datum, Array], Tables]:
-    return lambda errors, datum, _: sampled(errors, datum, most)
+        Tables over single axes are right on the lines through the datum alone; beside them a lever
+        may do more harm than they do good.
+
+        Raises:
+            DesignError: They do, by a nanometre or more, rms over the workspace.
+        """
+        before, after = rms(self.result.before), rms(self.result.after)
+        if after > before + NM:
+            others = " ".join(f"--control {name}" for name in FORMATS if name != self.format)
+            raise DesignError(
+                f"{self.format}: these tables would make the machine worse, {before / UM:.3g} -> "
+                f"{after / UM:.3g} µm rms over the workspace; take another control's ({others}), "
+                "a smaller workspace (--within), or compensate programs (--program)"
+            )
+
+
+def _iso(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
+    return sampled(errors, datum, iso_csv.MOST_POINTS)
 
 
 def _cec(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
@@ -72,35 +92,21 @@ def _cec(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
     return most_useful(made, errors, datum, q, most)
 
 
-def _comp(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
+def _com(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
+    return sampled(errors, datum, heidenhain_com.MOST_POINTS).positioning()
+
+
+def _comp(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
     return along_axes(errors, datum, linuxcnc_comp.MOST_POINTS, False)
-
-
-def _write_comp(
-    tables: Tables, head: Header, errors: MachineErrors, datum: Datum
-) -> dict[str, str]:
-    there = errors.contribution(errors.touches(datum.q[None, :], datum.length))
-    assert isinstance(tables, AxisTables)
-    return linuxcnc_comp.write(tables, head, there.place[0])
 
 
 FORMATS: Mapping[str, Format] = {
     f.name: f
     for f in (
-        Format(
-            "iso230",
-            _named(iso_csv.MOST_POINTS),
-            lambda t, h, *_: iso_csv.write(t, h),
-            iso_csv.read,
-        ),
-        Format(
-            "heidenhain",
-            _named(heidenhain_com.MOST_POINTS),
-            lambda t, h, *_: heidenhain_com.write(t, h),
-            heidenhain_com.read,
-        ),
-        Format("sinumerik", _cec, lambda t, h, *_: sinumerik_cec.write(t, h), sinumerik_cec.read),
-        Format("linuxcnc", _comp, _write_comp, linuxcnc_comp.read),
+        Format("iso230", _iso, iso_csv.write, iso_csv.read),
+        Format("sinumerik", _cec, sinumerik_cec.write, sinumerik_cec.read),
+        Format("linuxcnc", _comp, linuxcnc_comp.write, linuxcnc_comp.read),
+        Format("heidenhain", _com, heidenhain_com.write, heidenhain_com.read),
     )
 }
 """By the word of the command line, that which holds most first."""
@@ -110,7 +116,7 @@ def write_tables(
     form: Format, folder: Path, errors: MachineErrors, datum: Datum, head: Header, q: Array
 ) -> None:
     """Write the tables of a format into a folder of their own; arguments as of `play_tables`."""
-    for name, text in form.write(form.make(errors, datum, q), head, errors, datum).items():
+    for name, text in form.write(form.make(errors, datum, q), head).items():
         write_whole(folder / name, text)
 
 

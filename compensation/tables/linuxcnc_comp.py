@@ -1,4 +1,4 @@
-"""LinuxCNC: a `COMP_FILE` of type 1 a joint, and the offsets of rotary axes for HAL.
+"""LinuxCNC: a `COMP_FILE` of type 1 a joint.
 
 A line has a nominal position and what is added to it after a positive and after a negative motion
 (type 1, mm or degrees). It replaces `BACKLASH`. A joint corrects itself alone.
@@ -11,20 +11,18 @@ import numpy as np
 from compensation.tables.along_axes import AxisTable, AxisTables
 from compensation.tables.header import Header
 from twin.errors import BadFile
-from twin.frames import Array
 from twin.machine import Chain
 from twin.units import DEG
 
 MOST_POINTS = 256
-OFFSETS = "rotary_offsets.hal"
 
 
-def write(tables: AxisTables, head: Header, place: Array) -> dict[str, str]:
+def write(tables: AxisTables, head: Header) -> dict[str, str]:
     """Texts by file name.
 
     Args:
         tables: Of every axis for itself.
-        place: Location errors of every link, (L, 6), mm and rad.
+        head: Of every file.
     """
     top = [f"# {line}" for line in head.lines()]
     texts = {}
@@ -32,27 +30,9 @@ def write(tables: AxisTables, head: Header, place: Array) -> dict[str, str]:
         unit = DEG if table.over[0] in "ABC" else 1.0
         columns = [table.nodes, head.sign * table.forward, head.sign * table.reverse]
         rows = np.column_stack(columns) / unit
-        texts[f"{table.over}.comp"] = _text(
-            [*top, *(" ".join(f"{v:.7f}" for v in r) for r in rows)]
-        )
-    return texts | {OFFSETS: _text([*top, *_offsets(tables.chain, place)])}
-
-
-def _text(lines: list[str]) -> str:
-    return "\n".join(lines) + "\n"
-
-
-def _offsets(chain: Chain, place: Array) -> list[str]:
-    """Points of rotary axes with their displacements, machine frame, for a kinematics component."""
-    lines = []
-    for axis in chain.rotary_axes:
-        i = chain.link_index(axis)
-        at = chain.links[i].point + place[i, :3]
-        lines += [
-            f"setp rotary.{axis.lower()}.{c}-rot-point {v:.5f}"
-            for c, v in zip("xyz", at, strict=True)
-        ]
-    return lines
+        lines = [*top, *(" ".join(f"{v:.7f}" for v in r) for r in rows)]
+        texts[f"{table.over}.comp"] = "\n".join(lines) + "\n"
+    return texts
 
 
 def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:

@@ -20,10 +20,15 @@ def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
     yield f"{name}: {motions} motions as {points} lines", True
     before, after = (rms(field[done.is_stated]) / UM for field in (done.before, done.after))
     worst = np.linalg.norm(done.after[done.is_stated], axis=1).max() / UM
-    words = f"tool point {digits(before)} -> {digits(after)} µm rms (worst {digits(worst)} µm)"
+    words = f"tool point at line ends {digits(before)} -> {digits(after)} µm rms"
+    words += f" (worst {digits(worst)} µm)"
     if done.u.any() and rms(done.u[:, None]) > NM:
         words += f"; the model is known to {digits(rms(done.u[:, None]) / UM, 2)} µm there"
     yield f"- {words}", False
+    if done.is_cut:
+        inside = digits(done.worst_between / UM)
+        limit = digits(done.tolerance / UM)
+        yield f"- between line ends up to {inside} µm off the path; divided for {limit} µm", False
     if len(done.leans):
         most = digits(done.leans.max() / UM)
         yield (

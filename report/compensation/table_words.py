@@ -11,7 +11,7 @@ from twin.units import NM, UM
 
 _TITLES = {
     "iso230": "ISO 230 names (ISG kernel, TwinCAT CNC)",
-    "heidenhain": "iTNC 530 KinematicsComp",
+    "heidenhain": "Heidenhain TNC .COM, positioning of each axis",
     "sinumerik": "Sinumerik CEC",
     "linuxcnc": "LinuxCNC COMP_FILE",
 }

@@ -354,7 +354,7 @@ def test_command(bench, errors_file, tmp_path, capsys):
     said = capsys.readouterr().out
     assert "better.ngc: 3 motions as" in said
     names = {p.name for p in output.parent.iterdir()}
-    assert names == {"better.ngc", "better.csv", "better.png"}
+    assert names == {"better.ngc", "better.csv", "better.png", "better.json"}
     table = np.genfromtxt(output.with_suffix(".csv"), delimiter=",", names=True)
     assert set(table["line"]) == {1, 2, 3}
     before = np.hypot(table["before_dx_um"], table["before_dy_um"])

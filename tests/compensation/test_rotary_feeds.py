@@ -1,4 +1,4 @@
-"""Lines with rotary axes take the time that they took before: by LinuxCNC's interpreter and motion."""
+"""Lines with rotary axes keep their time: by LinuxCNC's interpreter and by its motion."""
 
 import json
 import os
@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
@@ -141,7 +140,6 @@ def test_every_line_takes_its_time(corrected, tmp_path):
         np.testing.assert_allclose(found[lines == line].sum(), seconds, rtol=SAME, err_msg=line)
         assert found[lines == line].max() < seconds * 1.02
     assert feeds.min() == pytest.approx(0.12, rel=0.2)  # LinuxCNC has no lower one than 0.1
-    assert "G0 " in done.text and "G0 C" not in done.text.replace("G0 X", "")
 
 
 @is_there
@@ -149,7 +147,7 @@ def test_every_line_takes_its_time(corrected, tmp_path):
 def test_slow_and_fast(corrected, tmp_path, feed):
     """From where LinuxCNC's lowest feed does not matter to where it always does."""
     done = corrected(f"G0 X30 Y-20 Z-20\nG1 C1 F{feed}\nG1 C31\nG1 C16\n")
-    found, feeds = seconds_of(done.text, tmp_path)
+    found, _ = seconds_of(done.text, tmp_path)
     lines = np.array([m.line for m in done.program.motions])[done.motion]
     for line, turned in ((2, 1.0), (3, 30.0), (4, 15.0)):
         np.testing.assert_allclose(found[lines == line].sum(), turned / feed * 60.0, rtol=0.01)

@@ -1,5 +1,8 @@
 """Tables of controls: hand-worked values, what is left, refusals, the test of the sign."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bench import LENGTH
@@ -12,7 +15,7 @@ from compensation.tables.by_name import line
 from compensation.tables.formats import FORMATS, play_tables, write_tables
 from compensation.tables.header import Header, header_of
 from matstd.cli import main
-from twin.errors import BadFile
+from twin.errors import BadFile, DesignError
 from twin.library.catalogue import parse_effect
 from twin.machine.chain import Axis, make_chain
 from twin.units import DEG, NM, UM, URAD
@@ -75,18 +78,35 @@ def test_iso_names_and_units(written):
     np.testing.assert_allclose(c[len(c) // 4, [1, 6]], [0.008, 30e-6], atol=1e-9)
 
 
-def test_com_tables_and_kinematics(written):
-    x = columns(written / "heidenhain" / "X.COM", "NR AXISPOS X C1 C2 C3 C4 C5 C6")
-    np.testing.assert_allclose(x[-1, 1:], [400, 0, 0, 0, 0.020, 0, 60e-6 / DEG, 0], atol=6e-7)
-    at = np.flatnonzero(x[:, 1] == -300.0)[0]
-    assert x[at, 2] == 0.030
-    rows = [
-        r.split()[1:] for r in (written / "heidenhain" / "KINEMATICS.TXT").read_text().splitlines()
-    ]
-    assert ["EBX", "Trans", "B", "-", "X..C5"] in rows
-    assert ["X_AXIS", "MachAxis", "X", "-", "-"] in rows
-    assert ["C_POINT", "Trans", "X", "+0.0250", "-"] in rows
-    assert ["B_POINT", "Trans", "Z", "-419.9700", "-"] in rows
+def test_com_tables_have_the_error_of_each_axis(bench_chain, datum, head, poses, tmp_path):
+    """EXX of 12 um at the ends, ECC of 30 urad at 90 degrees; nothing of reversal and EC0Y."""
+    effects = [("geometric(EXX,linear)", 12 * UM), ("backlash(X)", 8 * UM)]
+    effects += [("geometric(ECC,sinusoidal)", 30 * URAD), ("location(EC0Y)", 45 * URAD)]
+    pairs = [(parse_effect(name, bench_chain), np.array([a])) for name, a in effects]
+    errors = MachineErrors.of_errors(bench_chain, pairs)
+    write_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses)
+    assert {p.name for p in tmp_path.iterdir()} == {f"{axis}.COM" for axis in "XYZBC"}
+    x = columns(tmp_path / "X.COM", "NR AXISPOS X")
+    np.testing.assert_allclose(x[[0, -1], 1:], [[-400, -0.012], [400, 0.012]], atol=6e-5)
+    c = columns(tmp_path / "C.COM", "NR AXISPOS C")
+    at = np.flatnonzero(c[:, 1] == 90.0)[0]
+    np.testing.assert_allclose(c[at, 2], 30e-6 / DEG, atol=1e-6)
+    assert not columns(tmp_path / "Y.COM", "NR AXISPOS Y")[:, 2].any()  # EC0Y is in no .COM
+
+
+def test_com_tables_are_credited_with_positioning_alone(bench_chain, datum, head, poses, tmp_path):
+    """Of an axis's own error little is left, of its angles and of lines of rotary axes all."""
+    for name, size, share in (
+        ("geometric(EXX,linear)", 30 * UM, 0.01),
+        ("geometric(EZX,2)", 20 * UM, 1.0),
+        ("location(EA0C)", 35 * URAD, 1.0),
+    ):
+        effect = parse_effect(name, bench_chain)
+        theta = np.full(len(effect.parameters), size)
+        errors = MachineErrors.of_errors(bench_chain, [(effect, theta)])
+        write_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses)
+        found = play_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses).result
+        np.testing.assert_allclose(rms(found.after), share * rms(found.before), atol=0.2 * UM)
 
 
 def test_comp_file_adds_what_the_axis_lacks_in_each_direction(
@@ -100,8 +120,7 @@ def test_comp_file_adds_what_the_axis_lacks_in_each_direction(
     # coming from below the tool stands 4 µm too far, from above 4 µm short
     np.testing.assert_allclose(x[-1], [400, -0.012 - 0.004, -0.012 + 0.004], atol=1e-6)
     np.testing.assert_allclose(x[0], [-400, 0.012 - 0.004, 0.012 + 0.004], atol=1e-6)
-    hal = (tmp_path / "rotary_offsets.hal").read_text()
-    assert "b.z-rot-point -420.00000" in hal
+    assert {p.name for p in tmp_path.iterdir()} == {f"{axis}.comp" for axis in "XYZBC"}
 
 
 def test_cec_corrects_across(bench_chain, datum, head, poses, tmp_path):
@@ -125,21 +144,19 @@ def test_cec_writes_as_many_tables_as_a_control_holds(written, bench_chain):
 # --- what is left ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["iso230", "heidenhain"])
-def test_tables_by_name_leave_their_interpolation(results, name):
-    found = results[name]
+def test_tables_by_name_leave_their_interpolation(results):
+    found = results["iso230"]
     worst = np.linalg.norm(found.result.after, axis=1).max()
     assert rms(found.result.before) > 30 * UM
     assert 0.0 < worst <= found.interpolation < 2 * UM
 
 
-@pytest.mark.parametrize("name", ["iso230", "heidenhain"])
-def test_unaligned_too(known, written, bench_chain, poses, results, name):
+def test_unaligned_too(known, written, bench_chain, poses, results):
     """The rigid motion that alignment takes off hides nothing."""
-    tables, _ = FORMATS[name].read(written / name, bench_chain)
+    tables, _ = FORMATS["iso230"].read(written / "iso230", bench_chain)
     touches = known.touches(poses, LENGTH)
     left = played(known, touches, tables.correction(touches))
-    assert np.linalg.norm(left, axis=1).max() <= results[name].interpolation
+    assert np.linalg.norm(left, axis=1).max() <= results["iso230"].interpolation
 
 
 def test_cec_is_exact_along_the_axes(known, datum, head, poses, bench_chain, tmp_path):
@@ -160,10 +177,10 @@ def test_cec_is_exact_along_the_axes(known, datum, head, poses, bench_chain, tmp
 def test_formats_hold_less_and_less(results):
     left = [
         rms(results[name].result.after)
-        for name in ("iso230", "heidenhain", "sinumerik", "linuxcnc")
+        for name in ("iso230", "sinumerik", "linuxcnc", "heidenhain")
     ]
     assert left == sorted(left)
-    assert left[2] < 0.5 * rms(results["sinumerik"].result.before)
+    assert left[1] < 0.5 * rms(results["sinumerik"].result.before)
 
 
 @pytest.mark.parametrize("name", list(FORMATS))
@@ -221,7 +238,7 @@ def test_the_one_point_test_tells_a_wrong_sign(results, name):
     change = test.with_table - test.without
     np.testing.assert_allclose(test.wrong_sign - test.without, -change, atol=0.1 * UM)
     assert np.abs(change).max() > 20 * UM
-    if name != "linuxcnc":
+    if name in ("iso230", "sinumerik"):
         assert np.linalg.norm(test.with_table) < 0.2 * np.linalg.norm(test.without)
 
 
@@ -262,6 +279,40 @@ def test_commands(bench, errors_file, tmp_path, capsys):
     other = [w if w != str(errors_file) else str(errors_file2) for w in command]
     assert main([*other, *active]) == 2
     assert "or a model learnt beside it" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", list(FORMATS))
+def test_tables_of_the_wrong_sign_are_refused(known, datum, head, written, poses, name):
+    """Played on the machine that errs the other way, they double what they should take away."""
+    theta = tuple(-t for t in known.theta)
+    found = play_tables(
+        FORMATS[name], written / name, replace(known, theta=theta), datum, head, poses
+    )
+    with pytest.raises(DesignError, match=f"{name}: these tables would make the machine worse"):
+        found.refuse_worse()
+
+
+def test_a_table_that_does_harm_is_refused(tmp_path, capsys):
+    """A fork head with EXZ, 20 um at both ends: no table of X over X can hold it.
+
+    By hand: at the datum, Z = -200 of -700 to 0, it is 20 (350 - 200)/350 = 8.57 um. The table
+    puts that into the zero of X, against the line of C, round which it turns: the root of the sum
+    of both squares is left.
+    """
+    machine, errors, out = tmp_path / "head.toml", tmp_path / "errors.toml", tmp_path / "out"
+    assert main(["machines", "fork"]) == 0
+    machine.write_text(capsys.readouterr().out)
+    errors.write_text('format = "errors/1"\nEXZ = { shape = "linear", amplitude = 20.0 }\n')
+    command = ["compensate", str(machine), "--errors", str(errors), "--tool-length", "160"]
+    command += ["--datum", "Z=-200", "--control", "iso230", "--control", "linuxcnc"]
+    assert main([*command, "--tables", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert "linuxcnc: these tables would make the machine worse" in said
+    assert "--control sinumerik" in said
+    before, after = (float(v) for v in re.findall(r"([\d.]+) -> ([\d.]+) µm rms", said)[0])
+    assert before == pytest.approx(20.0 / np.sqrt(3.0), rel=0.02)
+    assert after == pytest.approx(np.hypot(before, 20.0 * 150.0 / 350.0), rel=0.02)
+    assert not out.exists()
 
 
 @pytest.mark.parametrize(

@@ -73,7 +73,12 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     from dataclasses import replace
 
     from compensation.part_programs import Frame, read_loads, read_part_program
-    from compensation.programs import TOLERANCE, compensated, write_trajectory
+    from compensation.programs import (
+        TOLERANCE,
+        compensated,
+        write_program_result,
+        write_trajectory,
+    )
     from matstd.commands.compensation.job import by_tool
     from matstd.console import say
     from report.compensation import draw_program, program_lines
@@ -81,7 +86,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     from twin.units import UM
 
     output = Path(args.output)
-    beside = [output.with_suffix(ending) for ending in (".csv", ".png")]
+    beside = [output.with_suffix(ending) for ending in (".csv", ".png", ".json")]
     for path in (output, *beside):
         refuse_to_overwrite(path, args.force)
     frame = Frame(job.errors.chain, job.datum)
@@ -99,10 +104,11 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     done = compensated(program, job.errors, job.header(1), tolerance)
     write_trajectory(beside[0], done)
     draw_program(beside[1], done)
+    write_program_result(beside[2], done)
     write_whole(output, done.text)
     for line, is_first in program_lines(output.name, done):
         say(line, style="bold" if is_first else None)
-    say(f"{output}: look at {beside[0].name}, {beside[1].name} beside it")
+    say(f"{output}: look at {', '.join(path.name for path in beside)} beside it")
     return 0
 
 
@@ -122,6 +128,7 @@ def _tables(args: argparse.Namespace, job: Job) -> int:
             place, head = folder / name, job.header(-1 if name in opposite else 1)
             write_tables(FORMATS[name], place, job.errors, job.datum, head, job.poses)
             done.append(play_tables(FORMATS[name], place, job.errors, job.datum, head, job.poses))
+            done[-1].refuse_worse()
         head = job.header(1)
         write_table_results(folder / "compensation.json", job.errors, head, done)
         write_compensation_page(folder, job.errors, head, done, Path(args.model).name)
