@@ -26,9 +26,13 @@ def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
         words += f"; the model is known to {digits(rms(done.u[:, None]) / UM, 2)} µm there"
     yield f"- {words}", False
     if done.is_cut:
-        inside = digits(done.worst_between / UM)
-        limit = digits(done.tolerance / UM)
-        yield f"- between line ends up to {inside} µm off the path; divided for {limit} µm", False
+        row = int(np.nanargmax(done.between))
+        words = f"between line ends up to {digits(done.worst_between / UM)} µm off the path"
+        words += f" (line {done.program.motions[done.motion[row]].line})"
+        words += f"; divided until {digits(done.tolerance / UM)} µm are left"
+        if done.worst_between > done.tolerance:
+            words += ", but where a reversal or a load changes the correction at once"
+        yield f"- {words}", False
     if len(done.leans):
         most = digits(done.leans.max() / UM)
         yield (

@@ -157,8 +157,28 @@ def test_the_command_states_both_and_the_limit(bench, errors_file, tmp_path, cap
     data = json.loads(output.with_suffix(".json").read_text())
     inside, ends = data["between_line_ends"]["worst_um"], data["at_line_ends"]["after"]["worst_um"]
     assert ends < 0.6 < 1.0 < inside < 2.2
-    assert f"between line ends up to {inside:.2f} µm off the path; divided for 2.00 µm" in said
+    assert f"between line ends up to {inside:.2f} µm off the path (line " in said
+    assert "divided until 2.00 µm are left" in said
     assert "tool point at line ends" in said
     table = np.genfromtxt(output.with_suffix(".csv"), delimiter=",", names=True)
     assert np.nanmax(table["between_um"]) == pytest.approx(inside, abs=1e-3)
     assert np.isnan(table["between_um"][[0, -1]]).all()  # rapid
+
+
+def test_a_reversal_is_seen_between_line_ends(bench, tmp_path, capsys):
+    """8 um of backlash, taken up along the first line behind the reversal: by hand.
+
+    X errs by 8 (1 - s) um along it, the way goes at 45 degrees to X, and s = 1/4 is the place
+    nearest its beginning that is looked at.
+    """
+    errors, source = tmp_path / "errors.toml", tmp_path / "part.ngc"
+    errors.write_text('format = "errors/1"\nEXX = { shape = "linear", amplitude = 1e-3 }\n')
+    source.write_text("G0 X0 Y0 Z0\nG1 X10 Y10 F900\nG1 X0 Y20\n")
+    command = ["compensate", str(bench), "--errors", str(errors), "--program", str(source)]
+    command += ["--tool-length", "160", "--datum", "Z=-200", "--add", "backlash(X)=8um"]
+    assert main([*command, "-o", str(tmp_path / "better.ngc")]) == 0
+    said = capsys.readouterr().out
+    assert "(line 3)" in said
+    assert "but where a reversal or a load changes the correction at once" in said
+    inside = json.loads((tmp_path / "better.json").read_text())["between_line_ends"]["worst_um"]
+    assert inside == pytest.approx(8.0 * 0.75 * np.sqrt(0.5), rel=0.02)
