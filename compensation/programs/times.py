@@ -13,7 +13,6 @@ import numpy as np
 from compensation.programs.path import ProgramPath, shares_of_lines
 from twin.errors import BadFile
 from twin.frames import Array
-from twin.machine import Chain
 from twin.record import IntArray
 from twin.units import DEG, MINUTE
 
@@ -65,20 +64,20 @@ def in_time(
     Raises:
         BadFile: A line of which no way to state its time is known.
     """
-    linear, chain = path.frame.linear, path.errors.chain
+    linear = path.frame.linear
     begin = path.begins_at(which, written)
     moved = written - begin
     far = np.linalg.norm(moved[:, linear], axis=1)
     wanted = path.paths.far[which] * shares_of_lines(which, share)
     turns = np.abs(np.delete(moved, linear, axis=1)).max(axis=1, initial=0.0) > 1e-6 * DEG
-    turns &= ~path.is_whole[which]
+    turns &= ~path.is_whole[which] & (path.paths.turned[which] > 0.0)
     for k in np.unique(which[turns & ~path.is_from_known[which]]):
         _need_known(path, int(k))
     changes = turns & (np.abs(far - wanted) > SAME * np.minimum(far, wanted))
     stated = np.array([m.minutes > 0.0 for m in path.motions])
     timed = frozenset(np.unique(which[changes & ~stated[which]]).tolist())
     for k in timed:
-        _check(path, k, chain)
+        _check(path, k)
     slow = timed | set(np.unique(which[turns & stated[which]]).tolist())
     if not slow:
         return Timed(which, share, written, timed)
@@ -154,26 +153,28 @@ def _need_unit(path: ProgramPath, k: int) -> None:
         raise BadFile(path.program.path, f"line {motion.line}", found, expected)
 
 
-def _check(path: ProgramPath, k: int, chain: Chain) -> None:
+def _check(path: ProgramPath, k: int) -> None:
     """Whether the time of a motion can be kept; raises BadFile."""
     motion = path.motions[k]
     far, turned = float(path.paths.far[k]), float(path.paths.turned[k])
-    axes = " and ".join(motion.turned)
-    said = f"{axes} turning by {turned:.4g} degrees at F{motion.word:g}"
-    if far > 0.0:
-        said += f" while X, Y, Z go {far:.4g} mm"
+    file, line = path.program.path, f"line {motion.line}"
+    said = f"{' and '.join(motion.turned)} turning by {turned:.4g} degrees at F{motion.word:g}"
     if not path.program.language.HAS_INVERSE_TIME or motion.tcpm:
         where = "with tool-point control" if motion.tcpm else "in Klartext"
-        found = f"{said}, where its correction would make F a feed of X, Y, Z"
-        expected = f"FMAX or G0: no way to state the time of a block {where} is known to us"
-    elif far > 0.0 and np.hypot(far, turned) > (1.0 + LIKE) * far:
-        found = f"{said}, whose time controls count differently (LinuxCNC mm, Fanuc degrees too)"
-        expected = "it in inverse time (G93), since its correction changes the way by a fiftieth"
-    elif turned / path.seconds[k] * MINUTE < MARGIN * SLOWEST:
-        found, expected = (
-            said,
-            f"{MARGIN * SLOWEST:g} degrees/min or more: LinuxCNC's slowest in G93",
+        raise BadFile(
+            file,
+            line,
+            f"{said}, which its correction in X, Y, Z would make mm/min",
+            f"FMAX or G0: no documented way to state the time of a block {where} is known",
         )
-    else:
-        return
-    raise BadFile(path.program.path, f"line {motion.line}", found, expected)
+    if far > 0.0 and np.hypot(far, turned) > (1.0 + LIKE) * far:
+        raise BadFile(
+            file,
+            line,
+            f"{said} while X, Y, Z go {far:.4g} mm, which its correction changes",
+            "it in inverse time (G93): LinuxCNC takes F for the mm alone, Fanuc for degrees too",
+        )
+    if turned / path.seconds[k] * MINUTE < MARGIN * SLOWEST:
+        raise BadFile(
+            file, line, said, f"{MARGIN * SLOWEST:g} degrees/min or more: LinuxCNC's slowest in G93"
+        )
