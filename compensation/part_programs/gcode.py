@@ -20,6 +20,10 @@ OPENS = re.compile(r"%|O\d+|(?:\([^)]*\)|;.*)?\s*\Z", re.IGNORECASE)
 _DECIMALS = 5
 """Of a length in mm, and of an angle in degrees: 10 nm, and 9 nm at half a metre."""
 
+HAS_INVERSE_TIME = True
+
+_FEED = re.compile(r"F[\d.]+")
+_BACK = re.compile(r"G94 F[\d.]+")
 _CENTRES = dict(zip("XYZ", "IJK", strict=True))
 _REMARK = re.compile(r"\([^)]*\)|;.*")
 _NAME = re.compile(r"O\d+")
@@ -87,7 +91,7 @@ def _feed(value: float, reading: Reading, modes: Modes) -> None:
     if modes.is_inverse:
         modes.minutes = 1.0 / value if value > 0.0 else 0.0
     else:
-        reading.feed = value * reading.unit
+        reading.feed, reading.feed_unit = value, reading.unit
 
 
 def _home(number: int, axes: dict[str, float], words: str, reading: Reading, modes: Modes) -> None:
@@ -195,34 +199,6 @@ def decimals(is_length: bool, unit: Array) -> Array:
     return np.where(is_length & (unit != 1.0), _DECIMALS + 2, _DECIMALS)
 
 
-TIMED = "G0, G93 with the time of every line, or a program for LinuxCNC (.ngc)"
-"""What may stand where the feed of a turn would change its meaning."""
-
-INVERSE_TIME = "G93"
-
-
-def states_time(path: Path) -> bool:
-    """Whether turns at a feed are written with their time: the meaning of F is LinuxCNC's.
-
-    Its manual, "How feed rate applies": the path of X, Y and Z; degrees where none of them moves.
-    """
-    return path.suffix.lower() == ENDING
-
-
-def in_time(motion: Motion, minutes: float) -> Motion:
-    """A motion at a feed as one that states its time."""
-    return motion._replace(minutes=minutes, words=_FEED_WORDS.sub("", motion.words).strip())
-
-
-def feed_again(motion: Motion) -> str:
-    """The line that brings the feed of a motion back into force."""
-    return f"G94 F{motion.feed / motion.unit:.10g}"
-
-
-_FEED_WORDS = re.compile(r"(?<!\S)(?:F[\d.eE+-]+|G94)(?!\S)(?![^(]*\))")
-"""Words that state a feed, outside of remarks."""
-
-
 @cache
 def _form(axes: tuple[str, ...], places: int) -> str:
     """Of the words of some axes; lengths have so many decimals."""
@@ -254,12 +230,34 @@ def lines(
         out = [head + form % tuple(row) for row in shown]
         if motion.minutes:
             out = [
-                f"{line} F{1.0 / (motion.minutes * part):.7g}"
+                f"{line} F{_number(1.0 / (motion.minutes * part))}"
                 for line, part in zip(out, parts, strict=True)
             ]
     if motion.words and out:
         out[0] = f"{motion.words} {out[0]}"
     return out
+
+
+def _number(value: float) -> str:
+    """Seven digits, never in powers of ten."""
+    return np.format_float_positional(value, 7, unique=False, fractional=False, trim="-")
+
+
+def timed_lines(
+    motion: Motion,
+    axes: tuple[str, ...],
+    shown: list[list[float]],
+    parts: list[float],
+    minutes: float,
+) -> list[str]:
+    """Lines of a motion in inverse time, then back to its feed; arguments as of `lines`.
+
+    Args:
+        minutes: That the whole motion takes.
+    """
+    words = (w for w in motion.words.split() if w != "G94" and not _FEED.fullmatch(w))
+    timed = motion._replace(words=" ".join(words), minutes=minutes)
+    return ["G93", *lines(timed, axes, shown, parts), f"G94 F{_number(motion.word)}"]
 
 
 def _called(cycle: Cycle, form: str, row: list[float], unit: float, places: int) -> list[str]:
@@ -271,5 +269,11 @@ def _called(cycle: Cycle, form: str, row: list[float], unit: float, places: int)
 
 
 def listed(blocks: list[str], path: Path) -> str:
-    """The whole file."""
-    return "\n".join(blocks) + "\n"
+    """The whole file; feed per minute that nothing runs in is left out."""
+    kept: list[str] = []
+    for block in blocks:
+        if block == "G93" and kept and _BACK.fullmatch(kept[-1]):
+            kept.pop()
+        else:
+            kept.append(block)
+    return "\n".join(kept) + "\n"

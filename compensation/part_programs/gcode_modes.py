@@ -99,6 +99,8 @@ def take(
         if g in MOVES or g in CYCLES or g == 80.0:
             _take_motion(g, modes)
         elif g in _SETS:
+            if g == 94.0 and modes.is_inverse:
+                reading.feed = 0.0  # LinuxCNC wants F anew; 1/min is no feed
             setattr(modes, *_SETS[g])
         elif g in (20.0, 21.0):
             reading.unit = 25.4 if g == 20.0 else 1.0

@@ -12,10 +12,10 @@ from compensation.part_programs.klartext_flow import Block, in_order
 from compensation.part_programs.klartext_motions import (
     Modes,
     Words,
-    feed_of,
     motion,
     needed_hole,
     pole,
+    take_feed,
     take_functions,
 )
 from compensation.part_programs.language import NUMBER, Reading
@@ -23,6 +23,7 @@ from compensation.part_programs.motion import Corner, Motion
 from twin.frames import Array
 
 ENDING = ".H"
+HAS_INVERSE_TIME = False
 OPENS = re.compile("BEGIN", re.IGNORECASE)
 _DECIMALS = 4
 """Steps in which the control takes coordinates: 0.1 µm, 0.0001 degrees."""
@@ -148,7 +149,8 @@ def _check_preset(number: int, bare: str, reading: Reading, modes: Modes) -> Non
 def _tool(number: int, block: str, match: re.Match[str], reading: Reading, modes: Modes) -> None:
     """TOOL CALL: of a number, a name, or of another speed alone."""
     if feed := re.search(r"\bF(\d+(?:\.\d+)?)", match[3]):
-        reading.feed = modes.tool_feed = feed_of(feed[1], reading.unit)
+        modes.tool_feed = float(feed[1])
+        take_feed(modes.tool_feed, reading)
     reading.keep(number, block)
     tool = int(match[1]) if match[1] else match[2]
     if re.match(r" [XYUVW]\b", match[3]):
@@ -179,15 +181,6 @@ def decimals(is_length: bool, unit: Array) -> Array:
     return np.where(is_length & (unit != 1.0), _DECIMALS + 1, _DECIMALS)
 
 
-TIMED = "FMAX, or a turn beside motions of X, Y, Z that its correction is small against"
-"""What may stand where the feed of a turn would change its meaning."""
-
-
-def states_time(path: Path) -> bool:
-    """No public manual of the control has a block that states its time."""
-    return False
-
-
 @cache
 def _form(axes: tuple[str, ...], places: int) -> str:
     """Of the words of some axes; lengths have so many decimals."""
@@ -211,7 +204,7 @@ def lines(
         place = _form(("X", "Y", *axes[3:]), places) % (x, y, *turned)
         return [motion.cycle.block.format(top=top), f"L{place} {motion.words}"]
     words = motion.words.split()
-    feed = "FMAX" if motion.is_rapid else f"F{motion.feed / feed_of('1', unit):.6g}"
+    feed = "FMAX" if motion.is_rapid else f"F{motion.word:.6g}"
     form = f"L{_form(axes, places)}"
     out = [f"{form % tuple(row)} {feed}" for row in shown]
     first = " ".join(["R0"] * ("R0" in words) + [feed, *(w for w in words if w != "R0")])

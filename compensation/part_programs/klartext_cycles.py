@@ -67,7 +67,7 @@ def defined(line: int, block: str, reading: Reading) -> Hole:
     text = _SURFACE.sub(r"\1{top}", block.replace("{", "{{").replace("}", "}}"))
     near = found["200"]
     far = max(near, found.get("204", 0.0))
-    feed = found.get("206") or reading.feed or PLUNGING
+    feed = found.get("206") or reading.feed * reading.feed_unit or PLUNGING
     return Hole(text=text, surface=found["203"], depth=-found["201"], near=near, far=far, feed=feed)
 
 

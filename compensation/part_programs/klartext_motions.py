@@ -48,9 +48,9 @@ class Modes:
         return np.array([self.pole[reading.chain.axes[k]] for k in self.plane(line, bare, reading)])
 
 
-def feed_of(word: str, unit: float) -> float:
-    """mm/min of a feed in tenths of an inch in a minute, or in mm/min."""
-    return float(word) * (1.0 if unit == 1.0 else 0.1 * unit)
+def take_feed(word: float, reading: Reading) -> None:
+    """A feed in tenths of an inch in a minute, or in mm/min."""
+    reading.feed, reading.feed_unit = word, 1.0 if reading.unit == 1.0 else 0.1 * reading.unit
 
 
 def take_functions(number: int, words: Sequence[str], reading: Reading) -> None:
@@ -134,9 +134,10 @@ class Words:
         """Feed and M functions."""
         if word in ("FMAX", "FAUTO"):
             self.is_rapid = word == "FMAX"
-            self.reading.feed = self.reading.feed if self.is_rapid else self.modes.tool_feed
+            if not self.is_rapid:
+                take_feed(self.modes.tool_feed, self.reading)
         elif _FEED.match(word):
-            self.reading.feed = feed_of(word[1:], self.reading.unit)
+            take_feed(float(word[1:]), self.reading)
         elif re.fullmatch(r"M\d+", word):
             self.functions.append(word[1:])
             self.kept.append(word)

@@ -42,6 +42,8 @@ class Reading:
         tool: Number, or name, of that in the spindle.
         more_radius: What the program adds to its radius, mm.
         side: Of the contour on which the tool goes: 1 left, -1 right, 0 on it.
+        feed: Number of the F word in force; degrees/min where axes turn alone.
+        feed_unit: One of it where linear axes move, mm/min.
     """
 
     path: Path
@@ -55,6 +57,7 @@ class Reading:
     items: list[Item | Corner] = field(default_factory=list)
     length: float = field(init=False)
     feed: float = 0.0
+    feed_unit: float = 1.0
     tcpm: bool = False
     unit: float = 1.0
     tool: int | str | None = None
@@ -124,11 +127,15 @@ class Reading:
             raise self.refusal(line, f"a tool of radius {radius:g} mm", "one above zero")
         return self.side * radius
 
-    def needed_feed(self, line: int) -> float:
-        """Feed of a motion; raises BadFile where none is in force."""
+    def needed_feed(self, line: int, is_turn: bool) -> float:
+        """Feed of a motion, mm/min, or degrees/min of axes that turn alone.
+
+        Raises:
+            BadFile: None is in force.
+        """
         if self.feed <= 0.0:
             raise self.refusal(line, "a motion without feed", "F above zero in it or before it")
-        return self.feed
+        return self.feed * (1.0 if is_turn else self.feed_unit)
 
     def move(
         self,
@@ -146,8 +153,10 @@ class Reading:
         Raises:
             BadFile: No feed, or a contour beside a tool whose radius nobody has stated.
         """
-        at = self.at if _is_finite(self.at) else np.where(np.isnan(self.at), end, self.at)
-        feed = 0.0 if is_rapid or minutes else self.needed_feed(line)
+        is_known = _is_finite(self.at)
+        at = self.at if is_known else np.where(np.isnan(self.at), end, self.at)
+        is_turn = arc is None and not np.any((end - self.at)[self.linear])
+        feed = 0.0 if is_rapid or minutes else self.needed_feed(line, is_turn)
         beside = self.beside(line) if self.side else 0.0
         motion = Motion(
             line=line,
@@ -155,6 +164,8 @@ class Reading:
             end=end,
             is_rapid=is_rapid,
             feed=feed,
+            word=self.feed,
+            is_from_known=is_known,
             tcpm=self.tcpm,
             length=self.length,
             offset=self.offset,

@@ -81,7 +81,9 @@ class Motion(NamedTuple):
         start: Program coordinates of every axis, (A,), mm and rad.
         end: The same.
         is_rapid: Whether it cuts nothing.
-        feed: mm/min, or degrees/min; 0 where it is rapid.
+        feed: mm/min, or degrees/min where axes turn alone; 0 where it is rapid.
+        word: The same as the number that the program states.
+        is_from_known: Whether the place of every axis is known where it begins.
         tcpm: Whether coordinates are those of the tool point on the turning table.
         length: Of the tool, mm.
         offset: What the program has shifted its zero by, (A,), mm; in `start` and `end` already.
@@ -100,6 +102,8 @@ class Motion(NamedTuple):
     end: Array
     is_rapid: bool
     feed: float
+    word: float
+    is_from_known: bool
     tcpm: bool
     length: float
     offset: Array
@@ -157,7 +161,10 @@ class Paths:
         start: Of every motion, (M, A), mm and rad.
         end: The same.
         arcs: Numbers of the motions that are arcs, with these.
-        travel: What their feed refers to, (M,): length in mm, degrees where axes turn alone.
+        far: Length of the way of the linear axes, (M,), mm.
+        turned: Angle of the rotary axes, (M,), degrees; the root of the sum of squares.
+        travel: What their feed refers to, (M,): `far`, or `turned` where axes turn alone, as
+            LinuxCNC counts it.
     """
 
     def __init__(self, motions: Sequence[Motion], linear: list[int]) -> None:
@@ -167,10 +174,9 @@ class Paths:
         moved = self.end - self.start
         for k, arc in self.arcs:
             moved[k, list(arc.plane)] = self.radius(k, arc) * arc.angle, 0.0
-        far = np.linalg.norm(moved[:, linear], axis=1)
-        turned = np.linalg.norm(np.delete(moved, linear, axis=1), axis=1) / DEG
-        unit = np.array([m.unit for m in motions])  # F of a turn alone is in degrees, not inches
-        self.travel = np.where(far > 0.0, far, turned * unit)
+        self.far = np.linalg.norm(moved[:, linear], axis=1)
+        self.turned = np.linalg.norm(np.delete(moved, linear, axis=1), axis=1) / DEG
+        self.travel = np.where(self.far > 0.0, self.far, self.turned)
 
     def radius(self, k: int, arc: Arc) -> float:
         """Of a motion that is an arc, mm."""

@@ -5,6 +5,7 @@ every point as it should be, as the machine makes it without and with compensati
 """
 
 from compensation.programs.compensation import TOLERANCE, Compensated, compensated, passed
+from compensation.programs.program_result_file import write_program_result
 from compensation.programs.shares_file import write_shares
 from compensation.programs.trajectory_file import write_trajectory
 
@@ -13,6 +14,7 @@ __all__ = [
     "Compensated",
     "compensated",
     "passed",
+    "write_program_result",
     "write_shares",
     "write_trajectory",
 ]

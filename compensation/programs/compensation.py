@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from compensation.field import MachineErrors, actual_tip, aligned, shifted
 from compensation.part_programs import Keep, Motion, Program
-from compensation.programs.path import ProgramPath, check_duration, distance_between
+from compensation.programs.between import off_path
+from compensation.programs.path import ProgramPath, shares_of_lines
+from compensation.programs.times import Timed, in_time
 from compensation.tables import Header, point_spacing
 from twin.errors import OutsideTravel
 from twin.frames import Array
@@ -41,10 +43,9 @@ class Compensated:
         nominal: Tool point in the table frame as it should be, (N, 3), mm.
         before: Deviation of the tool point from there without compensation, (N, 3), mm.
         after: The same with it, rounded as it was written.
-        between: Largest distance from the wanted path on the line that ends at every point, with
-            compensation, (N,), mm; NaN on rapid motions and in cycles. A control goes straight
-            from point to point, so what tables of points state is true at their points alone.
-        tolerance: Within which the middle of every line is, mm.
+        between: Largest distance of the tool point from the nominal path inside the line that ends
+            at every point, (N,), mm; nan where it is not looked at (`off_path`).
+        tolerance: That lines were divided for, mm.
         u: Standard uncertainty of both from that of the model at some points, (M,), mm.
         u_at: Those points, (M,).
         unmoved: Lines of motions that stay as they are, since no place is known there.
@@ -69,6 +70,16 @@ class Compensated:
     def is_stated(self) -> NDArray[np.bool_]:
         """Points that the program states, (N,): not those over a hole that its cycle goes to."""
         return self._ahead[self.motion] == 0
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether a motion with a feed is looked at between the ends of its lines."""
+        return bool(np.isfinite(self.between).any())
+
+    @property
+    def worst_between(self) -> float:
+        """Largest distance from the path between line ends, mm; zero where none is looked at."""
+        return float(np.nanmax(self.between)) if self.is_cut else 0.0
 
     @property
     def leans(self) -> Array:
@@ -109,19 +120,18 @@ def compensated(
     path = ProgramPath(program, errors)
     which, share, at = _divided(path, _begun(path, tolerance), tolerance)
     _shift_cycles(path, which, at)
-    written = _rounded(path, which, at)
+    done = in_time(path, which, share, path.rounded(which, at), tolerance)
+    which, share, written, _ = done
     touches = path.touches(which, share)
     q = path.readings(which, written)
     _check_travel(path, which, q)
-    if not program.language.states_time(program.path):
-        check_duration(path, which, share, written)
     nominal = tip(errors.chain, touches.q, touches.target)
     aim = nominal + path.aim
     some = np.unique(np.linspace(0, len(which) - 1, min(len(which), MOST_U)).astype(int))
     spread = aligned(nominal[some], errors.columns(touches[some])) @ errors.root
     return Compensated(
         program=program,
-        text=_text(path, head, which, share, written),
+        text=_text(path, head, done),
         motion=which,
         elapsed=touches.time - errors.state.time,
         q=touches.q,
@@ -129,7 +139,7 @@ def compensated(
         nominal=nominal,
         before=actual_tip(errors, touches) - aim,
         after=actual_tip(errors, shifted(touches, q - touches.q)) - aim,
-        between=distance_between(path, which, share, written),
+        between=off_path(path, which, share, written),
         tolerance=tolerance,
         u=np.sqrt(np.einsum("nik,nik->n", spread, spread)),
         u_at=some,
@@ -221,22 +231,6 @@ def _shares(pieces: IntArray) -> tuple[IntArray, Array]:
     return which, (number + 1.0) / pieces[which]
 
 
-def _rounded(path: ProgramPath, which: IntArray, at: Array) -> Array:
-    """Coordinates as they are written; axes that a motion does not turn stay as they were."""
-    chain = path.errors.chain
-    out = at.copy()
-    offset = path.offset[which]
-    unit = np.array([m.unit for m in path.motions])[which]
-    for axis in chain.programmed_axes:
-        k = chain.axis_index(axis)
-        is_length = chain.link(axis).kind == "linear"
-        one = unit if is_length else DEG
-        places = path.program.language.decimals(is_length, unit)
-        step = one * 10.0**-places
-        out[:, k] = np.round((at[:, k] - offset[:, k]) / step) * step + offset[:, k]
-    return out
-
-
 def _check_travel(path: ProgramPath, which: IntArray, q: Array) -> None:
     chain = path.errors.chain
     low, high = np.array([chain.link(a).range for a in chain.axes]).T
@@ -249,32 +243,26 @@ def _check_travel(path: ProgramPath, which: IntArray, q: Array) -> None:
         raise OutsideTravel(f"{message}; move the datum")
 
 
-def _text(path: ProgramPath, head: Header, which: IntArray, share: Array, written: Array) -> str:
+def _text(path: ProgramPath, head: Header, done: Timed) -> str:
     """The compensated program: its blocks in their order, every motion as its lines."""
     language = path.program.language
-    begins = np.searchsorted(which, np.arange(len(path.motions) + 1)).tolist()
-    shown = _shown(path, written - path.offset[which])
-    parts = np.diff(share, prepend=0.0)
-    parts = np.where(parts > 0.0, parts, share).tolist()
-    is_timed = path.turns & language.states_time(path.program.path)
+    begins = np.searchsorted(done.which, np.arange(len(path.motions) + 1)).tolist()
+    shown = _shown(path, done.written - path.offset[done.which])
+    parts = shares_of_lines(done.which, done.share).tolist()
     blocks: list[str] = []
-    number, feed = 0, ""  # feed: that which comes back into force behind lines that state a time
+    number = 0
     for item in path.program.items:
-        turns = isinstance(item, Motion) and bool(is_timed[number])
-        if feed and not turns:
-            blocks.append(feed)
-            feed = ""
         if isinstance(item, Keep):
             blocks.append(item.text)
-            continue
-        axes, rows = shown[item.turned]
-        own = slice(begins[number], begins[number + 1])
-        if turns:
-            blocks += [] if feed else [language.INVERSE_TIME]
-            feed = language.feed_again(item)
-            item = language.in_time(item, path.seconds[number] / MINUTE)
-        blocks += language.lines(item, axes, rows[own], parts[own])
-        number += 1
+        else:
+            axes, rows = shown[item.turned]
+            own = slice(begins[number], begins[number + 1])
+            given = item, axes, rows[own], parts[own]
+            if number in done.motions:
+                blocks += language.timed_lines(*given, path.seconds[number] / MINUTE)
+            else:
+                blocks += language.lines(*given)
+            number += 1
     start = next(k for k, block in enumerate(blocks) if not language.OPENS.match(block))
     blocks[start:start] = [*map(language.comment, head.lines()), *language.begin()]
     return str(language.listed(blocks, path.program.path))

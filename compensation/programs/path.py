@@ -1,20 +1,24 @@
-"""Every motion of a program on the machine that runs it: poses, times, what a control would do."""
+"""A part program on the machine that runs it: places, times and poses along its motions."""
 
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from compensation.field import MachineErrors, actual_tip, correction, shifted
+from compensation.field import MachineErrors, correction
 from compensation.part_programs import Paths, Program, forces
-from twin.errors import BadFile
 from twin.frames import Array
-from twin.machine import tip
 from twin.record import IntArray, Touches
 from twin.units import DEG, MINUTE
 
 RAPID = 10_000.0
 """Speed of rapid motions where a time is needed, mm/min: drift does not feel the difference."""
+
+
+def shares_of_lines(which: IntArray, share: Array) -> Array:
+    """Share of its motion that every line is, from the shares at the ends of lines, (N,)."""
+    parts = np.diff(share, prepend=0.0)
+    return np.where(np.append(True, which[1:] != which[:-1]), share, parts)
 
 
 class ProgramPath:
@@ -26,12 +30,10 @@ class ProgramPath:
         self.paths = Paths(self.motions, self.frame.linear)
         self.is_whole = np.array([m.is_rapid or m.cycle is not None for m in self.motions])
         self.offset = np.array([m.offset for m in self.motions])
+        self.is_from_known = np.array([m.is_from_known for m in self.motions])
         speed = np.array([RAPID if m.is_rapid else m.feed or np.inf for m in self.motions])
-        self.stated = np.array([m.minutes for m in self.motions])
-        self.seconds = (self.paths.travel / speed + self.stated) * MINUTE
-        moved = np.delete(self.paths.end - self.paths.start, self.frame.linear, axis=1)
-        at_a_feed = ~self.is_whole & (self.stated == 0.0) & (self.seconds > 0.0)
-        self.turns = at_a_feed & (moved != 0.0).any(axis=1)
+        stated = np.array([m.minutes for m in self.motions])
+        self.seconds = (self.paths.travel / speed + stated) * MINUTE
         self.begins = np.cumsum(self.seconds) - self.seconds
         kinds = [(m.tcpm, m.length) for m in self.motions]
         self.kinds = sorted(set(kinds))
@@ -75,6 +77,34 @@ class ProgramPath:
         added = correction(self.errors, touches, self.aim)
         return self.coordinates(which, touches.q + added)
 
+    def rounded(self, which: IntArray, at: Array) -> Array:
+        """Coordinates as they are written; axes that a motion does not turn stay as they were."""
+        chain = self.errors.chain
+        out = at.copy()
+        offset = self.offset[which]
+        unit = np.array([m.unit for m in self.motions])[which]
+        for axis in chain.programmed_axes:
+            k = chain.axis_index(axis)
+            is_length = chain.link(axis).kind == "linear"
+            one = unit if is_length else DEG
+            places = self.program.language.decimals(is_length, unit)
+            step = one * 10.0**-places
+            out[:, k] = np.round((at[:, k] - offset[:, k]) / step) * step + offset[:, k]
+        return out
+
+    def begins_at(self, which: IntArray, written: Array) -> Array:
+        """Where every line begins, in the coordinates of its own motion, (N, A).
+
+        That is where the line before has ended, whatever coordinates and tool it had; of a motion
+        from a place that is not known, where the program has it.
+        """
+        q = self.readings(which, written)
+        out = self.coordinates(which, np.vstack([q[:1], q[:-1]]))
+        is_first = np.append(True, which[1:] != which[:-1])
+        rows = np.flatnonzero(is_first & ~self.is_from_known[which])
+        out[rows] = self.paths.start[which[rows]]
+        return out
+
     def _moving(self, which: IntArray, share: Array) -> Array:
         """Sign of every axis's motion, (N, A); 0 where it stands."""
         ends = [np.clip(share + step, 0.0, 1.0) for step in (-_STEP, _STEP)]
@@ -104,77 +134,3 @@ def _feels_approach(errors: MachineErrors) -> bool:
     q = np.zeros((1, len(errors.chain.axes)))
     sides = [errors.contribution(errors.touches(q, 0.0, np.full_like(q, s))) for s in (1.0, -1.0)]
     return not np.array_equal(sides[0].twist, sides[1].twist)
-
-
-SAMPLES = (0.25, 0.5, 0.75)
-"""Of a line, where the path between its ends is looked at: its middle was what divided it."""
-
-
-def distance_between(path: ProgramPath, which: IntArray, share: Array, written: Array) -> Array:
-    """Largest distance from the wanted path between the ends of every line, (N,), mm.
-
-    The control moves the programmed coordinates in proportion from one end to the other. What it
-    is off along the wanted path is time, not shape, and does not count.
-    """
-    out = np.full(len(which), np.nan)
-    rows = np.flatnonzero(~path.is_whole[which])
-    rows = rows[rows > 0]
-    first = np.where(which[rows] == which[rows - 1], share[rows - 1], 0.0)
-    motion, worst = which[rows], np.zeros(len(rows))
-    for s in SAMPLES:
-        at = first + s * (share[rows] - first)
-        wanted = path.touches(motion, at)
-        q = path.readings(motion, written[rows - 1] + s * (written[rows] - written[rows - 1]))
-        nominal = tip(path.errors.chain, wanted.q, wanted.target)
-        off = actual_tip(path.errors, shifted(wanted, q - wanted.q)) - nominal - path.aim
-        ahead = path.readings(motion, path.paths.at(motion, np.minimum(at + _STEP, 1.0)))
-        along = tip(path.errors.chain, ahead, wanted.target) - nominal
-        length = np.linalg.norm(along, axis=1, keepdims=True)
-        along = np.divide(along, length, out=np.zeros_like(along), where=length > 1e-12)
-        off -= np.sum(off * along, axis=1, keepdims=True) * along
-        worst = np.maximum(worst, np.linalg.norm(off, axis=1))
-    out[rows] = worst
-    return out
-
-
-SAME_TIME = 0.01
-"""Share by which the duration of a line may change, whatever its feed refers to."""
-
-
-def check_duration(path: ProgramPath, which: IntArray, share: Array, written: Array) -> None:
-    """Refuse lines whose duration compensation would change on a control that no time is stated to.
-
-    Beside turning axes a feed refers to the path of the linear axes (LinuxCNC) or to the root of
-    the sum of squares of mm and degrees (Fanuc); a correction of 0.1 mm that comes to a turn by
-    90 degrees makes it one of 0.1 mm. A line passes where both lengths stay what they were.
-
-    Raises:
-        BadFile: With the line of the program.
-    """
-    linear = path.frame.linear
-    wanted = path.paths.at(which, share)
-    is_first = np.append(True, which[1:] != which[:-1])
-    starts = [np.roll(v, 1, axis=0) for v in (wanted, written)]
-    begins = path.paths.start[which]
-    starts[0][is_first] = begins[is_first]
-    is_new = is_first & (np.abs(np.roll(wanted, 1, axis=0) - begins).max(axis=1) > 1e-6)
-    is_new[0] = True
-    starts[1][is_new] = begins[is_new]
-    lengths = []
-    for end, start in zip((wanted, written), starts, strict=True):
-        moved = end - start
-        far = np.linalg.norm(moved[:, linear], axis=1)
-        turned = np.linalg.norm(np.delete(moved, linear, axis=1), axis=1) / DEG
-        lengths.append([np.bincount(which, v) for v in (far, np.hypot(far, turned))])
-    (far, both), (far_now, both_now) = lengths
-    is_same = (abs(far_now - far) <= SAME_TIME * far) & (abs(both_now - both) <= SAME_TIME * both)
-    changed = np.flatnonzero(path.turns & ~is_same)
-    if len(changed):
-        motion = path.motions[changed[0]]
-        raise BadFile(
-            path.program.path,
-            f"line {motion.line}",
-            f"a turn of {', '.join(motion.turned)} at a feed, beside which a correction of the "
-            f"linear axes would change what F refers to",
-            path.program.language.TIMED,
-        )

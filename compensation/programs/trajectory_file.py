@@ -12,8 +12,7 @@ from twin.units import DEG, UM
 def write_trajectory(path: str | Path, done: Compensated) -> None:
     """Write the table: lines, times, readings, what is added to them, nominal points, deviations.
 
-    Lengths in mm, angles in degrees, additions and deviations in µm (µm of linear axes);
-    `between_um` is the largest distance from the wanted path on the line that ends there.
+    Lengths in mm, angles in degrees, additions and deviations in µm (µm of linear axes).
     """
     frame = done.program.frame
     chain = frame.chain
@@ -23,7 +22,8 @@ def write_trajectory(path: str | Path, done: Compensated) -> None:
     names = ["line", "time_s"]
     names += [f"{a}_{'deg' if chain.link(a).kind == 'rotary' else 'mm'}" for a in axes]
     names += [f"added_{a}_um" for a in "XYZ"] + [f"{c}_mm" for c in "xyz"]
-    names += [f"{when}_d{c}_um" for when in ("before", "after") for c in "xyz"] + ["between_um"]
+    names += [f"{when}_d{c}_um" for when in ("before", "after") for c in "xyz"]
+    names += ["between_um"]
     lines = np.array([m.line for m in done.program.motions])[done.motion]
     table = np.column_stack(
         [

@@ -1,7 +1,7 @@
 """Tables of errors by their ISO 230-1 names, as controls with a volumetric model hold them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,12 +33,25 @@ class NamedTables:
         nodes: Readings of the points by axis, ascending, (n,), mm or rad.
         values: Component errors there, (n, 6), mm and rad.
         place: Location errors of every link, (L, 6), mm and rad.
+        only_own: Whether every axis's own positioning error is all that they hold.
     """
 
     chain: Chain
     nodes: Mapping[str, Array]
     values: Mapping[str, Array]
     place: Array
+    only_own: bool = False
+
+    def holds(self, axis: str) -> Array:
+        """Which components of an axis they hold, (6,): 1 or 0."""
+        own = self.chain.link(axis).own_component
+        return np.eye(6)[own] if self.only_own else np.ones(6)
+
+    def positioning(self) -> "NamedTables":
+        """The positioning errors of these alone."""
+        own = replace(self, place=np.zeros_like(self.place), only_own=True)
+        values = {axis: rows * own.holds(axis) for axis, rows in self.values.items()}
+        return replace(own, values=values)
 
     def contribution(self, touches: Touches) -> Contribution:
         """What the control believes of its axes."""
@@ -161,7 +174,7 @@ def interpolation_bound(
     for axis, nodes in tables.nodes.items():
         low, high = nodes[0], nodes[-1]
         between = np.linspace(low, high, 2 * BETWEEN * (len(nodes) - 1) + 1)
-        true = _twist(errors, datum, axis, between)
+        true = _twist(errors, datum, axis, between) * tables.holds(axis)
         missed = _missed(between, true, nodes, tables.values[axis])
         total += float(missed @ lever[tables.chain.link_index(axis)])
     return total
@@ -176,13 +189,14 @@ def unheld_by_name(
     """
     chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
     out = errors.columns(touches)
-    at_datum = errors.amounts(there, "place", range(len(chain.links)))[0]
-    out -= np.einsum("nlcx,lcp->nxp", touches.reach.place, at_datum)
+    if not tables.only_own:
+        at_datum = errors.amounts(there, "place", range(len(chain.links)))[0]
+        out -= np.einsum("nlcx,lcp->nxp", touches.reach.place, at_datum)
     for axis, nodes in tables.nodes.items():
         i = chain.link_index(axis)
         held = errors.amounts(line(errors, datum, axis, nodes), "twist", (i,))[:, i]  # (n, 6, P)
         at = on_table(touches.reading(axis), nodes, chain.link(axis))
-        read = interpolated(at, nodes, held)
+        read = interpolated(at, nodes, held * tables.holds(axis)[:, None])
         out -= np.einsum("ncx,ncp->nxp", touches.reach.twist[:, i], read)
     return out
 

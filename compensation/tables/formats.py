@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from compensation.field import Datum, MachineErrors, Result, result_of, rms
-from compensation.tables import iso_csv, linuxcnc_comp, sinumerik_cec
+from compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
 from compensation.tables.acceptance import Acceptance, acceptance
 from compensation.tables.along_axes import (
     WORTH,
@@ -96,6 +96,10 @@ def _comp(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
     return harmless(along_axes(errors, datum, linuxcnc_comp.MOST_POINTS, False), errors, datum, q)
 
 
+def _com(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
+    return sampled(errors, datum, heidenhain_com.MOST_POINTS).positioning()
+
+
 FORMATS: Mapping[str, Format] = {
     f.name: f
     for f in (
@@ -107,6 +111,7 @@ FORMATS: Mapping[str, Format] = {
         ),
         Format("sinumerik", _cec, sinumerik_cec.write, sinumerik_cec.read),
         Format("linuxcnc", _comp, linuxcnc_comp.write, linuxcnc_comp.read),
+        Format("heidenhain", _com, heidenhain_com.write, heidenhain_com.read),
     )
 }
 """By the word of the command line, that which holds most first."""

@@ -7,7 +7,6 @@ import numpy as np
 
 from artefact.body import Standard
 from probe_paths.language import (
-    ANGLE_LIMIT,
     LANGUAGES,
     MAX_LINE,
     TOOL_LENGTH,
@@ -21,6 +20,7 @@ from probe_paths.language import (
     Touch,
     interlocks,
     parse_mask,
+    turn_tests,
 )
 from probe_paths.plan import (
     LINEAR,
@@ -275,12 +275,10 @@ class Writer:
 
     def _reached(self, rotary: Array) -> list[str]:
         """Test that the rotary axes stand where they were sent."""
-        out = [self.language.WAIT]
-        for letter, value in self._words(rotary).items():
-            what = f"turn of {letter}"
-            datum, limit = Datum(letter), ANGLE_LIMIT
-            out += self._tested(Interlock(Label.TURNED, what, datum, None, value, limit))
-        return out
+        words = self._words(rotary)
+        tests = turn_tests(self.language, self.frame)
+        planned = (test._replace(planned=words[str(test.datum)]) for test in tests)
+        return [self.language.WAIT, *(block for test in planned for block in self._tested(test))]
 
     def _flat(self) -> list[str]:
         """End of a tilted plane, before the table turns."""

@@ -16,7 +16,7 @@ from probe_paths.language.dialect import (
     Q,
 )
 from probe_paths.language.dialect_file import read_dialect
-from probe_paths.language.interlock import ANGLE_LIMIT, Interlock, interlocks, turn_tests
+from probe_paths.language.interlock import Interlock, interlocks, turn_tests
 from probe_paths.language.language import Datum, Says, Touch
 from probe_paths.language.languages import LANGUAGES, language_of, read_blocks
 from probe_paths.language.masks import (
@@ -30,7 +30,6 @@ from probe_paths.language.masks import (
 from probe_paths.language.text import MAX_LINE, checked_name
 
 __all__ = [
-    "ANGLE_LIMIT",
     "FREE",
     "LANGUAGES",
     "LOG_HEAD",

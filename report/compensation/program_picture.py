@@ -31,10 +31,14 @@ def draw_program(path: str | Path, done: Compensated) -> None:
     t = done.elapsed[rows] / MINUTE
     for field, colour, label in (
         (done.before, RED, "without"),
-        (done.after, BLUE, "with compensation"),
+        (done.after, BLUE, "with compensation, at line ends"),
     ):
         size = np.linalg.norm(field[rows], axis=1) / UM
         right.plot(t, np.maximum(size, 1e-3), color=colour, lw=1.2, label=label)
+    if done.is_cut:
+        between = np.maximum(done.between[rows] / UM, 1e-3)
+        right.plot(t, between, color=BLUE, lw=0.8, alpha=0.5, label="between line ends")
+        right.axhline(done.tolerance / UM, color=FAINT, lw=0.8, label="lines divided for")
     if done.u.any():
         at = done.elapsed[done.u_at] / MINUTE
         right.plot(at, done.u / UM, ":", color=INK, lw=1.2, label="not known by the model (u)")

@@ -20,16 +20,19 @@ def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
     yield f"{name}: {motions} motions as {points} lines", True
     before, after = (rms(field[done.is_stated]) / UM for field in (done.before, done.after))
     worst = np.linalg.norm(done.after[done.is_stated], axis=1).max() / UM
-    words = f"tool point at the ends of lines {digits(before)} -> {digits(after)} µm rms"
+    words = f"tool point at line ends {digits(before)} -> {digits(after)} µm rms"
     words += f" (worst {digits(worst)} µm)"
     if done.u.any() and rms(done.u[:, None]) > NM:
         words += f"; the model is known to {digits(rms(done.u[:, None]) / UM, 2)} µm there"
     yield f"- {words}", False
-    between = done.between[~np.isnan(done.between)]
-    if len(between):
-        usual, most = (digits(v / UM) for v in (rms(between[:, None]), between.max()))
-        words = f"- between the ends, off the wanted path: {usual} µm rms (worst {most} µm); the "
-        yield f"{words}middle is within {digits(done.tolerance / UM)} µm (--tolerance)", False
+    if done.is_cut:
+        row = int(np.nanargmax(done.between))
+        words = f"between line ends up to {digits(done.worst_between / UM)} µm off the path"
+        words += f" (line {done.program.motions[done.motion[row]].line})"
+        words += f"; divided until {digits(done.tolerance / UM)} µm are left"
+        if done.worst_between > done.tolerance:
+            words += ", but where a reversal or a load changes the correction at once"
+        yield f"- {words}", False
     if len(done.leans):
         most = digits(done.leans.max() / UM)
         yield (

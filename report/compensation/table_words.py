@@ -13,6 +13,7 @@ _TITLES = {
     "iso230": "ISO 230 names (ISG kernel, TwinCAT CNC)",
     "sinumerik": "Sinumerik CEC",
     "linuxcnc": "LinuxCNC COMP_FILE",
+    "heidenhain": "iTNC 530 positioning tables (.COM)",
 }
 
 TOLD = 5

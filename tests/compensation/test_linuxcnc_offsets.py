@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bench import LENGTH
-from linuxcnc_rig import AXES, AXIS, HAL, INI, a_user
+from control import AXES, AXIS, INI, a_user
 
 from compensation.field.machine_errors import MachineErrors
 from compensation.linuxcnc.control_files import SOCKET, Control, write_control_files
@@ -34,6 +34,35 @@ LATCH = 0.5 * UM
 """0.1 mm/s in a servo period, and as much again where the rig's own loop is late."""
 
 LIMITS = OutputLimits(most=200.0 * UM, rate=RATE, patience=0.3, hold=1.0)
+HAL = """loadrt [KINS]KINEMATICS
+loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
+loadrt comp count=2
+loadrt or2 count=1
+loadrt sampler depth=16000 cfg=fffbfffb
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+addf comp.0 servo-thread
+addf comp.1 servo-thread
+addf or2.0 servo-thread
+addf sampler.0 servo-thread
+setp comp.0.in0 1e6
+setp comp.1.in1 -1e6
+net position-0 joint.0.motor-pos-cmd => joint.0.motor-pos-fb comp.0.in1 sampler.0.pin.0
+net position-1 joint.1.motor-pos-cmd => joint.1.motor-pos-fb
+net position-2 joint.2.motor-pos-cmd => joint.2.motor-pos-fb comp.1.in0 sampler.0.pin.1
+net position-3 joint.3.motor-pos-cmd => joint.3.motor-pos-fb
+net position-4 joint.4.motor-pos-cmd => joint.4.motor-pos-fb
+net on-x comp.0.out => or2.0.in0
+net on-z comp.1.out => or2.0.in1
+net contact or2.0.out => motion.probe-input sampler.0.pin.3
+net offset-x axis.x.eoffset => sampler.0.pin.2
+net program-z axis.z.pos-cmd => sampler.0.pin.6
+net limited motion.eoffset-limited => sampler.0.pin.7
+net program-x axis.x.pos-cmd => sampler.0.pin.4
+net stop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
+net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
+net change iocontrol.0.tool-change => iocontrol.0.tool-changed
+"""
 
 
 def errors_of(chain):
@@ -84,7 +113,11 @@ def rows(bench_chain, datum):
     user = a_user()
     folder = Path(tempfile.mkdtemp(prefix="matstd-offsets-"))
     axes = [AXIS.format(a, i, low, high, kind) for i, (a, low, high, kind) in enumerate(AXES)]
-    texts = {"machine.ini": INI + "".join(axes), "machine.hal": HAL, "tool.tbl": "T1 P1 Z0 D1\n"}
+    texts = {
+        "machine.ini": INI.replace("#more", "HALFILE = corrector.hal") + "".join(axes),
+        "machine.hal": HAL,
+        "tool.tbl": "T1 P1 Z0 D1\n",
+    }
     for name, text in texts.items():
         (folder / name).write_text(text)
     (folder / "machine.var").write_text("")

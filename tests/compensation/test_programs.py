@@ -354,7 +354,7 @@ def test_command(bench, errors_file, tmp_path, capsys):
     said = capsys.readouterr().out
     assert "better.ngc: 3 motions as" in said
     names = {p.name for p in output.parent.iterdir()}
-    assert names == {"better.ngc", "better.csv", "better.png"}
+    assert names == {"better.ngc", "better.csv", "better.png", "better.json"}
     table = np.genfromtxt(output.with_suffix(".csv"), delimiter=",", names=True)
     assert set(table["line"]) == {1, 2, 3}
     before = np.hypot(table["before_dx_um"], table["before_dy_um"])
@@ -365,110 +365,3 @@ def test_command(bench, errors_file, tmp_path, capsys):
     again = [w if w != str(source) else str(output) for w in command[:-1]]
     assert main([*again, str(tmp_path / "twice.ngc")]) == 2
     assert "that was not compensated before" in capsys.readouterr().err
-
-
-# --- times of turning lines -------------------------------------------------------------------
-
-TURNS = """G21 G90 G94 G54
-G0 X0 Y0 Z50 B0 C0
-G1 C90 F720
-G1 X20 C0
-G1 X20.5 B-30 F300
-G1 X60 F1500
-G93 G1 X0 C45 F4
-G94 G1 C0 F360 M8 (slow F99)
-G0 C30
-G2 X20 Y0 I10 J0 C60 F600
-M30
-"""
-
-
-def canonical_minutes(text, folder):
-    """Minutes of every feed motion by LinuxCNC's own interpreter and the rule of its manual.
-
-    A feed refers to the path of X, Y and Z; to degrees where none of them moves.
-    """
-    (folder / "tool.tbl").write_text("T3 P3 Z160.0 D6.0\n")
-    (folder / "a.var").write_text("")
-    (folder / "A.ngc").write_text(text)
-    command = ["rs274", "-t", "tool.tbl", "-v", "a.var", "-g", "A.ngc"]
-    out = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, timeout=60, check=True
-    ).stdout
-    feed, at, minutes = 0.0, np.zeros(6), []
-    pattern = r"(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED|SET_FEED_RATE)\((.*)\)"
-    for found in re.finditer(pattern, out):
-        name, numbers = found[1], [float(v) for v in found[2].split(",")]
-        if name == "SET_FEED_RATE":
-            feed = numbers[0]
-            continue
-        if name == "ARC_FEED":
-            # end in the plane, centre in the plane, turns, height, then A, B, C
-            end = np.array([*numbers[:2], numbers[5], *numbers[6:9]])
-            radius = np.hypot(*(at[:2] - numbers[2:4]))
-            chord = np.hypot(*(end[:2] - at[:2]))
-            far = radius * 2.0 * np.arcsin(min(chord / (2.0 * radius), 1.0))
-        else:
-            end = np.array(numbers[:6])
-            far = np.linalg.norm((end - at)[:3])
-        if name != "STRAIGHT_TRAVERSE":
-            far = far if far > 1e-9 else np.linalg.norm((end - at)[3:])
-            minutes.append(far / feed)
-        at = end
-    return np.array(minutes)
-
-
-@is_there
-def test_turns_keep_their_duration_on_linuxcnc(known, frame, head, tmp_path):
-    """8 s of G1 C90 F720 were 1.5 s at the joint's limit: F was taken for the path of 0.1 mm."""
-    part = program(TURNS, frame, tmp_path, "turns.ngc")
-    made = compensated(part, known, head, TOLERANCE)
-    theirs = canonical_minutes(TURNS, tmp_path)
-    ours = canonical_minutes(made.text, tmp_path)
-    motion = np.array([k for k in made.motion if not part.motions[k].is_rapid])
-    per_motion = np.bincount(motion, ours)[np.unique(motion)]
-    np.testing.assert_allclose(per_motion, theirs, rtol=0.01)  # it prints 0.1 µm
-    np.testing.assert_allclose(theirs[0], 90.0 / 720.0)
-    assert "(slow F99)" in made.text
-    assert made.text.count("G93") == made.text.count("G94")
-
-
-@pytest.mark.parametrize(
-    ("name", "text", "line"),
-    [
-        ("a.H", "0 BEGIN PGM A MM\n1 L X+0 Y+0 Z+50 B+0 C+0 FMAX\n2 L C+90 F720\n", 3),
-        ("a.nc", "G0 X0 Y0 Z50 B0 C0\nG1 X300 C10 F800\nG1 C90 F720\n", 3),
-        ("a.tap", "G0 X0 Y0 Z50 B0 C0\nG1 X0.5 C90 F720\n", 2),
-    ],
-)
-def test_a_turn_whose_feed_would_change_its_meaning_is_refused(
-    known, frame, head, tmp_path, name, text, line
-):
-    part = program(text, frame, tmp_path, name)
-    with pytest.raises(BadFile, match=rf"line {line}: found a turn of C at a feed"):
-        compensated(part, known, head, TOLERANCE)
-    rapid = text.replace("G1 C90 F720", "G0 C90").replace("C+90 F720", "C+90 FMAX")
-    rapid = rapid.replace("G1 X0.5 C90 F720", "G93 G1 X0.5 C90 F8")
-    compensated(program(rapid, frame, tmp_path, f"b{name}"), known, head, TOLERANCE)
-
-
-def test_the_path_between_the_ends_of_lines_is_stated(known, frame, head, done, tmp_path):
-    """Against a loop over one long line, on the second model of the machine."""
-    text = "G0 X-300 Y-100 Z20 B0 C0\nG1 X300 Y120 Z-10 F2000\n"
-    made = compensated(program(text, frame, tmp_path), known, head, TOLERANCE)
-    rows = np.flatnonzero(made.motion == 1)
-    written = coordinates(made.text)[1:]
-    assert len(rows) == len(written)
-    start, end = np.array([-300.0, -100.0, 20.0]), np.array([300.0, 120.0, -10.0])
-    along = (end - start) / np.linalg.norm(end - start)
-    before = coordinates(made.text)[:-1]
-    worst = np.zeros(len(rows))
-    for s in (0.25, 0.5, 0.75):
-        real = actual(before + s * (written - before), frame)
-        worst = np.maximum(worst, np.linalg.norm(np.cross(real - start, along), axis=1))
-    np.testing.assert_allclose(made.between[rows], worst, atol=2 * NM)
-    ends = np.linalg.norm(made.after[rows], axis=1).max()
-    assert ends < made.between[rows].max() < TOLERANCE
-    arcs = done["part.ngc"]  # their chords are as high as the tolerance lets them be
-    assert 0.4 * TOLERANCE < np.nanmax(arcs.between) < 1.3 * TOLERANCE
-    assert np.isnan(made.between[0])  # a rapid motion

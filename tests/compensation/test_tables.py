@@ -19,7 +19,7 @@ from twin.errors import BadFile
 from twin.files.machine_file import read_machine
 from twin.library.catalogue import parse_effect
 from twin.machine.chain import Axis, make_chain
-from twin.units import NM, UM, URAD
+from twin.units import DEG, NM, UM, URAD
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +77,37 @@ def test_iso_names_and_units(written):
     c = columns(written / "iso230" / "iso230.csv", "C EXC")
     assert (c[0, 0], c[-1, 0]) == (0.0, 360.0)
     np.testing.assert_allclose(c[len(c) // 4, [1, 6]], [0.008, 30e-6], atol=1e-9)
+
+
+def test_com_tables_have_the_error_of_each_axis(bench_chain, datum, head, poses, tmp_path):
+    """EXX of 12 um at the ends, ECC of 30 urad at 90 degrees; nothing of reversal and EC0Y."""
+    effects = [("geometric(EXX,linear)", 12 * UM), ("backlash(X)", 8 * UM)]
+    effects += [("geometric(ECC,sinusoidal)", 30 * URAD), ("location(EC0Y)", 45 * URAD)]
+    pairs = [(parse_effect(name, bench_chain), np.array([a])) for name, a in effects]
+    errors = MachineErrors.of_errors(bench_chain, pairs)
+    write_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses)
+    assert {p.name for p in tmp_path.iterdir()} == {f"{axis}.COM" for axis in "XYZBC"}
+    x = columns(tmp_path / "X.COM", "NR AXISPOS X")
+    np.testing.assert_allclose(x[[0, -1], 1:], [[-400, -0.012], [400, 0.012]], atol=6e-5)
+    c = columns(tmp_path / "C.COM", "NR AXISPOS C")
+    at = np.flatnonzero(c[:, 1] == 90.0)[0]
+    np.testing.assert_allclose(c[at, 2], 30e-6 / DEG, atol=1e-6)
+    assert not columns(tmp_path / "Y.COM", "NR AXISPOS Y")[:, 2].any()  # EC0Y is in no .COM
+
+
+def test_com_tables_are_credited_with_positioning_alone(bench_chain, datum, head, poses, tmp_path):
+    """Of an axis's own error little is left, of its angles and of lines of rotary axes all."""
+    for name, size, share in (
+        ("geometric(EXX,linear)", 30 * UM, 0.01),
+        ("geometric(EZX,2)", 20 * UM, 1.0),
+        ("location(EA0C)", 35 * URAD, 1.0),
+    ):
+        effect = parse_effect(name, bench_chain)
+        theta = np.full(len(effect.parameters), size)
+        errors = MachineErrors.of_errors(bench_chain, [(effect, theta)])
+        write_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses)
+        found = play_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses).result
+        np.testing.assert_allclose(rms(found.after), share * rms(found.before), atol=0.2 * UM)
 
 
 def test_comp_file_adds_what_the_axis_lacks_in_each_direction(
@@ -144,7 +175,10 @@ def test_cec_is_exact_along_the_axes(known, datum, head, poses, bench_chain, tmp
 
 
 def test_formats_hold_less_and_less(results):
-    left = [rms(results[name].result.after) for name in ("iso230", "sinumerik", "linuxcnc")]
+    left = [
+        rms(results[name].result.after)
+        for name in ("iso230", "sinumerik", "linuxcnc", "heidenhain")
+    ]
     assert left == sorted(left)
     assert left[1] < 0.5 * rms(results["sinumerik"].result.before)
 
@@ -271,7 +305,7 @@ def test_the_sign_switch_turns_every_value(
     assert found == head
     touches = known.touches(poses[:8], LENGTH)
     np.testing.assert_allclose(theirs.correction(touches), mine.correction(touches), atol=1 * NM)
-    table = {"iso230": "iso230.csv", "sinumerik": "NC_CEC.INI"}
+    table = {"iso230": "iso230.csv", "heidenhain": "X.COM", "sinumerik": "NC_CEC.INI"}
     file = table.get(name, "X.comp")
     assert (tmp_path / file).read_text() != (written / name / file).read_text()
 
@@ -282,7 +316,7 @@ def test_the_one_point_test_tells_a_wrong_sign(results, name):
     change = test.with_table - test.without
     np.testing.assert_allclose(test.wrong_sign - test.without, -change, atol=0.1 * UM)
     assert np.abs(change).max() > 20 * UM
-    if name != "linuxcnc":
+    if name in ("iso230", "sinumerik"):
         assert np.linalg.norm(test.with_table) < 0.2 * np.linalg.norm(test.without)
 
 
@@ -334,7 +368,6 @@ def test_commands(bench, errors_file, tmp_path, capsys):
         (["--within", "X=5"], "such as X=-100:100"),
         (["--within", "X=9:3"], "the smaller end first"),
         (["--control", "fanuc"], "control fanuc: expected one of iso230"),
-        (["--control", "heidenhain"], "control heidenhain: withdrawn"),
         (["--switch", "EQQ=0"], "expected one of"),
         (["--switch", "all=0"], "no error of an axis is known and switched on"),
         (["--temperature", "bed=warm"], "--temperature bed=warm"),

@@ -15,6 +15,7 @@ from probe_paths.campaign.virtual_run import run_programs
 from probe_paths.control.interpreter import interpret
 from probe_paths.control.log import read_log
 from probe_paths.control.steps import Halt, Move, Print, ProbeStep
+from probe_paths.emit.program import make_dry_run
 from probe_paths.language import gcode
 from probe_paths.language.dialect_file import read_dialect
 from probe_paths.language.languages import read_blocks
@@ -178,8 +179,8 @@ def test_every_line_that_is_lost_is_noticed_or_a_remark(made, chain):
     lines = made.programs[1].text.splitlines()
     code = [i for i, line in enumerate(lines) if not line.startswith(";")]
     silent = [lines[i] for i in code if _is_taken(lines[:i] + lines[i + 1 :], chain)]
-    # these the control or the operator does not need, or a move or touch follows all the same; B and C
-    # stand at zero where their zero is tested, and the number before is zero too
+    # these the control or the operator does not need, or a move or touch follows all the same; B
+    # and C stand at zero where their zero is tested, and the number before is zero too
     for line in silent:
         assert re.match(r"M66 E0 L0$|M0$|G0 |G53 G0 Z|#1614 = #<_abs_[bc]>", line), line
     assert sum(line.startswith("#1614") for line in silent) <= 2
@@ -279,3 +280,40 @@ def test_linuxcnc_stops_where_a_turn_ended_elsewhere(made, tmp_path):
     done = rs274.interpreted(wrapped, tmp_path)
     assert "STRAIGHT_PROBE" not in done
     assert "(ABORT,1011)" in done
+
+
+def fed_turns(text, folder):
+    """By LinuxCNC: ways of X, Y, Z, turned angle and F of every fed line that turns an axis."""
+    at, feed, out = None, 0.0, []
+    for name, words in re.findall(r"([A-Z_]+)\((.*)\)", rs274.interpreted(text, folder)):
+        if name == "SET_FEED_RATE":
+            feed = float(words)
+        elif name.startswith("STRAIGHT_"):
+            new = np.array([float(v) for v in words.split(",")])
+            if name != "STRAIGHT_TRAVERSE" and at is not None and np.any((new - at)[3:]):
+                out.append((np.abs(new - at)[:3].max(), np.linalg.norm((new - at)[3:]), feed))
+            at = new
+    return np.array(out)
+
+
+@rs274.is_there
+def test_fed_turns_move_rotary_axes_alone(made, plan, tmp_path):
+    """F is then degrees a minute, on LinuxCNC as on the iTNC: 1000 of them, whatever the way."""
+    found = {p.name: rs274.all_met(p.text) for p in made.programs}
+    dry = make_dry_run(plan, 100.0, read_dialect("linuxcnc"))
+    found |= {p.name: rs274.all_met(p.text) for p in dry.programs}
+    turns = [fed_turns(text, tmp_path) for text in found.values()]
+    assert sum(map(len, turns)) > 10
+    for far, turned, feed in np.vstack([t for t in turns if len(t)]):
+        assert far == 0.0
+        assert feed == 1000.0
+        assert turned > 0.0
+
+
+def test_fed_turns_of_klartext_name_rotary_axes_alone(golden):
+    """Blocks with a feed and a rotary axis; the manual counts F in degrees a minute there."""
+    blocks = [b for p in golden.programs("itnc530").programs for b in p.text.splitlines()]
+    turns = [b for b in blocks if re.search(r" L .*[ABC][+-]\d.* F\d", b)]
+    assert len(turns) >= 10
+    for block in turns:
+        assert not re.search(r"[XYZ][+-]?\d", block)

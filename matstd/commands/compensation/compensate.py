@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         action="append",
         default=[],
-        help="only tables of this control: iso230, sinumerik, linuxcnc",
+        help="only tables of this control: iso230, sinumerik, linuxcnc, heidenhain",
     )
     parser.add_argument(
         "--opposite",
@@ -74,7 +74,12 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     from dataclasses import replace
 
     from compensation.part_programs import Frame, read_loads, read_part_program
-    from compensation.programs import TOLERANCE, compensated, write_trajectory
+    from compensation.programs import (
+        TOLERANCE,
+        compensated,
+        write_program_result,
+        write_trajectory,
+    )
     from matstd.commands.compensation.job import by_tool
     from matstd.console import say
     from report.compensation import draw_program, program_lines
@@ -82,7 +87,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     from twin.units import UM
 
     output = Path(args.output)
-    beside = [output.with_suffix(ending) for ending in (".csv", ".png")]
+    beside = [output.with_suffix(ending) for ending in (".csv", ".png", ".json")]
     for path in (output, *beside):
         refuse_to_overwrite(path, args.force)
     frame = Frame(job.errors.chain, job.datum)
@@ -100,10 +105,11 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     done = compensated(program, job.errors, job.header(1), tolerance)
     write_trajectory(beside[0], done)
     draw_program(beside[1], done)
+    write_program_result(beside[2], done)
     write_whole(output, done.text)
     for line, is_first in program_lines(output.name, done):
         say(line, style="bold" if is_first else None)
-    say(f"{output}: look at {beside[0].name}, {beside[1].name} beside it")
+    say(f"{output}: look at {', '.join(path.name for path in beside)} beside it")
     return 0
 
 
@@ -151,12 +157,6 @@ def _controls(names: list[str]) -> list[str]:
     from compensation.tables import FORMATS
 
     for name in names:
-        if name == "heidenhain":
-            raise DesignError(
-                "control heidenhain: withdrawn, since nothing confirms how the control reads the "
-                "rows of its kinematic table; --control iso230 lists every error by its ISO 230-1 "
-                "name, --program IN.H compensates part programs"
-            )
         if name not in FORMATS:
             raise DesignError(f"control {name}: expected one of {', '.join(FORMATS)}")
     return list(dict.fromkeys(names))

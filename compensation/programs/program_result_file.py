@@ -1,0 +1,40 @@
+"""What a compensated program leaves, as JSON ("compensated-program/1")."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from compensation.field import rms
+from compensation.programs.compensation import Compensated
+from twin.files import write_whole
+from twin.units import UM
+
+FORMAT = "compensated-program/1"
+
+
+def write_program_result(path: str | Path, done: Compensated) -> None:
+    """Write its figures, µm."""
+    ends = {"before": done.before[done.is_stated], "after": done.after[done.is_stated]}
+    data = {
+        "format": FORMAT,
+        "program": done.program.path.name,
+        "motions": len(done.program.motions),
+        "lines": len(done.q),
+        "seconds": round(float(done.elapsed[-1]), 3),
+        "divided_for_um": _um(done.tolerance),
+        "at_line_ends": {
+            key: {"rms_um": _um(rms(v)), "worst_um": _um(np.linalg.norm(v, axis=1).max())}
+            for key, v in ends.items()
+        },
+        "between_line_ends": {"worst_um": _um(done.worst_between) if done.is_cut else None},
+        "model_u_um": _um(rms(done.u[:, None])),
+        "largest_correction_um": _um(np.abs(done.added[:, done.program.frame.linear]).max()),
+        "lines_left_as_they_are": list(done.unmoved),
+    }
+    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+
+
+def _um(value: float) -> float:
+    """In µm to a nanometre."""
+    return round(float(value) / UM, 3) + 0.0

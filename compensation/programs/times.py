@@ -1,0 +1,180 @@
+"""Lines with rotary axes take the time that the program gives them.
+
+F of a line that turns axes alone is degrees a minute; as soon as a linear axis moves, and be it by
+the micrometre of a correction, it is millimetres a minute of that way (LinuxCNC; Fanuc adds degrees
+to millimetres). Such lines are written in inverse time.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from compensation.programs.path import ProgramPath, shares_of_lines
+from twin.errors import BadFile
+from twin.frames import Array
+from twin.record import IntArray
+from twin.units import DEG, MINUTE
+
+SAME = 0.02
+"""Of the way of the linear axes: by less a correction changes no feed that anybody sets."""
+
+LIKE = 0.05
+"""Of the time of a line: by less the controls agree in how they count F of lines that do both."""
+
+SLOWEST = 0.1
+"""LinuxCNC runs no line of inverse time slower, mm/min or degrees/min (inches in inches); with 1 µm
+of correction in 6 s it would be faster than it was."""
+
+MARGIN = 1.2
+"""Times `SLOWEST`, as what lines are written: coordinates are rounded to 10 nm."""
+
+HELD = 0.1
+"""Of the tolerance: a smaller change of the correction waits for the next line."""
+
+
+class Timed(NamedTuple):
+    """Ends of lines, and the motions among them that are written in inverse time.
+
+    Attributes:
+        which: Motion of every line, (N,).
+        share: Of its motion that is done at its end, (N,).
+        written: Program coordinates, rounded, (N, A).
+        motions: Numbers of those of which F alone would change the time.
+    """
+
+    which: IntArray
+    share: Array
+    written: Array
+    motions: frozenset[int]
+
+
+def in_time(
+    path: ProgramPath, which: IntArray, share: Array, written: Array, tolerance: float
+) -> Timed:
+    """Keep the time of every line that turns an axis.
+
+    Args:
+        path: The program.
+        which: Motion of every line, (N,).
+        share: Of its motion at its end, (N,).
+        written: Where it ends, program coordinates, rounded, (N, A).
+        tolerance: By which corrections may lag where LinuxCNC cannot go slowly enough, mm.
+
+    Raises:
+        BadFile: A line of which no way to state its time is known.
+    """
+    linear = path.frame.linear
+    begin = path.begins_at(which, written)
+    moved = written - begin
+    far = np.linalg.norm(moved[:, linear], axis=1)
+    wanted = path.paths.far[which] * shares_of_lines(which, share)
+    turns = np.abs(np.delete(moved, linear, axis=1)).max(axis=1, initial=0.0) > 1e-6 * DEG
+    turns &= ~path.is_whole[which] & (path.paths.turned[which] > 0.0)
+    for k in np.unique(which[turns & ~path.is_from_known[which]]):
+        _need_known(path, int(k))
+    changes = turns & (np.abs(far - wanted) > SAME * np.minimum(far, wanted))
+    stated = np.array([m.minutes > 0.0 for m in path.motions])
+    timed = frozenset(np.unique(which[changes & ~stated[which]]).tolist())
+    for k in timed:
+        _check(path, k)
+    slow = timed | set(np.unique(which[turns & stated[which]]).tolist())
+    if not slow:
+        return Timed(which, share, written, timed)
+    for k in slow:
+        _need_unit(path, k)
+    rows = np.searchsorted(which, np.arange(len(path.motions) + 1)).tolist()
+    parts: list[tuple[IntArray, Array, Array]] = []
+    lag = np.zeros(written.shape[1])
+    for k in range(len(path.motions)):
+        own = slice(rows[k], rows[k + 1])
+        if k in slow:
+            start = begin[own][0] + lag
+            made = list(_slowed(path, k, start, share[own], written[own], tolerance))
+            number = np.full(len(made), k)
+            at = path.rounded(number, np.array([at for _, at in made]))
+            lag = at[-1] - written[own][-1]
+            parts.append((number, np.array([s for s, _ in made]), at))
+        else:
+            lag = np.zeros(written.shape[1])
+            parts.append((which[own], share[own], written[own]))
+    joined = [np.concatenate(p) for p in zip(*parts, strict=True)]
+    return Timed(joined[0], joined[1], joined[2], timed)
+
+
+def _slowed(
+    path: ProgramPath, k: int, start: Array, shares: Array, ends: Array, tolerance: float
+) -> Iterator[tuple[float, Array]]:
+    """Lines of one motion, none of which LinuxCNC would run faster: shares and ends.
+
+    A line whose correction changes too slowly waits first, its rotary axes alone turning, and then
+    takes the correction along at the slowest feed that there is; the rotary axes turn evenly.
+    """
+    linear = path.frame.linear
+    slowest = MARGIN * SLOWEST * path.motions[k].unit / MINUTE  # mm/s
+    at, done = start.copy(), 0.0
+    for share, end in zip(shares.tolist(), ends, strict=True):
+        far = float(np.linalg.norm((end - at)[linear]))
+        could = slowest * path.seconds[k] * (share - done)
+        target = end.copy()
+        if far <= HELD * tolerance and far < could:
+            target[linear] = at[linear]
+        elif far < could:
+            lag = far * (1.0 - far / could)
+            count = int(np.ceil(2.0 * lag / tolerance))
+            for n in range(count):
+                one = at + (n + np.array([1.0 - far / could, 1.0]))[:, None] / count * (end - at)
+                one[0, linear] = (at + n / count * (end - at))[linear]
+                step = (share - done) / count
+                yield done + step * (n + 1.0 - far / could), one[0]
+                if n < count - 1:
+                    yield done + step * (n + 1.0), one[1]
+        yield share, target
+        at, done = target, share
+
+
+def _need_known(path: ProgramPath, k: int) -> None:
+    motion = path.motions[k]
+    if motion.minutes == 0.0:
+        found = "rotary axes that turn with a feed from where X, Y or Z is not known"
+        expected = "a motion to X, Y and Z before: how long it takes is not known"
+        raise BadFile(path.program.path, f"line {motion.line}", found, expected)
+
+
+def _need_unit(path: ProgramPath, k: int) -> None:
+    """Refuse a turn right behind another unit; raises BadFile.
+
+    The same place is rounded otherwise there, and LinuxCNC takes a nanometre for a way in X, Y, Z.
+    """
+    motion = path.motions[k]
+    if k and motion.unit != path.motions[k - 1].unit:
+        found = "rotary axes that turn right behind G20 or G21"
+        expected = "a motion of X, Y and Z between"
+        raise BadFile(path.program.path, f"line {motion.line}", found, expected)
+
+
+def _check(path: ProgramPath, k: int) -> None:
+    """Whether the time of a motion can be kept; raises BadFile."""
+    motion = path.motions[k]
+    far, turned = float(path.paths.far[k]), float(path.paths.turned[k])
+    file, line = path.program.path, f"line {motion.line}"
+    said = f"{' and '.join(motion.turned)} turning by {turned:.4g} degrees at F{motion.word:g}"
+    if not path.program.language.HAS_INVERSE_TIME or motion.tcpm:
+        where = "with tool-point control" if motion.tcpm else "in Klartext"
+        raise BadFile(
+            file,
+            line,
+            f"{said}, which its correction in X, Y, Z would make mm/min",
+            f"FMAX or G0: no documented way to state the time of a block {where} is known",
+        )
+    if far > 0.0 and np.hypot(far, turned) > (1.0 + LIKE) * far:
+        raise BadFile(
+            file,
+            line,
+            f"{said} while X, Y, Z go {far:.4g} mm, which its correction changes",
+            "it in inverse time (G93): LinuxCNC takes F for the mm alone, Fanuc for degrees too",
+        )
+    if turned / path.seconds[k] * MINUTE < MARGIN * SLOWEST:
+        raise BadFile(
+            file, line, said, f"{MARGIN * SLOWEST:g} degrees/min or more: LinuxCNC's slowest in G93"
+        )
