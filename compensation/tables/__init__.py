@@ -3,7 +3,8 @@
 In: `MachineErrors` and a `Datum`. Out: the files of a format and, from what was read back of them,
 `Played`: what they correct, what they cannot hold, and the one-point test of their sign. Tables
 hold errors by name (`iso230`; `heidenhain` an axis's own alone) or corrections over single axes
-(`sinumerik`, `linuxcnc`). A new control is a module with `write` and `read` and a line in `formats.FORMATS`.
+(`sinumerik`, `linuxcnc`). A new control is a module with `write` and `read` and a line in
+`formats.FORMATS`.
 """
 
 from compensation.tables.acceptance import Acceptance

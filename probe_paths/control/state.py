@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from probe_paths.control.steps import Value
-from probe_paths.language import ANGLE_LIMIT, FREE, Block, Interlock, Label, Says, language_of
+from probe_paths.language import FREE, Block, Interlock, Label, Says, language_of, turn_tests
 from probe_paths.plan import ProgramFrame
 from twin.errors import BadFile
 from twin.frames import Array
@@ -152,7 +152,8 @@ class State:
         letter, planned = self.reached[q]
         reading = float(self.q[self.frame.chain.axis_index(letter)]) / DEG
         sign = -1.0 if is_less else 1.0
-        if abs(planned - reading) < SAME_ANGLE and 0.0 <= sign * limit <= ANGLE_LIMIT:
+        most = max(test.limit for test in turn_tests(language_of(self.path), self.frame))
+        if abs(planned - reading) < SAME_ANGLE and 0.0 <= sign * limit <= most:
             self.turn_tested.add((letter, is_less))
 
     def check_status_was_tested(self, block: Block) -> None:

@@ -63,7 +63,8 @@ def turn_tests(language: Language, frame: ProgramFrame) -> list[Interlock]:
     `planned` is the reading of the visit and stands in the program.
     """
     axes = frame.chain.rotary_axes if language.TESTS_TURNS else ()
-    return [Interlock(Label.TURNED, f"turn of {a}", Datum(a), None, 0.0, ANGLE_LIMIT) for a in axes]
+    rows = ((Label.TURNED, f"turn of {a}", Datum(a), None, 0.0, ANGLE_LIMIT) for a in axes)
+    return [Interlock(*row) for row in rows]
 
 
 def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) -> list[Interlock]:
