@@ -274,7 +274,7 @@ class _Control:
         values = {q: self._number(value, now) for q, value in step.values.items()}
         moment = self.begin + timedelta(seconds=int(now))
         lines = self.lines.setdefault(step.target, [])
-        lines += [line.filled(values, moment) for line in step.lines]
+        lines += [line.filled(values, moment) for line in step.lines if line.prints]
 
     def _number(self, value: Value | Sensor, now: float) -> float:
         if isinstance(value, Sensor):

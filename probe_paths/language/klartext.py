@@ -210,6 +210,8 @@ LOG = LogForm(
     date=(("DATE%5d-%3d-%3d", ("YEAR4", "MONTH", "DAY")), _CLOCK),
     counter="%8.1LF",
     is_wide=True,
+    opens="M_APPEND",
+    closes="M_CLOSE",
 )
 
 SYSTEM: Mapping[Datum, str] = {

@@ -55,17 +55,25 @@ class LogForm(NamedTuple):
         date: Lines of the day and the time in the head.
         counter: Format of whole numbers.
         is_wide: Whether numbers are printed in columns.
+        opens: Word of a mask that adds to a file of an earlier run, or "".
+        closes: Word of a mask that closes the file, or "".
     """
 
     clock: Fields
     date: Sequence[Fields]
     counter: str
     is_wide: bool
+    opens: str = ""
+    closes: str = ""
+
+
+KEYWORDS = ("M_APPEND", "M_CLOSE")
+"""Words of a mask that print nothing: what becomes of the file."""
 
 
 @dataclass(frozen=True)
 class MaskLine:
-    """One line of a mask: literal text with formats, and what they print.
+    """One line of a mask: literal text with formats, and what they print; or a keyword.
 
     Attributes:
         text: With `%w.dLF` and `%wd` formats.
@@ -74,6 +82,11 @@ class MaskLine:
 
     text: str
     arguments: tuple[int | str, ...]
+
+    @property
+    def prints(self) -> bool:
+        """Whether the line is printed; a keyword is not."""
+        return self.text not in KEYWORDS
 
     def filled(self, values: Mapping[int, float], now: datetime) -> str:
         """The line as the control prints it."""
@@ -99,6 +112,9 @@ def parse_mask(text: str, path: str | Path) -> tuple[MaskLine, ...]:
     lines = []
     for number, raw in enumerate(text.splitlines(), start=1):
         where = f"line {number}"
+        if (word := raw.strip().removesuffix(";")) in KEYWORDS and raw.strip() != word:
+            lines.append(MaskLine(word, ()))
+            continue
         match = _LINE.match(raw.strip())
         if match is None:
             raise BadFile(path, where, repr(raw), '"text",Q1620,HOUR; with quotes and semicolon')
@@ -131,6 +147,9 @@ def _mask(lines: Sequence[Fields]) -> str:
     """Text of a mask file; raises DesignError where a line is too long."""
     out = []
     for text, arguments in lines:
+        if text in KEYWORDS:
+            out.append(f"{text};")
+            continue
         line = f'"{text}"' + "".join(f",{a}" for a in arguments) + ";"
         if len(line) > MAX_LINE or not line.isascii() or '"' in text:
             raise DesignError(f"mask line {line}: expected ASCII, at most {MAX_LINE} characters")
@@ -157,9 +176,14 @@ def shared_masks(
     missed = _fields([("NOCONTACT P", Q.TOUCH)], form.counter)
     return {
         f"{SharedMask.POINT}.A": _mask(_point_lines(form, decimals, rotary, sensors)),
-        f"{SharedMask.END}.A": _mask([(f"END {clock[0]}", clock[1])]),
-        f"{SharedMask.NO_CONTACT}.A": _mask([missed, clock]),
+        f"{SharedMask.END}.A": _mask([(f"END {clock[0]}", clock[1]), *_keyword(form.closes)]),
+        f"{SharedMask.NO_CONTACT}.A": _mask([missed, clock, *_keyword(form.closes)]),
     }
+
+
+def _keyword(word: str) -> list[Fields]:
+    """A line of its own for a keyword that the control has."""
+    return [(word, ())] if word else []
 
 
 def _point_lines(
@@ -208,9 +232,10 @@ def head_mask(
             the whole log of a commissioning program.
         decimals: Of the coordinates of that touch.
     """
-    lines = _head_lines(form, name, remarks)
+    lines = [*_keyword(form.opens), *_head_lines(form, name, remarks)]
     if rotary is not None:
         lines += [*_point_lines(form, decimals, rotary), (f"END {form.clock[0]}", form.clock[1])]
+        lines += _keyword(form.closes)
     return _mask(lines)
 
 

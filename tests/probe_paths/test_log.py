@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from datetime import datetime
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -219,3 +220,39 @@ def test_an_error_of_the_machine_stays_in_the_deviations(read, small, chain):
     parts = [p for r in runs for p in read_log("L", chain.rotary_axes, *r.log.values())]
     run = evaluate(parts, small, chain, U)
     assert np.sqrt(np.mean(run.deviation**2)) > 2.0 * UM
+
+
+def _as_control(masks, prints, adds_without_word):
+    """File of a control, run by run, by the words of its masks alone: a model of its own.
+
+    Args:
+        prints: Names of masks in the order of FN 16, by run.
+        adds_without_word: Whether a run adds to an old file where no mask asks for it.
+    """
+    file = []
+    for run in prints:
+        is_open = False
+        for name in run:
+            rows = masks[name].split("\r\n")
+            if not is_open and not adds_without_word and "M_APPEND;" not in rows:
+                file = []
+            is_open = True
+            file += [f"{name}:{row}" for row in rows if row and not row.startswith("M_")]
+            is_open = "M_CLOSE;" not in rows
+    return file
+
+
+@pytest.mark.parametrize("adds_without_word", [True, False])
+def test_a_second_run_replaces_no_log(adds_without_word):
+    """Whatever FN 16 does by itself, the words of the masks make the file whole."""
+    folder = Path(__file__).parents[1] / "golden" / "programs"
+    masks = {path.name: path.read_bytes().decode("ascii") for path in folder.glob("*.A")}
+    head = "MS_A_1.A"
+    whole = [head, "MSPOINT.A", "MSPOINT.A", "MSEND.A"]
+    missed = [head, "MSPOINT.A", "MSMISS.A"]
+    once = _as_control(masks, [whole], adds_without_word)
+    for first in (whole, missed):
+        file = _as_control(masks, [first, whole], adds_without_word)
+        assert file[-len(once) :] == once
+        assert len(file) > len(once)
+        assert sum("MATSTD LOG 1" in line for line in file) == 2
