@@ -56,7 +56,9 @@ def main() -> None:
         text = text.replace(
             '"hsm600u-machine.toml"', f'"{(EXAMPLES / "hsm600u-machine.toml").as_posix()}"'
         )
-        far.write_text(text.replace("origin_mm = [0.0,", "origin_mm = [2000.0,"), encoding="utf-8")
+        text = text.replace("origin_mm = [0.0,", "origin_mm = [2000.0,")
+        text = text.replace("table_radius_mm = 160.0", "table_radius_mm = 2200.0")
+        far.write_text(text, encoding="utf-8")
         code, wall, used, said = timed(far, Path(folder) / "far")
         print(f"out of reach: refused in {wall:.1f} s ({used:.1f} s processor); {said}")
     if failed or code != 2:

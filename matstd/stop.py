@@ -106,7 +106,7 @@ def leave() -> NoReturn:
     """
     _LAST_WORDS.acquire()  # never given back: of two threads that leave, one speaks
     # no import, which could wait for the one that was interrupted
-    for folder in _begun("matstd.folder", "WORKING"):
+    for folder in _begun("twin.files.folder", "WORKING"):
         shutil.rmtree(folder, ignore_errors=True)
     for file in _begun("twin.files.whole", "UNFINISHED"):
         file.unlink(missing_ok=True)

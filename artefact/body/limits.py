@@ -30,7 +30,7 @@ class Limits:
         ball_radius: Of the largest probe ball, mm.
         gap: Left between the ball at any touch and every other body, mm.
         max_mass: Of the standard, kg.
-        table_radius: Of the table's face, mm.
+        table_radius: Of the disc about the standard's own axis that lies on the table, mm.
         slot_pitch: Between the slots of the table, which run along its x, one through its middle;
             0 where screws may stand anywhere, mm.
     """

@@ -65,6 +65,8 @@ class LimitsTable(Table):
     max_mass_kg: float = Field(default=60.0, gt=0.0)
     table_radius_mm: float = Field(default=160.0, gt=0.0)
     slot_pitch_mm: float = Field(default=0.0, ge=0.0)
+    overhang_mm: float | None = Field(default=None, ge=0.0)
+    riser_mm: float = Field(default=0.0, ge=0.0)
 
 
 def check_standard(wanted: StandardTable, path: Path) -> None:

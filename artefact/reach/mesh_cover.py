@@ -6,7 +6,7 @@ import numpy as np
 
 from artefact.reach.workshop import Solid
 from twin.errors import BadFile
-from twin.frames import Array
+from twin.frames import Array, apply
 
 MOST_BOXES = 24
 """Of one mesh: two lines of a program's head each."""
@@ -51,6 +51,17 @@ def covering_solids(
         _box(part, f"{name}.{i}", T_face_mesh, turn, on)
         for i, part in enumerate(sorted([*boxes, *done], key=_volume, reverse=True), start=1)
     ]
+
+
+def closed_mesh(path: str | Path, T_face_mesh: Array) -> tuple[Array, np.ndarray] | None:
+    """Corners (V, 3) and triangles (F, 3) of a mesh file; None where it encloses no volume."""
+    corners, back = np.unique(_triangles(Path(path)).reshape(-1, 3), axis=0, return_inverse=True)
+    import trimesh
+
+    mesh = trimesh.Trimesh(corners, back.reshape(-1, 3), process=False)
+    if not (mesh.is_watertight and mesh.is_winding_consistent and mesh.volume > 0.0):
+        return None
+    return apply(T_face_mesh, corners), back.reshape(-1, 3)
 
 
 def _triangles(path: Path) -> Array:

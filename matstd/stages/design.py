@@ -34,6 +34,7 @@ from matstd.stages.from_project import (
     probes,
 )
 from matstd.stages.reach import check_reach
+from matstd.stages.seat import check_beside, check_seat
 from matstd.stages.space import check_space
 from matstd.stages.streams import streams
 from matstd.stages.study_run import study_and_maps
@@ -71,6 +72,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     """
     rng = streams(project.seed)
     progress("reach", 0, 1)
+    check_seat(project)
     poses = check_reach(project, folder)
     check_space(project, folder, poses)
     shutil.copyfile(project.machine_path, folder / "machine.toml")
@@ -91,6 +93,7 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         making = making_of(placement.standard, stiffness)
         write_making(folder / "making.json", making)
         conformity = cad.result()
+        check_beside(project, placement.standard, folder)
     _draw(project, placement.standard, conformity, folder)
     progress("probing programs", 0, 1)
     stations = make_stations(plans, dialects(project), feeds(project))

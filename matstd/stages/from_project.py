@@ -14,6 +14,7 @@ from artefact.reach import (
     Solid,
     Workshop,
     covering_solids,
+    middle_room,
     round_table,
     still_frames,
 )
@@ -77,21 +78,10 @@ def workshop(project: Project, setup: str = "") -> Workshop:
         BadFile: A mesh that cannot be read.
         DesignError: A body on an axis that does not carry the workpiece.
     """
-    stated = project.workshop.table
-    if stated is None:
-        table = round_table(project.table_radius)
-    else:
-        a, b = stated.sides_mm or (stated.diameter_mm or 0.0,) * 2
-        table = Solid(
-            round_table().name,
-            (0.5 * a, 0.5 * b),
-            stated.sides_mm is None,
-            stated.height_mm - stated.thickness_mm,
-            stated.height_mm,
-        )
+    table = table_of(project)
     here = ("", setup or project.setup.name)
     stated_here = [body for body in project.workshop.bodies if body.setup in here]
-    bodies = [solid for body in stated_here for solid in _solids(project, body)]
+    bodies = [solid for body in stated_here for solid in solids_of(project, body)]
     made = Workshop(table, tuple(bodies), _ball(project, table))
     still_frames(made.on, project.chain, np.zeros((1, len(project.chain.axes))))
     return made
@@ -105,7 +95,22 @@ def _ball(project: Project, table: Solid) -> DatumBall | None:
     return DatumBall(*stated.at_mm, *size, table.high, 0.5 * stated.u_um * UM)
 
 
-def _solids(project: Project, body: BodyTable) -> list[Solid]:
+def table_of(project: Project) -> Solid:
+    """Face of the table, as stated."""
+    stated = project.workshop.table
+    if stated is None:
+        return round_table(project.table_radius)
+    a, b = stated.sides_mm or (stated.diameter_mm or 0.0,) * 2
+    return Solid(
+        round_table().name,
+        (0.5 * a, 0.5 * b),
+        stated.sides_mm is None,
+        stated.height_mm - stated.thickness_mm,
+        stated.height_mm,
+    )
+
+
+def solids_of(project: Project, body: BodyTable) -> list[Solid]:
     """One body as the prisms that a program can state."""
     x, y, z = body.at_mm
     if body.stl is not None:
@@ -232,6 +237,8 @@ def blank(project: Project) -> Blank:
     wanted, limits = project.standard, project.limits
     (a, b), height = project.blank.base_mm, project.blank.height_mm
     low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * height
+    setups = (project.setup, *project.further_setups)
+    rooms = [middle_room(table_of(project), setup.T_table_artefact) for setup in setups]
     return Blank(
         base=Base((0.5 * a, 0.5 * b), CORNER_RADIUS, BASE_THICKNESS),
         fittings=Fittings(sphere_heights=(low, round(0.5 * (low + high), 1), round(high, 1))),
@@ -243,7 +250,8 @@ def blank(project: Project) -> Blank:
             ball_radius=project.probe_radius,
             gap=limits.gap_mm,
             max_mass=limits.max_mass_kg,
-            table_radius=project.table_radius,
+            # screws and pads stand on the table in every set-up
+            table_radius=min(rooms),
             slot_pitch=limits.slot_pitch_mm,
         ),
     )

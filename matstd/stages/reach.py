@@ -16,12 +16,10 @@ from artefact.reach import (
     Limit,
     PlacesInReach,
     ProbeReach,
-    hangs,
     places_on,
     reach_of,
     seat_height,
     spread_poses,
-    table_face,
     turned,
 )
 from artefact.worth import poses_within
@@ -31,8 +29,8 @@ from matstd.stages.from_project import (
     plan_options,
     probe,
     probe_reach,
-    workshop,
 )
+from matstd.stages.seat import RISEN, lifted, stands
 from probe_paths.plan import (
     home_readings,
     readings_at,
@@ -42,8 +40,8 @@ from probe_paths.plan import (
 )
 from report.plots import draw_reach
 from report.style import save
-from twin.errors import BadFile, NotReachable
-from twin.frames import Array, fixed_xyz_angles
+from twin.errors import NotReachable
+from twin.frames import Array
 from twin.machine import linear_directions
 from twin.record import Setup
 from twin.units import DEG
@@ -52,7 +50,6 @@ PICTURE = "reach.png"
 """File of the picture in a folder of results."""
 
 _RISER = 300.0  # mm above the table's face that a wish may lift a standard
-_SUNK = 1.0  # mm by which a seat may lie below the table's face: set-ups are measured
 _POSES = 60  # table poses that are tried
 _PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer no choice of patches was ever found
 _SHIFTS = (20.0, 50.0, 100.0, 200.0, 400.0)  # mm
@@ -95,11 +92,8 @@ def check_reach(project: Project, folder: Path) -> Array:
         Table poses to choose from, (K, R), rad: those at which Z can rise above the standard.
 
     Raises:
-        BadFile: A standard that stands in the table or hangs under it.
         NotReachable: Fewer places than a standard needs; which limit binds, the nearest wish.
     """
-    for setup in (project.setup, *project.further_setups):
-        _check_standing(project, setup)
     wanted, rotary = probe_reach(project), _rotary(project)
     poses = poses_within(project.chain, rotary, placement_options(project).choice.poses)
     places, enough = places_on(blank(project)), _enough(project)
@@ -131,26 +125,6 @@ def check_reach(project: Project, folder: Path) -> Array:
     found = [wish.words for wish in _nearest(project, wanted, rotary, tried)]
     nearest = f"{' or '.join(found)} would do" if found else f"no other {_TRIED} alone would do"
     raise NotReachable(f"{project.path}: {against}; {nearest}")
-
-
-def _check_standing(project: Project, setup: Setup) -> None:
-    face = workshop(project).table.high
-    key, T = f"setup.{setup.name}", setup.T_table_artefact
-    above = seat_height(T, blank(project).base.half_size) - face
-    if above < -_SUNK:
-        raise BadFile(
-            project.path,
-            f"{key}.origin_mm",
-            T[:3, 3].tolist(),
-            f"a seat on the table's face or above it: its lowest corner lies {-above:.1f} mm below",
-        )
-    if hangs(project.chain, T):
-        raise BadFile(
-            project.path,
-            f"{key}.rotation_deg",
-            np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 6).tolist(),
-            "a standard that looks towards the tool with every axis at zero: its seat does",
-        )
 
 
 def _enough(project: Project) -> int:
@@ -213,9 +187,8 @@ def _beyond(project: Project, poses: Array, overshoot: float) -> Array:
 
 def _fits(project: Project, wish: Wish) -> bool:
     """Whether a changed project is within reach; by few places and poses first."""
-    T, made = wish.reach.setup.T_table_artefact, blank(project)
-    sunk = seat_height(T, made.base.half_size) < wish.reach.workshop.table.high - _SUNK
-    if sunk or hangs(wish.reach.chain, T) or _beside(project, T):
+    made = blank(project)
+    if not stands(lifted(project, max(_RISER, project.limits.riser_mm)), wish.reach.setup):
         return False
     grid = poses_within(project.chain, wish.rotary, placement_options(project).choice.poses)
     for some, step in ((spread_poses(grid, _ROUGH), 3), (spread_poses(grid, _POSES), 1)):
@@ -225,16 +198,6 @@ def _fits(project: Project, wish: Wish) -> bool:
     to_rise, retract = _to_rise(project, wish.reach, some)
     good = some[to_rise <= retract]
     return reach_of(wish.reach, point, normal, good).places >= _enough(project)
-
-
-def _beside(project: Project, T_table_artefact: Array) -> bool:
-    """Whether a standard stands further beside the table, or higher above it, than it does now."""
-    up = table_face(T_table_artefact)[:3, 2]
-    old, new = project.setup.T_table_artefact[:3, 3], T_table_artefact[:3, 3]
-    aside = [float(np.linalg.norm(place - (place @ up) * up)) for place in (old, new)]
-    return aside[1] > max(project.table_radius, aside[0]) or bool(
-        new @ up > max(_RISER, float(old @ up))
-    )
 
 
 def _asked(limit: Limit, value: float) -> str:
@@ -287,8 +250,12 @@ def _moved(
         moved[:3, 3] += shift
         place = ", ".join(f"{v + 0.0:.0f}" for v in moved[:3, 3])
         setup = Setup(wanted.setup.name, moved)
+        words = f"setup.{setup.name}.origin_mm = [{place}]"
+        up = seat_height(moved, blank(project).base.half_size) - wanted.workshop.table.high
+        if up > max(RISEN, project.limits.riser_mm):
+            words += f" with limits.riser_mm = {np.ceil(up):.0f}"
         yield Wish(
-            words=f"setup.{setup.name}.origin_mm = [{place}]",
+            words=words,
             size=float(np.linalg.norm(shift)),
             kind="place",
             reach=replace(wanted, setup=setup),

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from matstd.folder import results_folder
+from matstd.cli import main
 from twin.errors import DesignError
+from twin.files import results_folder
 
 
 def test_whole(tmp_path: Path) -> None:
@@ -65,7 +66,7 @@ def test_a_report_alone_is_not_overwritten(tmp_path: Path) -> None:
 
 WORKS = """
 import sys, time
-from matstd.folder import results_folder
+from twin.files import results_folder
 with results_folder(sys.argv[1]) as work:
     (work / "half.txt").write_text("half")
     print("works", flush=True)
@@ -98,3 +99,137 @@ def test_what_a_killed_run_left_goes_at_the_next_start(tmp_path: Path) -> None:
     with results_folder(tmp_path / "out", force=True):
         pass
     assert sorted(p for p in tmp_path.iterdir() if p.name != "out") == sorted(strangers)
+
+
+RACES = """
+import sys, time
+from pathlib import Path
+from twin.errors import DesignError
+from twin.files import results_folder, refuse_to_overwrite, write_whole
+kind, out, mine, force = sys.argv[1], Path(sys.argv[2]), sys.argv[3], sys.argv[4] == "force"
+try:
+    if kind == "folder":
+        with results_folder(out, force, ours=["only-*"]) as work:
+            for k in range(30):
+                (work / f"f{k}").write_text(mine)
+            (work / f"only-{mine}").write_text(mine)
+            print("ready", flush=True)
+            sys.stdin.readline()
+    else:
+        refuse_to_overwrite(out, force)
+        print("ready", flush=True)
+        sys.stdin.readline()
+        write_whole(out, mine)
+except DesignError as error:
+    print(error, flush=True)
+    sys.exit(2)
+"""
+
+
+def raced(
+    kind: str, out: Path, force: str, together: bool, count: int = 4
+) -> list[tuple[int, str]]:
+    """Exit code and last line of processes that all began before one of them had ended."""
+    runs = []
+    for mine in "abcdefgh"[:count]:
+        words = [sys.executable, "-c", RACES, kind, str(out), mine, force]
+        runs.append(subprocess.Popen(words, stdin=-1, stdout=-1, text=True))
+    for run in runs:
+        assert run.stdout is not None
+        assert run.stdout.readline() == "ready\n"
+    ended = []
+    for run in reversed(runs):  # who began last ends first
+        assert run.stdin is not None
+        run.stdin.write("\n")
+        run.stdin.flush()
+        if not together:
+            run.wait()
+    for run in runs:
+        said, _ = run.communicate()
+        ended.append((run.returncode, said.strip()))
+    return ended
+
+
+def held(out: Path) -> str:
+    """Which run's results stand there, after a look whether they are of one run alone."""
+    if out.is_file():
+        return out.read_text()
+    inside = {file.name: file.read_text() for file in out.iterdir()}
+    (mine,) = set(inside.values())
+    assert set(inside) == {f"only-{mine}", *(f"f{k}" for k in range(30))}
+    return mine
+
+
+@pytest.mark.parametrize("together", [False, True])
+@pytest.mark.parametrize(("kind", "name"), [("folder", "out"), ("file", "run.csv")])
+def test_of_runs_that_race_the_first_stays_and_the_others_are_kept(
+    tmp_path: Path, kind: str, name: str, together: bool
+) -> None:
+    out = tmp_path / name
+    ended = raced(kind, out, "no", together)
+    codes = [code for code, _ in ended]
+    assert sorted(codes) == [0, 2, 2, 2]
+    first = held(out)
+    assert first == "abcd"[codes.index(0)]
+    if not together:
+        assert first == "d"  # the first that ends, though it began last
+    kept = {"abcd"[k]: said for k, (code, said) in enumerate(ended) if code}
+    for mine, said in kept.items():
+        there = Path(said.rsplit(" are in ", 1)[1])
+        assert said.startswith(f"{out}: another run has written it meanwhile")
+        assert held(there) == mine
+    assert len(list(tmp_path.iterdir())) == 4  # no locks and no parts
+
+
+@pytest.mark.parametrize("before", [False, True])
+@pytest.mark.parametrize(("kind", "name"), [("folder", "out"), ("file", "run.csv")])
+def test_forced_runs_that_race_leave_one_whole_result(
+    tmp_path: Path, kind: str, name: str, before: bool
+) -> None:
+    out = tmp_path / name
+    if before:
+        raced(kind, out, "no", together=False, count=1)
+    for _ in range(3):
+        assert raced(kind, out, "force", together=True) == [(0, "")] * 4
+        assert held(out) in "abcd"
+        assert [p.name for p in tmp_path.iterdir()] == [name]
+
+
+def test_a_move_that_fails_puts_the_old_results_back(tmp_path: Path) -> None:
+    """A file that cannot be moved: its folder is a file of the user's."""
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "a.txt").write_text("old")
+    (out / "z").write_text("mine")
+    with pytest.raises(DesignError, match="cannot be written"), results_folder(out, True) as work:  # noqa: PT012
+        for name in ("a.txt", "b.txt", "z/x.txt"):
+            (work / name).parent.mkdir(exist_ok=True)
+            (work / name).write_text("new")
+    assert {p.name: p.read_text() for p in out.iterdir()} == {"a.txt": "old", "z": "mine"}
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_the_folder_one_stands_in_takes_results(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with results_folder(".") as work:
+        (work / "x.txt").write_text("x")
+    assert [p.name for p in tmp_path.iterdir()] == ["x.txt"]
+
+
+def test_an_output_that_another_command_writes_meanwhile_is_not_lost(
+    tmp_path: Path, monkeypatch, capsys
+) -> None:
+    """The command line itself: a file appears while the command works."""
+    import matstd.commands.machine.new as new
+
+    template = new.template
+
+    def slow(kind: str) -> str:
+        (tmp_path / "run.csv").write_text("of another")
+        return template(kind)
+
+    monkeypatch.setattr(new, "template", slow)
+    assert main(["new", "run", "-o", str(tmp_path / "run.csv")]) == 2
+    assert "run-2.csv" in capsys.readouterr().err
+    assert (tmp_path / "run.csv").read_text() == "of another"
+    assert (tmp_path / "run-2.csv").read_text() == template("run")

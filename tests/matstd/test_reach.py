@@ -16,6 +16,7 @@ from matstd.commands.standard.design import NO_ROOM, REFUSED, refusals
 from matstd.stages import space
 from matstd.stages.from_project import blank, probe_reach
 from matstd.stages.reach import _to_rise, check_reach
+from matstd.stages.seat import check_seat
 from matstd.stages.space import check_space
 from twin.errors import BadFile, NotBuildable, NotReachable
 from twin.frames import fixed_xyz, pose
@@ -37,6 +38,9 @@ def changed(folder: Path, name: str, project: dict[str, str], machine: dict[str,
 
 def with_setup(line: str) -> dict[str, str]:
     return {r"\Z": f"\n[setup.a]\n{line}\n"}
+
+
+LARGE_TABLE = "\n[workshop.table]\nsides_mm = [4200.0, 4200.0]\n"
 
 
 def refusal(project: Project, folder: Path) -> str:
@@ -77,12 +81,12 @@ def test_the_travel_that_binds_is_named_and_enough(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("unrendered")
 def test_the_nearest_wish_does(tmp_path: Path) -> None:
-    far = with_setup("origin_mm = [700.0, 0.0, 0.0]")
+    far = with_setup("origin_mm = [700.0, 0.0, 0.0]" + LARGE_TABLE)
     told = refusal(read_project(changed(tmp_path, "vertical", far, {})), tmp_path)
     assert "X would have to go to" in told
     place = re.search(r"setup.a.origin_mm = (\[.*?\]) would do", told)
     assert place, told
-    near = with_setup(f"origin_mm = {place[1]}")
+    near = with_setup(f"origin_mm = {place[1]}" + LARGE_TABLE)
     check_reach(read_project(changed(tmp_path, "vertical", near, {})), tmp_path)
 
 
@@ -113,7 +117,7 @@ def test_a_refused_command_leaves_its_picture_alone(
 ) -> None:
     # whatever would design has not begun: it would fail with a traceback
     monkeypatch.setattr("matstd.stages.design.design_standard", None)
-    far = with_setup("origin_mm = [2000.0, 0.0, 0.0]")
+    far = with_setup("origin_mm = [1900.0, 0.0, 0.0]" + LARGE_TABLE)
     path, out = changed(tmp_path, "gantry", far, {}), tmp_path / "out"
     for _ in range(2):  # its own picture does not stand in the way of the next run
         assert main(["design", str(path), "-o", str(out)]) == 2
@@ -139,7 +143,7 @@ def test_a_standard_in_the_table_or_under_it_is_refused(
 ) -> None:
     project = read_project(changed(tmp_path, name, with_setup(setup), {}))
     with pytest.raises(BadFile, match=re.escape(told)):
-        check_reach(project, tmp_path)
+        check_seat(project)
 
 
 def test_a_face_that_is_no_table_is_said() -> None:

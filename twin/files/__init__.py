@@ -5,6 +5,7 @@ stood there and what was expected. Writers write whole files or none.
 """
 
 from twin.files.error_file import errors_toml, read_errors
+from twin.files.folder import results_folder
 from twin.files.machine_file import MachineTables, Pair, Vector, read_machine
 from twin.files.pose_file import read_poses, reading_columns
 from twin.files.run_file import SetupTable, read_run
@@ -20,7 +21,6 @@ from twin.files.toml import (
     read_text,
 )
 from twin.files.whole import (
-    NOT_WRITABLE,
     refuse_own_input,
     refuse_to_overwrite,
     write_whole,
@@ -28,7 +28,6 @@ from twin.files.whole import (
 )
 
 __all__ = [
-    "NOT_WRITABLE",
     "CsvTable",
     "MachineTables",
     "Pair",
@@ -50,6 +49,7 @@ __all__ = [
     "reading_columns",
     "refuse_own_input",
     "refuse_to_overwrite",
+    "results_folder",
     "write_run",
     "write_whole",
     "written_whole",

@@ -5,14 +5,17 @@ import os
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 
 from twin.errors import DesignError
+from twin.files.lock import in_turn
 
 NOT_WRITABLE = (
     errno.ENOSPC,
     errno.EDQUOT,
     errno.EFBIG,
+    errno.EEXIST,
     errno.EROFS,
     errno.EACCES,
     errno.EPERM,
@@ -26,13 +29,19 @@ NOT_WRITABLE = (
 UNFINISHED: set[Path] = set()
 """Files that this process has begun; whoever ends it at once removes them."""
 
+_ASKED: dict[Path, bool] = {}
+"""Outputs of this process that are not written yet, and whether they may be overwritten."""
+
 
 @contextmanager
 def written_whole(path: str | Path) -> Iterator[Path]:
     """A neighbour name to write to; renamed to `path` when the block ends well, else removed.
 
+    An output that `refuse_to_overwrite` has found free is looked for once more at the renaming: if
+    another process has written it meanwhile, this one is kept under a free name beside it.
+
     Raises:
-        DesignError: The folder cannot be written to, or the disk is full.
+        DesignError: The folder cannot be written to, the disk is full, or the file exists now.
     """
     if "\0" in str(path):
         raise DesignError(f"{str(path)!r}: cannot be written (no name has a zero byte in it)")
@@ -56,7 +65,11 @@ def written_whole(path: str | Path) -> Iterator[Path]:
     UNFINISHED.add(part)
     try:
         yield part
-        part.replace(path)
+        if path in _ASKED:
+            with in_turn(path):
+                _put(part, path, _ASKED.pop(path))
+        else:
+            part.replace(path)
     except OSError as error:
         if error.errno is not None and error.errno not in NOT_WRITABLE:
             raise  # a file that the block wanted to read, say
@@ -64,6 +77,29 @@ def written_whole(path: str | Path) -> Iterator[Path]:
     finally:
         part.unlink(missing_ok=True)
         UNFINISHED.discard(part)
+
+
+def _put(part: Path, path: Path, force: bool) -> None:
+    """Give a finished output its name, or keep it beside what stands there now."""
+    if not force and path.exists():
+        kept = free_name(path)
+        part.replace(kept)
+        raise written_meanwhile(path, kept)
+    part.replace(path)
+
+
+def free_name(path: Path) -> Path:
+    """The first of `run-2.csv`, `run-3.csv` ... that does not exist."""
+    names = (path.with_name(f"{path.stem[:200]}-{k}{path.suffix}") for k in count(2))
+    return next(name for name in names if not os.path.lexists(name))
+
+
+def written_meanwhile(path: Path, kept: Path) -> DesignError:
+    """What is said where another process was the first to write an output."""
+    return DesignError(
+        f"{path}: another run has written it meanwhile; it stays as it is, and the results of this "
+        f"run are in {kept}"
+    )
 
 
 def _not_written(path: Path, error: OSError) -> DesignError:
@@ -84,9 +120,11 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
 
 
 def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:
-    """Raise DesignError if the file exists and nobody asked to overwrite it."""
+    """Raise DesignError if the file exists and is not to be overwritten, now or when written."""
     if not force and os.path.exists(path):
         raise DesignError(f"{path}: already exists; choose another name or give --force")
+    if "\0" not in str(path):  # else it is refused when it is written
+        _ASKED[Path(os.path.realpath(path))] = force
 
 
 def refuse_own_input(output: str | Path, inputs: Iterable[str | Path]) -> None:

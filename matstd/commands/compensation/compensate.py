@@ -103,10 +103,10 @@ def _program(args: argparse.Namespace, job: Job) -> int:
         program = replace(program, loads=read_loads(args.loads))
     tolerance = TOLERANCE if args.tolerance is None else args.tolerance * UM
     done = compensated(program, job.errors, job.header(1), tolerance)
+    write_whole(output, done.text)  # the first: where another run was faster, it is what is kept
     write_trajectory(beside[0], done)
     draw_program(beside[1], done)
     write_program_result(beside[2], done)
-    write_whole(output, done.text)
     for line, is_first in program_lines(output.name, done):
         say(line, style="bold" if is_first else None)
     say(f"{output}: look at {', '.join(path.name for path in beside)} beside it")
@@ -123,9 +123,9 @@ def _tables(args: argparse.Namespace, job: Job) -> int:
         write_table_results,
         write_tables,
     )
-    from matstd.folder import results_folder
     from matstd.progress import stages
     from report.compensation import write_compensation_page
+    from twin.files import results_folder
 
     names = _controls(args.control) or list(FORMATS)
     opposite = _controls(args.opposite)

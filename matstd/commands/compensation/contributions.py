@@ -38,8 +38,8 @@ def run(args: argparse.Namespace) -> int:
     from compensation.programs import write_shares
     from matstd.commands.compensation.job import read_job
     from matstd.console import say
-    from matstd.folder import results_folder
     from report.compensation import draw_shares_along, share_lines
+    from twin.files import results_folder
 
     if (args.program is None) == (args.poses is None):
         raise DesignError("expected one of --program FILE and --poses POSES.csv")

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.folder import FOUND, results_folder, write_found_arm
+from matstd.folder import FOUND, write_found_arm
 from matstd.options import (
     REPORT_FILES,
     add_measured,
@@ -15,6 +15,7 @@ from matstd.options import (
     model_file,
     print_report,
 )
+from twin.files import results_folder
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -103,9 +103,9 @@ def _compare(args: argparse.Namespace) -> int:
 
     from diagnosis.drift import chosen, judge, offered, read_beams, write_drift, write_prediction
     from matstd.console import say, say_each
-    from matstd.folder import results_folder
     from matstd.progress import stages
     from report.drift import drift_lines, write_drift_page
+    from twin.files import results_folder
 
     record, train, held = _record(args)
     beams = read_beams(args.beams, record) if args.beams else ()
@@ -209,9 +209,9 @@ def _predict(args: argparse.Namespace) -> int:
 
     from diagnosis.drift import read_law, read_log, write_prediction
     from matstd.console import say, say_each
-    from matstd.folder import results_folder
     from report.drift import draw_drift, law_title
     from twin.errors import BadFile
+    from twin.files import results_folder
 
     saved = read_law(args.law)
     record = read_log(args.logs[0], saved.step, needs_displacement=False)

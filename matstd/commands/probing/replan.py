@@ -63,12 +63,11 @@ def run(args: argparse.Namespace) -> int:
 
     from artefact.body import read_standard
     from matstd.console import say, say_each
-    from matstd.folder import results_folder
     from matstd.stages.sheets import write_sheets
     from probe_paths.control import read_log, read_program
     from probe_paths.locate import Spread
     from probe_paths.stations import all_programs
-    from twin.files import read_machine
+    from twin.files import read_machine, results_folder
     from twin.units import DEG
 
     printed_by, design = asked_printer(args), Path(args.design)

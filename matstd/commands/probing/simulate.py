@@ -93,11 +93,12 @@ def run(args: argparse.Namespace) -> int:
     with stages() as show:
         campaign = simulate(args.programs, real, machine, for_noise, probe, show, standard)
     run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
-    for name, text in campaign.logs.items() if args.logs else ():
-        write_whole(Path(args.logs) / name, text, newline="\r\n")
     rms = float(np.sqrt(np.mean(run.deviation**2))) / UM
     run, size = with_size(run, stated) if args.body_degC is not None else (run, [])
     write_run(args.output, run, seen_from(Path(args.output).parent, args.machine))
+    # after it: a run that comes second does not touch the logs of the first
+    for name, text in campaign.logs.items() if args.logs else ():
+        write_whole(Path(args.logs) / name, text, newline="\r\n")
     minutes = campaign.runs[-1].end / 60.0
     say(
         f"{args.output}: {len(run)} touches in {minutes:.0f} min, "

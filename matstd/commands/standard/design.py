@@ -66,11 +66,11 @@ def run(args: argparse.Namespace) -> int:
     from artefact.brief import read_project
     from artefact.reach import standing_remarks
     from matstd.console import say, say_assumed, say_each
-    from matstd.folder import results_folder
     from matstd.stages.from_project import dialects, feeds
     from matstd.workers import connected
     from report.task import task_lines
     from report.words import design_lines, proof_line
+    from twin.files import results_folder
 
     project, printed_by = read_project(args.project), asked_printer(args)
     if args.control:  # a file is seen from where the user stands, not from the project

@@ -78,8 +78,8 @@ def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
     from artefact.brief import read_project
     from matstd.console import say_assumed, say_each
-    from matstd.folder import results_folder
     from matstd.workers import connected
+    from twin.files import results_folder
 
     project, printed_by = read_project(args.source, _settings(args)), asked_printer(args)
     say_assumed(project.chain)

@@ -1,0 +1,263 @@
+"""Standards off their table and clamps inside them, against solids joined by manifold3d."""
+
+from ast import literal_eval
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from artefact.brief import Project, read_project
+from artefact.brief.workshop_tables import BodyTable, TableTable
+from matstd.cli import main
+from matstd.stages.seat import check_seat
+from twin.errors import BadFile
+from twin.frames import pose, rotation
+from twin.record import Setup
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+ALL = sorted([EXAMPLES / "hsm600u.toml", *(EXAMPLES / "machines").glob("*[!e].toml")])
+SIDES, CORNER, THICK = (280.0, 240.0), 25.0, 30.0
+NEAR = 0.6
+"""Of the limit, mm: nearer, two methods may differ about what touches."""
+
+
+@pytest.mark.parametrize("path", [p for p in ALL if not p.stem.endswith("machine")], ids=str)
+def test_every_project_of_the_examples_stands(path: Path) -> None:
+    check_seat(read_project(path))
+
+
+def example(**limits: float) -> Project:
+    made = read_project(EXAMPLES / "hsm600u.toml")
+    return replace(
+        made,
+        blank=made.blank.model_copy(update={"base_mm": SIDES}),
+        limits=made.limits.model_copy(update=limits),
+    )
+
+
+def with_table(project: Project, **keys: object) -> Project:
+    table = TableTable.model_validate(keys)
+    return replace(project, workshop=project.workshop.model_copy(update={"table": table}))
+
+
+def with_bodies(project: Project, *bodies: dict[str, object]) -> Project:
+    made = [BodyTable.model_validate(body) for body in bodies]
+    return replace(project, workshop=project.workshop.model_copy(update={"bodies": made}))
+
+
+def refusal(project: Project) -> str:
+    """Of the early stage; empty for none."""
+    try:
+        check_seat(project)
+    except BadFile as error:
+        return str(error)
+    return ""
+
+
+@cache
+def whole_base() -> trimesh.Trimesh:
+    """The base as two boxes and four round corners, by a library that knows nothing of ours."""
+    a, b = SIDES
+    boxes = [(a - 2 * CORNER, b, THICK), (a, b - 2 * CORNER, THICK)]
+    parts = [trimesh.creation.box(extents=sides) for sides in boxes]
+    for x in (-1, 1):
+        for y in (-1, 1):
+            round_ = trimesh.creation.cylinder(radius=CORNER, height=THICK, sections=256)
+            parts.append(round_.apply_translation([x * (a / 2 - CORNER), y * (b / 2 - CORNER), 0]))
+    whole = trimesh.boolean.union(parts, engine="manifold")
+    return whole.apply_translation([0, 0, THICK / 2])
+
+
+def base_mesh() -> trimesh.Trimesh:
+    return whole_base().copy()
+
+
+def placed(rng: np.random.Generator, T: np.ndarray) -> dict[str, object]:
+    """A clamp whose corner or side is somewhere near the outline of the base."""
+    along = rng.uniform(-1.0, 1.0, 2) * (np.array(SIDES) / 2 + 45.0)
+    x, y = (T[:3, :3] @ [*along, 0.0] + T[:3, 3])[:2]
+    body: dict[str, object] = {"name": "CLAMP", "height_mm": rng.uniform(5.0, 60.0)}
+    body["at_mm"] = [x, y, float(rng.choice([0.0, 0.0, THICK - 4.0, THICK + 3.0]))]
+    body["turned_deg"] = rng.uniform(-90.0, 90.0)
+    if rng.random() < 0.5:
+        return body | {"sides_mm": rng.uniform(15.0, 90.0, 2).tolist()}
+    return body | {"diameter_mm": rng.uniform(10.0, 60.0)}
+
+
+def clamp_mesh(body: dict, grown: float = 0.0) -> trimesh.Trimesh:
+    height = body["height_mm"] + 2 * grown
+    if "sides_mm" in body:
+        a, b = body["sides_mm"]
+        mesh = trimesh.creation.box(extents=(a + 2 * grown, b + 2 * grown, height))
+    else:
+        radius = body["diameter_mm"] / 2 + grown
+        mesh = trimesh.creation.cylinder(radius=radius, height=height, sections=256)
+    turn = trimesh.transformations.rotation_matrix(np.deg2rad(body["turned_deg"]), [0, 0, 1])
+    mesh.apply_transform(turn)
+    return mesh.apply_translation(np.add(body["at_mm"], [0, 0, body["height_mm"] / 2]))
+
+
+def shared(first: trimesh.Trimesh, second: trimesh.Trimesh) -> float:
+    common = trimesh.boolean.intersection([first, second], engine="manifold")
+    return 0.0 if common.is_empty else float(common.volume)
+
+
+@pytest.mark.parametrize("upright", [False, True])
+def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -> None:
+    rng, seen = np.random.default_rng(11), {True: 0, False: 0}
+    project = with_table(example(), sides_mm=[900.0, 900.0])
+    for _ in range(100):
+        place = np.array([*rng.uniform(-60.0, 60.0, 2), 0.0])
+        T_face = pose(rotation(np.array([0.0, 0.0, rng.uniform(-0.6, 0.6)])), place)
+        T = T_face.copy()
+        if upright:  # a face along Y of the table: its x, y, z are Z, X, Y of the frame
+            cycle = np.eye(3)[:, [2, 0, 1]]
+            T[:3, :3], T[:3, 3] = cycle @ T_face[:3, :3], cycle @ place
+        body = placed(rng, T_face)
+        base = base_mesh().apply_transform(T_face)
+        apart = shared(base, clamp_mesh(body, NEAR)) == 0.0
+        inside = shared(base, clamp_mesh(body, -NEAR)) > 0.0
+        if not (apart or inside):
+            continue
+        seen[inside] += 1
+        told = refusal(with_bodies(replace(project, setup=Setup("a", T)), body))
+        assert ("CLAMP beside the standard" in told) == inside, (body, T, told)
+        if inside:
+            assert "would do" in told
+            at = literal_eval(told.rsplit("at_mm = ", 1)[1].removesuffix(" would do"))
+            assert shared(base, clamp_mesh(body | {"at_mm": at})) < 1.0
+    assert min(seen.values()) > 25
+
+
+@pytest.mark.parametrize("is_disc", [True, False])
+def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) -> None:
+    """Of the base, what an outline that is larger by the overhang does not hold."""
+    rng, allowed, seen = np.random.default_rng(12), 25.0, {True: 0, False: 0}
+    size = {"diameter_mm": 400.0} if is_disc else {"sides_mm": [420.0, 350.0]}
+    project = with_table(example(overhang_mm=allowed), **size)
+
+    def table(more: float) -> trimesh.Trimesh:
+        if is_disc:
+            return trimesh.creation.cylinder(radius=200.0 + more, height=200.0, sections=2048)
+        a, b = 420.0, 350.0
+        sides = [(a + 2 * more, b, 200.0), (a, b + 2 * more, 200.0)]
+        parts = [trimesh.creation.box(extents=s) for s in sides]
+        for x in (-a / 2, a / 2):
+            for y in (-b / 2, b / 2):
+                round_ = trimesh.creation.cylinder(radius=more, height=200.0, sections=512)
+                parts.append(round_.apply_translation([x, y, 0]))
+        return trimesh.boolean.union(parts, engine="manifold")
+
+    tables = {more: table(more) for more in (allowed - NEAR, allowed + NEAR)}
+    for _ in range(100):
+        place = np.array([*rng.uniform(-80.0, 80.0, 2), 0.0])
+        T = pose(rotation(np.array([0.0, 0.0, rng.uniform(-np.pi, np.pi)])), place)
+        base = base_mesh().apply_transform(T)
+        outside = {more: base.volume - shared(base, one) > 1.0 for more, one in tables.items()}
+        if len(set(outside.values())) > 1:
+            continue
+        is_over = outside[allowed + NEAR]
+        seen[is_over] += 1
+        told = refusal(replace(project, setup=Setup("a", T)))
+        assert ("beyond the edge" in told) == is_over, (T, told)
+        if is_over:
+            origin = literal_eval(told.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
+            moved = base_mesh().apply_transform(pose(T[:3, :3], np.array(origin)))
+            assert moved.volume - shared(moved, tables[allowed + NEAR]) < 1.0
+    assert min(seen.values()) > 20
+
+
+def setup_at(x: float, y: float, z: float) -> Setup:
+    return Setup("a", pose(np.eye(3), np.array([x, y, z])))
+
+
+@pytest.mark.parametrize(
+    ("place", "told"),
+    [
+        # a disc of 160, the near side of a base of 280 at 300 mm from it
+        ((600.0, 0.0, 0.0), "it stands 300.0 mm beside it"),
+        ((0.0, 0.0, 30.0), "it floats 30.0 mm above it"),
+        ((0.0, 0.0, -30.0), "its lowest corner lies 30.0 mm below"),
+        # corner: hypot(60 + 115, 95) + 25 - 160 = 64.12
+        ((60.0, 0.0, 0.0), "it reaches 64.1 mm beyond the edge"),
+    ],
+)
+def test_distances_by_hand(place: tuple[float, float, float], told: str) -> None:
+    said = refusal(replace(example(), setup=setup_at(*place)))
+    assert told in said
+    origin = literal_eval(said.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
+    check_seat(replace(example(), setup=setup_at(*origin)))
+
+
+def test_what_carries_a_standard_above_the_table() -> None:
+    high = replace(example(), setup=setup_at(0.0, 0.0, 30.0))
+    riser = {"name": "RISER", "diameter_mm": 200.0, "height_mm": 30.0}
+    assert not refusal(with_bodies(high, riser))
+    assert "floats 30.0 mm" in refusal(with_bodies(high, riser | {"at_mm": [400.0, 0.0, 0.0]}))
+    assert not refusal(replace(high, limits=high.limits.model_copy(update={"riser_mm": 30.0})))
+
+
+def test_every_set_up_is_looked_at() -> None:
+    project = example()
+    beside = Setup("b", pose(np.eye(3), np.array([500.0, 0.0, 0.0])))
+    assert "setup.b.origin_mm" in refusal(replace(project, further_setups=(beside,)))
+    clamp = {"name": "C", "at_mm": [130.0, 0.0, 0.0], "sides_mm": [40.0, 20.0], "height_mm": 30.0}
+    assert "C beside the standard: it reaches 30.0 mm" in refusal(with_bodies(project, clamp))
+    assert not refusal(with_bodies(project, clamp | {"setup": "b"}))
+
+
+def test_a_mesh_that_surrounds_the_base_is_no_clamp_in_it(tmp_path: Path) -> None:
+    """Boxes that cover a frame reach into what it surrounds; the frame does not."""
+    outer, inner = (trimesh.creation.cylinder(r, 20.0, sections=64) for r in (230.0, 195.0))
+    frame = trimesh.boolean.difference([outer, inner], engine="manifold")
+    frame.apply_translation([0, 0, 10]).export(tmp_path / "frame.stl")
+    path = tmp_path / "project.toml"
+    project = replace(with_table(example(), diameter_mm=500.0), path=path)
+    body = {"name": "FRAME", "stl": "frame.stl"}
+    assert not refusal(with_bodies(project, body))
+    told = refusal(with_bodies(project, body | {"at_mm": [60.0, 0.0, 0.0]}))
+    assert "FRAME beside the standard" in told
+    assert "workshop.bodies.0.at_mm = [" in told
+
+
+def test_a_clamp_in_the_finished_standard_is_seen_by_its_mesh(tmp_path: Path) -> None:
+    """Above the base, in the middle of a post: the early look cannot know of it."""
+    from matstd.stages.seat import check_beside
+
+    post = trimesh.creation.cylinder(radius=12.0, height=100.0).apply_translation([60, 40, 75])
+    trimesh.boolean.union([base_mesh(), post], engine="manifold").export(tmp_path / "standard.stl")
+
+    class Standing:
+        class _Post:
+            @staticmethod
+            def distance(points: np.ndarray) -> np.ndarray:
+                return np.hypot(points[:, 0] - 60.0, points[:, 1] - 40.0) - 12.0
+
+        bodies = {"POST1": _Post}  # noqa: RUF012
+
+    clamp = {"name": "ARM", "at_mm": [80.0, 40.0, 60.0], "sides_mm": [30.0, 20.0], "height_mm": 9.0}
+    project = with_bodies(example(), clamp)
+    check_seat(project)
+    with pytest.raises(BadFile, match=r"ARM beside the standard: it reaches 7\.0 mm into POST1"):
+        check_beside(project, Standing, tmp_path)  # type: ignore[arg-type]
+    clear = with_bodies(example(), clamp | {"at_mm": [88.0, 40.0, 60.0]})
+    check_beside(clear, Standing, tmp_path)  # type: ignore[arg-type]
+
+
+def test_the_command_refuses_before_it_designs(tmp_path: Path, capsys, monkeypatch) -> None:
+    monkeypatch.setattr("matstd.stages.design.check_reach", None)  # would fail with a traceback
+    text = (EXAMPLES / "hsm600u.toml").read_text(encoding="utf-8")
+    machine, task = (EXAMPLES / f for f in ("hsm600u-machine.toml", "task.toml"))
+    text = text.replace('"hsm600u-machine.toml"', f'"{machine}"').replace(
+        '"task.toml"', f'"{task}"'
+    )
+    path = tmp_path / "p.toml"
+    path.write_text(text.replace("origin_mm = [0.0,", "origin_mm = [600.0,"), encoding="utf-8")
+    assert main(["design", str(path), "-o", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert "it stands 300.0 mm beside it" in said
+    assert "would do" in said
+    assert [p.name for p in tmp_path.iterdir()] == ["p.toml"]
