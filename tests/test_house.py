@@ -61,6 +61,7 @@ EXCUSED = {
     "twin/foreign/machine_draft.py": "comments of a machine file that is written",
     "probe_paths/plan/planner.py": "reason of a refusal, as the reach has it",
     "probe_paths/control/log_clock.py": "remarks of a reader on single lines, like its refusals",
+    "probe_paths/campaign/as_programmed.py": "refusals that name what stood in a log",
     "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",

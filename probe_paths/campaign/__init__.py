@@ -6,6 +6,7 @@ never learns what the virtual machine knew. `visits` runs them again and again. 
 `probing_time` say what a plan costs.
 """
 
+from probe_paths.campaign.as_programmed import check_as_programmed
 from probe_paths.campaign.ball_change import (
     BallChange,
     ball_changes,
@@ -35,6 +36,7 @@ __all__ = [
     "VirtualMachine",
     "ball_centres",
     "ball_changes",
+    "check_as_programmed",
     "check_changes",
     "check_moves",
     "checked_parts",

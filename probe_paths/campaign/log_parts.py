@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from artefact.body import Standard
+from probe_paths.campaign.as_programmed import check_numbers
 from probe_paths.control import UNDATED, LogPart
 from probe_paths.plan import calibration_hash, stated_serial
 from twin.errors import BadFile
@@ -98,9 +99,10 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
     """Parts without touches of features that the standard lacks, and remarks on all of them.
 
     Raises:
-        BadFile: A log of another standard or another design of it, or nothing but such touches in
-            a part.
+        BadFile: A log of another standard or another design of it, nothing but such touches in a
+            part, or numbers that cannot be right (`check_numbers`).
     """
+    check_numbers(parts)
     kept: list[LogPart] = []
     remarks = [f"{part.path}: {remark}" for part in parts for remark in part.remarks]
     count = len(standard.features)

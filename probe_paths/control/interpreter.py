@@ -137,6 +137,8 @@ def interpret(
         steps=tuple(steps),
         is_search=stated.is_search,
         is_first=stated.is_first,
+        tool=state.tool,
+        preset=state.preset,
     )
 
 

@@ -66,6 +66,8 @@ class LogPart:
         rotary: Rotary positions by letter, degrees, each (N,).
         side: Side that each rotary axis came from, by letter, each (N,).
         time: s since `begin`, (N,); never falling.
+        tool: Number of the tool as the control had it; None where the line was lost.
+        preset: Number of the preset that the program selected; None where the line was lost.
         temperature: degC by sensor, each (N,); nan where a line could not be read.
         is_complete: The program ran to its end.
         remarks: What was left out or mended, one line each.
@@ -88,6 +90,8 @@ class LogPart:
     time: Array
     is_complete: bool
     remarks: tuple[str, ...] = ()
+    tool: float | None = None
+    preset: float | None = None
     temperature: Mapping[str, Array] = field(default_factory=dict)
 
     @property
@@ -190,7 +194,7 @@ class _PartReader:
         self.sensed = [sensed[i : i + 4] for i in range(0, len(sensed), 4)]
         self.names += self.sensed
         day, start = self._date(), self._head_clock()
-        self._pairs(("TOOL", "PRESET"), is_needed=False)
+        tool, preset = self._pairs(("TOOL", "PRESET"), is_needed=False) or (None, None)
         calibration = self._pairs(("R", "L"))
         assert calibration is not None
         offset = self._pairs(("EX", "EY", "TL"), is_needed=False) or [0.0, 0.0, 0.0]
@@ -217,6 +221,8 @@ class _PartReader:
             time=table[:, -1],
             is_complete=is_complete,
             remarks=(*self.remarks, *clock.remarks),
+            tool=tool,
+            preset=preset,
             temperature={
                 sensor.name: sensor.factor * table[:, count + i] + sensor.offset
                 for i, sensor in enumerate(heading.sensors)

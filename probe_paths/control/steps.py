@@ -119,6 +119,8 @@ class ReadProgram:
         steps: In order of execution.
         is_search: Its touches come down from above on whatever is there.
         is_first: It is one that a control is tried with, and measures nothing.
+        tool: Number of the tool that it calls.
+        preset: Number of the preset that it selects.
     """
 
     path: Path
@@ -128,6 +130,8 @@ class ReadProgram:
     steps: tuple[Step, ...]
     is_search: bool = False
     is_first: bool = False
+    tool: int | None = None
+    preset: int | None = None
 
     @property
     def touches(self) -> list[ProbeStep]:

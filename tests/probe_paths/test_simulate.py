@@ -201,6 +201,90 @@ def test_a_log_that_stopped_is_used_and_told(logged, capsys):
     assert "stopped after" in capsys.readouterr().out
 
 
+def _rows(lines, begins):
+    return [i for i, line in enumerate(lines) if re.match(begins, line)]
+
+
+def _dead_clock(lines):
+    times = [i for i in _rows(lines, r"T ") if i > 12]
+    return [lines[times[0]] if i in times else line for i, line in enumerate(lines)]
+
+
+def _a_year_earlier(lines):
+    return [
+        re.sub(r"(\d{4})-", lambda m: f"{int(m[1]) - 1}-", line, count=1)
+        if line.startswith("DATE")
+        else line
+        for line in lines
+    ]
+
+
+def _flipped_sides(lines):
+    return [
+        re.sub(r"U[A-C] *-?[0-9.]+", lambda m: f"{m[0][:2]} {-float(m[0][2:]):.1f}", line)
+        if line.startswith("U")
+        else line
+        for line in lines
+    ]
+
+
+def _one_decimal(lines):
+    return [
+        re.sub(r"-?\d+\.\d+", lambda m: f"{float(m[0]):.1f}", line)
+        if line.startswith("X")
+        else line
+        for line in lines
+    ]
+
+
+def _other_number(word):
+    def damage(lines):
+        return [
+            re.sub(rf"{word} *([0-9.]+)", lambda m: f"{word} {float(m[1]) + 1:.1f}", line)
+            if line.startswith("TOOL")
+            else line
+            for line in lines
+        ]
+
+    return damage
+
+
+def _another_pose(lines):
+    place = _rows(lines, r"P ")[2]
+    return [
+        re.sub(r"S *([0-9.]+)", lambda m: f"S {float(m[1]) + 1:.1f}", line) if i == place else line
+        for i, line in enumerate(lines)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("damage", "expected"),
+    [
+        (_dead_clock, "the same time at all"),
+        (_a_year_earlier, "logs of one campaign, within 30 days"),
+        (_flipped_sides, "side of "),
+        (_one_decimal, "in steps of 0.01 mm or more"),
+        (_other_number("TOOL"), "TOOL: found 31, expected 30, as MS_A"),
+        (_other_number("PRESET"), "PRESET: found 2, expected 1, as MS_A"),
+        (_another_pose, "pose "),
+    ],
+)
+def test_a_log_that_says_something_else_than_its_program_is_refused(
+    logged, capsys, damage, expected
+):
+    """Text that was damaged on its way; before these all came out as measurements."""
+    log = sorted((logged / "logs").iterdir())[0]
+    lines = log.read_text(encoding="ascii").splitlines()
+    log.write_text("\n".join(damage(lines)) + "\n", encoding="ascii")
+    assert damage(lines) != lines
+    assert evaluated(logged) == 2
+    message = capsys.readouterr().err
+    assert expected in message
+    assert log.name in message
+    assert message.count("\n") == 1
+    assert not (logged / "read" / "run.csv").exists()
+
+
 @pytest.mark.parametrize(
     ("more", "expected"),
     [(("--u-um", "0"), "expected an uncertainty"), (("--z", "tip"), "meaning of Z")],

@@ -1,8 +1,15 @@
 """`matstd evaluate`: logs that our probing programs left on a control, made a run file."""
 
+from __future__ import annotations
+
 import argparse
+from typing import TYPE_CHECKING
 
 from matstd.options import add_body, add_output, body_stated, seen_from, with_size
+
+if TYPE_CHECKING:
+    from probe_paths.control import LogPart
+    from twin.machine import Chain
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,6 +38,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=10.0,
         help="what the ball of OUT/setup/..._CAL may have moved, or the effective radius of the "
         "probe have changed, between two of its logs, µm; beyond it nothing is evaluated (10)",
+    )
+    parser.add_argument(
+        "--programs",
+        metavar="DIR",
+        help="programs that the logs are compared with: sides, poses, tool and preset (the folder "
+        "`programs` beside STANDARD.toml, where there is one)",
     )
     parser.add_argument(
         "--sensors",
@@ -69,16 +82,16 @@ def run(args: argparse.Namespace) -> int:
     refuse_to_overwrite(args.output, args.force)
     chain, standard = read_machine(args.machine), read_standard(args.standard)
     parts = [part for path in args.logs for part in read_log(path, chain.rotary_axes)]
+    _check_programs(args, parts, chain)
     dialect, u, limit = Dialect(result_height=args.z), args.u_um * UM, args.probe_limit_um * UM
     changes = ball_changes(parts, standard, chain, u, dialect)
     first = [part for part in parts if part.is_first]
     heights = [read_heights(part, standard, chain) for part in first]
-    known = [(part.radius, part.heading.probe.radius) for part in first]
+    known = [(p.radius, p.heading.probe.radius) for p in first]
     radii = effective_radii(parts, chain, u, dialect)
     told = ball_lines(changes, limit, heights, radii, known)
     if not any(part.is_measuring for part in parts) and told:
-        say("no run file: the logs hold no measurements")
-        say_each(told)
+        say_each(["no run file: the logs hold no measurements", *told])
         return 0
     check_changes(changes, limit)
     measured = evaluate(parts, standard, chain, u, dialect)
@@ -106,6 +119,24 @@ def run(args: argparse.Namespace) -> int:
         if not part.is_complete
     )
     return 0
+
+
+def _check_programs(args: argparse.Namespace, parts: list[LogPart], chain: Chain) -> None:
+    """Compare the logs with the programs that wrote them, where these are at hand."""
+    from pathlib import Path
+
+    from probe_paths.campaign import check_as_programmed
+    from probe_paths.control import read_program
+    from twin.errors import DesignError
+
+    beside = Path(args.standard).parent / "programs"
+    folder = beside if args.programs is None else Path(args.programs)
+    names = {part.program for part in parts if part.is_measuring}
+    files = [f for f in folder.glob("*") if f.stem in names and f.suffix in (".H", ".ngc")]
+    if args.programs is not None and not files:
+        raise DesignError(f"--programs {folder}: found none of {', '.join(sorted(names))}")
+    programs = {file.stem: read_program(file, chain) for file in files}
+    check_as_programmed(parts, programs, chain)
 
 
 def _check_numbers(args: argparse.Namespace) -> None:

@@ -1,0 +1,123 @@
+"""Logs beside what they should be: a clock that runs, decimals, what the program itself says.
+
+A log is text that passes through many hands. What it says of sides, tool and preset is taken as
+true by everything behind it, and is known from the program that wrote it.
+"""
+
+from collections.abc import Mapping, Sequence
+from datetime import timedelta
+
+import numpy as np
+
+from probe_paths.control import UNDATED, LogPart, ProbeStep, ReadProgram
+from twin.errors import BadFile
+from twin.machine import Chain
+from twin.units import DEG
+
+TOGETHER = timedelta(days=30)
+"""Between the first and the last log of one evaluation: a standard stays clamped for days."""
+
+COARSE = 0.01
+"""Step of positions that is too coarse for a measurement, mm; the masks print 0.000001."""
+
+FEWEST = 5
+"""Touches from which a clock or a step is judged."""
+
+SAME_ANGLE = 0.05
+"""Degrees by which a rotary axis may stand beside where the program sent it: the programs' own
+limit."""
+
+
+def check_numbers(parts: Sequence[LogPart]) -> None:
+    """Refuse logs whose clock stood, whose positions are rounded, and logs of other times.
+
+    Raises:
+        BadFile: File and line, what stood there, what was expected.
+    """
+    dated = sorted((p for p in parts if p.begin.year != UNDATED.year), key=lambda p: p.begin)
+    if dated and dated[-1].begin - dated[0].begin > TOGETHER:
+        raise BadFile(
+            dated[0].path,
+            "DATE",
+            f"{dated[0].begin.date()}, where {dated[-1].path.name} has {dated[-1].begin.date()}",
+            f"logs of one campaign, within {TOGETHER.days} days; evaluate them apart, or put the "
+            f"clock of the control right",
+        )
+    for part in (p for p in parts if len(p.number) >= FEWEST):
+        _check_steps(part)
+    for key in ("tool", "preset"):
+        _check_common(key, [p for p in parts if getattr(p, key) is not None])
+
+
+def _check_steps(part: LogPart) -> None:
+    """A clock that runs, and positions with decimals."""
+    last = f"line {part.line[-1]}"
+    if np.ptp(part.time) == 0.0:
+        found = f"the same time at all {len(part.time)} touches"
+        expected = "a clock that runs: one that stands hides every drift"
+        raise BadFile(part.path, last, found, expected)
+    steps = part.xyz / COARSE
+    if np.allclose(steps, np.round(steps), rtol=0.0, atol=1e-4):
+        found = f"positions in steps of {COARSE:g} mm or more at all touches"
+        raise BadFile(part.path, last, found, "six decimals, as the program prints them")
+
+
+def _check_common(key: str, parts: Sequence[LogPart]) -> None:
+    """One preset for all logs, and one tool for all of one probe."""
+    for part in parts[1:]:
+        first, own = getattr(parts[0], key), getattr(part, key)
+        is_same_probe = part.heading.probe == parts[0].heading.probe
+        if own != first and (is_same_probe or key == "preset"):
+            found = f"{own:g}, where {parts[0].path.name} has {first:g}"
+            raise BadFile(part.path, key.upper(), found, f"one {key} for all logs of a campaign")
+
+
+def check_as_programmed(
+    parts: Sequence[LogPart], programs: Mapping[str, ReadProgram], chain: Chain
+) -> None:
+    """Refuse logs that say something else than the programs that wrote them.
+
+    Args:
+        parts: Of the logs.
+        programs: By name; a log of another program is not looked at.
+
+    Raises:
+        BadFile: File and line, what stood there, what the program has.
+    """
+    for part in parts:
+        program = programs.get(part.program)
+        if program is None:
+            continue
+        for key in ("tool", "preset"):
+            found, planned = getattr(part, key), getattr(program, key)
+            if None not in (found, planned) and found != planned:
+                expected = f"{planned:g}, as {program.path.name} calls it"
+                raise BadFile(part.path, key.upper(), f"{found:g}", expected)
+        planned_touches = {touch.number: touch for touch in program.touches if not touch.is_air}
+        for i, number in enumerate(part.number.tolist()):
+            if number not in planned_touches:
+                expected = f"one of the touches of {program.path.name}"
+                raise BadFile(part.path, f"line {part.line[i]}", f"touch {number}", expected)
+            _check_touch(part, i, planned_touches[number], program, chain)
+
+
+def _check_touch(
+    part: LogPart, i: int, touch: ProbeStep, program: ReadProgram, chain: Chain
+) -> None:
+    """One touch of a log: counters, sides, and where the rotary axes stood."""
+    where, number = f"line {part.line[i]}", int(part.number[i])
+    rows = [
+        ("pose", int(part.pose[i]), touch.pose),
+        ("feature", int(part.feature[i]), touch.feature),
+    ]
+    for letter, side in part.side.items():
+        column = chain.axis_index(letter)
+        rows.append((f"side of {letter}", int(side[i]), int(touch.side[column])))
+        at, sent = float(part.rotary[letter][i]), float(touch.q[column]) / DEG
+        if abs(at - sent) > SAME_ANGLE:
+            found = f"{letter} at {at:.4f} degrees at touch {number}"
+            raise BadFile(part.path, where, found, f"{sent:.4f}, where it was sent")
+    for what, has, wanted in rows:
+        if has != wanted:
+            found = f"{what} {has:+d} at touch {number}"
+            raise BadFile(part.path, where, found, f"{wanted:+d}, as {program.path.name} has it")
