@@ -55,7 +55,7 @@ def test_numbers_are_those_of_float_to_the_bit(strange: str, end: str) -> None:
         ("", "line 4002, column a: found '', expected a number"),
         ("nan", "line 4002, column a: found nan, expected a finite number"),
         ("1e999", "line 4002, column a: found 1e999, expected a finite number"),
-        ("9" * 400, "line 4002, column a: found 9+, expected a finite number"),
+        ("9" * 400, "line 4002, column a: found 9+.*, expected a finite number"),
         ("2e12", "line 4002, column a: found 2e12, expected at most 1e.12"),
         ("-7", "line 4002, column a: found -7, expected -5 or more"),
     ],
