@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 PERIOD = 10.0
 """Seconds between two lines where nobody watches a terminal."""
 
-BLOCK = 20_000
+BLOCK = 10_000
 """Rows of a table that are computed at once: a second or two, some hundred MB."""
 
 

@@ -92,7 +92,7 @@ def is_file(path: Path) -> bool:
 
 def _one_line_end(text: str) -> str:
     """Text with line feeds, whichever system wrote it."""
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
 
 def parse_toml(

@@ -19,7 +19,7 @@ def run(args: argparse.Namespace) -> int:
 
     from matstd.console import say_assumed
     from matstd.progress import stages, table_blocks
-    from twin.files import read_errors, read_machine, read_poses, refuse_to_overwrite, write_whole
+    from twin.files import read_errors, read_machine, read_poses, refuse_to_overwrite, written_whole
     from twin.model import Model
     from twin.record import at_poses
     from twin.units import UM
@@ -29,18 +29,19 @@ def run(args: argparse.Namespace) -> int:
     errors = read_errors(args.errors, chain)
     model = Model(chain, tuple(effect for effect, _ in errors))
     theta = np.concatenate([amplitude for _, amplitude in errors] or [np.zeros(0)])
-    with stages() as show:
+    with (
+        stages() as show,
+        written_whole(args.output) as part_file,
+        open(part_file, "w", newline="\n") as out,
+    ):
         q, length = read_poses(args.poses, chain)
-        deviation = np.concatenate(
-            [
-                model.tip_deviation(at_poses(chain, q[part], length[part]), theta) / UM
-                for part in table_blocks("poses", len(q), show)
-            ]
-        )
-        lines = ["dx_um,dy_um,dz_um"]
-        lines += [",".join(f"{v:.9f}" for v in row) for row in deviation]
-        write_whole(args.output, "\n".join(lines) + "\n")
-    size = np.linalg.norm(deviation, axis=1)
+        size = np.empty(len(q))
+        out.write("dx_um,dy_um,dz_um\n")
+        for part in table_blocks("poses", len(q), show):
+            deviation = model.tip_deviation(at_poses(chain, q[part], length[part]), theta) / UM
+            size[part] = np.linalg.norm(deviation, axis=1)
+            # one format for all rows of a block takes a quarter of one a number
+            out.write("%.9f,%.9f,%.9f\n" * len(deviation) % tuple(deviation.ravel().tolist()))
     print(f"{args.output}: {len(q)} poses, mean {size.mean():.3f} µm, worst {size.max():.3f} µm")
     say_assumed(chain)
     return 0
