@@ -14,7 +14,8 @@ Places for balls and for random smooth faces lie all over the blank (`layout`); 
 machine can make on them (`reach`) is a row of information (`worth`); balls, faces, table poses and
 touches are chosen from the rows (`place`) and judged beside other artefacts (`compare`). A new kind
 of face, body or limit goes into `body`, a new key of the project into `brief`, a rival artefact
-into `layout`, a hindrance for the probe into `reach`, a criterion into `worth`.
+into `layout`, a hindrance for the probe into `reach`, for its place on the table into `seat`, a
+criterion into `worth`.
 """
 
 from artefact.body import (
@@ -36,7 +37,7 @@ from artefact.place import Placement, PlacementOptions, design_standard
 from artefact.reach import ProbeReach, Requests
 from artefact.worth import Criterion
 
-PARTS = ("brief", "body", "layout", "reach", "worth", "certify", "compare", "place")
+PARTS = ("brief", "body", "layout", "reach", "seat", "worth", "certify", "compare", "place")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [

@@ -7,18 +7,9 @@ standard is a `Solid` of the `Workshop`.
 """
 
 from artefact.reach.datum_ball import DatumBall
-from artefact.reach.face_of_table import hangs, seat_height, standing_remarks, table_face
+from artefact.reach.face_of_table import hangs, standing_remarks, table_face
 from artefact.reach.mesh_cover import closed_mesh, covering_solids
 from artefact.reach.probe_clearance import ProbeShape, clearance
-from artefact.reach.seating import (
-    TOUCHING,
-    base_corners,
-    common_part,
-    middle_room,
-    off_table,
-    over_edge,
-    overlap,
-)
 from artefact.reach.touchable import Mask, ProbeReach, Requests, joined
 from artefact.reach.within_reach import (
     ANGLE,
@@ -41,7 +32,6 @@ from artefact.reach.workshop import (
 __all__ = [
     "ANGLE",
     "TABLE",
-    "TOUCHING",
     "DatumBall",
     "Limit",
     "Mask",
@@ -51,22 +41,15 @@ __all__ = [
     "Requests",
     "Solid",
     "Workshop",
-    "base_corners",
     "clearance",
     "clearance_in_workshop",
     "closed_mesh",
-    "common_part",
     "covering_solids",
     "hangs",
     "joined",
-    "middle_room",
-    "off_table",
-    "over_edge",
-    "overlap",
     "places_on",
     "reach_of",
     "round_table",
-    "seat_height",
     "spread_poses",
     "standing_remarks",
     "still_frames",

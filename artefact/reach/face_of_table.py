@@ -6,7 +6,7 @@ machine's table, on which a standard stands upright, looks along Y and not along
 
 import numpy as np
 
-from twin.frames import Array, apply, inverse, pose
+from twin.frames import Array, pose
 from twin.machine import Chain, table_to_tool
 
 _ALONG = 0.7  # cosine above which two directions count as one axis: half a right angle
@@ -31,19 +31,6 @@ def table_face(T_table_artefact: Array) -> Array:
     if up[axis] < 0.0:
         R = R @ np.diag([1.0, -1.0, -1.0])
     return pose(R)
-
-
-def seat_height(T_table_artefact: Array, half_size: tuple[float, float]) -> float:
-    """Height of the lowest corner of a base above the origin of the table's face, mm.
-
-    Args:
-        T_table_artefact: Where the standard stands, shape (4, 4).
-        half_size: Half sides of its base, mm.
-    """
-    a, b = half_size
-    corners = np.array([[x, y, 0.0] for x in (-a, a) for y in (-b, b)])
-    on_face = apply(inverse(table_face(T_table_artefact)), apply(T_table_artefact, corners))
-    return float(on_face[:, 2].min())
 
 
 def hangs(chain: Chain, T_table_artefact: Array) -> bool:

@@ -93,7 +93,6 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         making = making_of(placement.standard, stiffness)
         write_making(folder / "making.json", making)
         conformity = cad.result()
-        check_beside(project, placement.standard, folder)
     _draw(project, placement.standard, conformity, folder)
     progress("probing programs", 0, 1)
     stations = make_stations(plans, dialects(project), feeds(project))
@@ -146,9 +145,11 @@ def _worst(placement: Placement, study: Study) -> WorstRegions:
 
 
 def _export(project: Project, standard: Standard, folder: Path) -> Conformity:
-    """STEP, STL, 3MF and glTF of a standard, measured."""
+    """STEP, STL, 3MF and glTF of a standard, measured; refused where a clamp stands in it."""
     who = project.standard
-    return export_standard(standard, folder, author=who.author, organisation=who.organisation)
+    made = export_standard(standard, folder, author=who.author, organisation=who.organisation)
+    check_beside(project, standard, folder)
+    return made
 
 
 def _draw(project: Project, standard: Standard, conformity: Conformity, folder: Path) -> None:

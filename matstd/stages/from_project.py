@@ -14,9 +14,11 @@ from artefact.reach import (
     Solid,
     Workshop,
     covering_solids,
-    middle_room,
     round_table,
     still_frames,
+)
+from artefact.seat import (
+    middle_room,
 )
 from artefact.worth import Calibration, CriterionOptions, TouchOptions
 from probe_paths.emit import SEARCH, Feeds

@@ -18,9 +18,11 @@ from artefact.reach import (
     ProbeReach,
     places_on,
     reach_of,
-    seat_height,
     spread_poses,
     turned,
+)
+from artefact.seat import (
+    seat_height,
 )
 from artefact.worth import poses_within
 from matstd.stages.from_project import (

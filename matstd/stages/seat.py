@@ -12,22 +12,24 @@ import numpy as np
 from artefact.body import Standard
 from artefact.brief import BodyTable, Project
 from artefact.reach import (
-    TOUCHING,
     Solid,
-    base_corners,
     closed_mesh,
-    common_part,
     hangs,
+    table_face,
+)
+from artefact.seat import (
+    TOUCHING,
+    base_corners,
+    common_part,
     off_table,
     over_edge,
     overlap,
     seat_height,
-    table_face,
 )
 from cad_out.meshes import read_stl
 from matstd.stages.from_project import blank, solids_of, table_of
 from twin.errors import BadFile
-from twin.frames import Array, apply, fixed_xyz_angles, inverse, pose, rotation
+from twin.frames import Array, apply, fixed_xyz, fixed_xyz_angles, inverse, pose, rotation
 from twin.record import Setup
 from twin.units import DEG
 
@@ -44,8 +46,11 @@ _FURTHER = (1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0, 30
 _SIDES = 256
 """Of the hull round a disc: 0.008 mm outside it at a diameter of 200 mm."""
 
-_STEPS = 101
-"""Places of a standard on its way to the middle of the table."""
+_TURNS = ((0.0, 0.0, 0.0), (-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 0.0))
+"""Ways in which a standard may stand, degrees."""
+
+_HALVES = 7
+"""Of the way of a standard to the middle of the table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -294,18 +299,31 @@ def _seats(project: Project, name: str) -> Iterator[tuple[str, Project]]:
     face = table_face(T)[:3, :3]
     on_face = face.T @ T[:3, 3]
     height = table_of(project).high - seat_height(T, blank(project).base.half_size)
-    for up in (0.0, height):
-        for share in np.linspace(1.0, 0.0, _STEPS):
-            place = on_face.copy() if share == 1.0 else np.trunc(share * on_face)
-            moved = T.copy()
-            place[2] = on_face[2] + up
-            moved[:3, 3] = np.round(face @ place, 1) + 0.0  # as it is written
-            setup = replace(setups[k], T_table_artefact=moved)
+    for angles in _TURNS if hangs(project.chain, T) else ():
+        setup = Setup(name, pose(fixed_xyz(np.array(angles) * DEG), T[:3, 3]), setups[k].run)
+        if stands(project, setup):
             others = [*setups[:k], setup, *setups[k + 1 :]]
             other = replace(project, setup=others[0], further_setups=tuple(others[1:]))
-            if stands(other, setup):
-                yield f"setup.{name}.origin_mm = {_list(moved[:3, 3])}", other
+            yield f"setup.{name}.rotation_deg = {_list(np.array(angles))}", other
+    for up in (0.0, height):
+        low, high, best = 0.0, 1.0, None  # the way to the middle, halved until it is known to 1 %
+        for share in (1.0, 0.0, *[None] * _HALVES):
+            share = 0.5 * (low + high) if share is None else share
+            place = on_face.copy() if share == 1.0 else np.trunc(share * on_face)
+            place[2] = on_face[2] + up
+            moved = T.copy()
+            moved[:3, 3] = np.round(face @ place, 1) + 0.0  # as it is written
+            setup = replace(setups[k], T_table_artefact=moved)
+            if stands(project, setup):
+                best, low = setup, share
+            else:
+                high = share
+            if low == 1.0 or (best is None and share == 0.0):
                 break
+        if best is not None:
+            others = [*setups[:k], best, *setups[k + 1 :]]
+            other = replace(project, setup=others[0], further_setups=tuple(others[1:]))
+            yield f"setup.{name}.origin_mm = {_list(best.T_table_artefact[:3, 3])}", other
     if not hangs(project.chain, T):
         beyond = float(np.ceil(over_edge(table_of(project), blank(project).base, T)))
         if off_table(table_of(project), blank(project).base, T) == 0.0 < beyond:

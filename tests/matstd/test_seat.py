@@ -141,7 +141,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
 
     def table(more: float) -> trimesh.Trimesh:
         if is_disc:
-            return trimesh.creation.cylinder(radius=200.0 + more, height=200.0, sections=2048)
+            return trimesh.creation.cylinder(radius=200.0 + more, height=200.0, sections=512)
         a, b = 420.0, 350.0
         sides = [(a + 2 * more, b, 200.0), (a, b + 2 * more, 200.0)]
         parts = [trimesh.creation.box(extents=s) for s in sides]

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from artefact.body import Base, outline_distance
-from artefact.reach.face_of_table import table_face
-from artefact.reach.workshop import Solid
+from artefact.reach import Solid, table_face
 from twin.frames import Array, apply, inverse
 
 TOUCHING = 0.1
@@ -40,6 +39,19 @@ def base_corners(base: Base, T_table_artefact: Array) -> Array:
     corners = [np.column_stack([xy, np.full(len(xy), z)]) for z in (0.0, base.thickness)]
     T_face_artefact = inverse(table_face(T_table_artefact)) @ T_table_artefact
     return apply(T_face_artefact, np.concatenate(corners))
+
+
+def seat_height(T_table_artefact: Array, half_size: tuple[float, float]) -> float:
+    """Height of the lowest corner of a base above the origin of the table's face, mm.
+
+    Args:
+        T_table_artefact: Where the standard stands, shape (4, 4).
+        half_size: Half sides of its base, mm.
+    """
+    a, b = half_size
+    corners = np.array([[x, y, 0.0] for x in (-a, a) for y in (-b, b)])
+    on_face = apply(inverse(table_face(T_table_artefact)), apply(T_table_artefact, corners))
+    return float(on_face[:, 2].min())
 
 
 def over_edge(table: Solid, base: Base, T_table_artefact: Array) -> float:

@@ -1,0 +1,26 @@
+"""Whether a standard stands on its table and bodies are apart: outlines, hulls, common parts.
+
+In: base, table and bodies in the frame of the table's face. Out: distances in mm.
+"""
+
+from artefact.seat.seating import (
+    TOUCHING,
+    base_corners,
+    common_part,
+    middle_room,
+    off_table,
+    over_edge,
+    overlap,
+    seat_height,
+)
+
+__all__ = [
+    "TOUCHING",
+    "base_corners",
+    "common_part",
+    "middle_room",
+    "off_table",
+    "over_edge",
+    "overlap",
+    "seat_height",
+]
