@@ -24,6 +24,9 @@ Pair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Degree = Annotated[int, Field(ge=2, le=9)]
 
+_OLD_SOURCE, _OLD_MODULUS = "finite elements", 200e3
+"""Of a sag without a modulus: earlier versions computed every one for steel, N/mm^2."""
+
 _ORTHONORMAL = 1e-9  # deviation of R R^T from 1 that counts as a slip and not as rounding
 
 
@@ -31,6 +34,10 @@ class _Material(Table):
     name: str
     density_kg_mm3: Positive
     expansion: float = Field(alias="expansion_1_K", ge=0.0, lt=1e-3)
+    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
+    poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
+    modulus_source: str = "stated"
+    modulus_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
 
 
 class _Base(Table):
@@ -98,6 +105,7 @@ class _Sag(Table):
     source: str
     down: str = "-Z"
     share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
+    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
     um: dict[str, Annotated[list[Triple], Field(min_length=3, max_length=3)]]
 
 
@@ -147,7 +155,13 @@ def _standard(path: Path, file: _File) -> Standard:
             name=file.name,
             serial=file.serial,
             material=Material(
-                file.material.name, file.material.density_kg_mm3, file.material.expansion
+                file.material.name,
+                file.material.density_kg_mm3,
+                file.material.expansion,
+                modulus=file.material.modulus_MPa,
+                poisson=file.material.poisson,
+                modulus_source=file.material.modulus_source,
+                modulus_share=file.material.modulus_share,
             ),
             base=_base(path, file.base),
             core=None
@@ -187,7 +201,10 @@ def _sag(path: Path, file: _File) -> Sag | None:
     if file.sag.down not in DIRECTIONS:
         raise BadFile(path, "sag.down", file.sag.down, f"one of {', '.join(DIRECTIONS)}")
     per_weight = {name: np.array(rows) * UM for name, rows in file.sag.um.items()}
-    return Sag(file.sag.source, file.sag.down, file.sag.share, per_weight)
+    modulus = file.sag.modulus_MPa
+    if modulus is None and file.sag.source == _OLD_SOURCE:
+        modulus = _OLD_MODULUS
+    return Sag(file.sag.source, file.sag.down, file.sag.share, per_weight, modulus=modulus)
 
 
 def _check_features(path: Path, file: _File, key: str, named: Iterable[str]) -> None:
@@ -286,6 +303,13 @@ def _table(standard: Standard) -> dict[str, Any]:
             "thickness_mm": float(base.thickness),
         },
     }
+    if material.modulus is not None:
+        table["material"] |= {
+            "modulus_MPa": float(material.modulus),
+            "poisson": float(material.poisson),
+            "modulus_source": material.modulus_source,
+            "modulus_share": float(material.modulus_share),
+        }
     if core is not None:
         table["core"] = {
             "low_radius_mm": float(core.low_radius),
@@ -323,6 +347,7 @@ def _sag_table(sag: Sag) -> dict[str, Any]:
         "source": sag.source,
         "down": sag.down,
         "share": float(sag.share),
+        **({} if sag.modulus is None else {"modulus_MPa": float(sag.modulus)}),
         "um": {name: np.round(m / UM, 5).tolist() for name, m in sag.per_weight.items()},
     }
 

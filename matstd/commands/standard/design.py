@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.folder import results_folder
     from matstd.stages.from_project import dialects, feeds
     from matstd.workers import connected
-    from report.task import task_lines
+    from report.task import modulus_words, task_lines
     from report.words import design_lines, proof_line
 
     project, printed_by = read_project(args.project), asked_printer(args)
@@ -111,6 +111,7 @@ def run(args: argparse.Namespace) -> int:
         if probe.tool not in tools
     )
     say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
+    say_each([f"Young's modulus: {modulus_words(made.making.material)}"])
     say_each(task_lines(made.budgets, project.task.tolerance, made.visits))
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0
