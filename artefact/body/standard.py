@@ -169,6 +169,14 @@ class Standard:
         sag = Sag(source, down, share, per_weight, modulus=modulus)
         return replace(self, sag=sag)
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was accepted out of tolerance when it was calibrated."""
+        if self.known is None or not self.known.accepted:
+            return ()
+        named = ", ".join(self.known.accepted)
+        return (f"calibration of '{self.name}' accepted although not conforming: {named}",)
+
     @cached_property
     def usable_sag(self) -> Sag | None:
         """The sag with the modulus of the material; None where it needs one and none is known."""

@@ -9,12 +9,13 @@ from pydantic import Field
 
 from artefact.body.datum import DatumSphere, MountingHole
 from artefact.body.freeform import ErrorShare, FreeformPatch
-from artefact.body.known import Known, KnownFeature
+from artefact.body.known import Known
+from artefact.body.known_file import KnownTable, known_table
 from artefact.body.sag import DIRECTIONS, Sag
 from artefact.body.standard import Base, Core, Material, Standard
 from twin.errors import BadFile, ShapeMismatch
 from twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
-from twin.units import UM, URAD
+from twin.units import UM
 
 FORMAT = "standard/1"
 
@@ -88,19 +89,6 @@ class _Hole(Table):
     bore_depth_mm: Positive
 
 
-class _KnownFeature(Table):
-    points: Annotated[int, Field(ge=1)]
-    u_um: Annotated[float, Field(ge=0.0)]
-    u_urad: Annotated[float, Field(ge=0.0)] = 0.0
-    u_form_um: Annotated[float, Field(ge=0.0)] = 0.0
-
-
-class _Known(Table):
-    source: str
-    nominal: str
-    feature: dict[str, _KnownFeature]
-
-
 class _Sag(Table):
     source: str
     down: str = "-Z"
@@ -120,7 +108,7 @@ class _File(Table):
     patch: Annotated[list[_Patch], Field(min_length=1)]
     sphere: list[_Sphere] = Field(default_factory=list)
     hole: list[_Hole] = Field(default_factory=list)
-    calibration: _Known | None = None
+    calibration: KnownTable | None = None
     sag: _Sag | None = None
 
 
@@ -183,14 +171,7 @@ def _known(path: Path, file: _File) -> Known | None:
     if file.calibration is None:
         return None
     _check_features(path, file, "calibration.feature", file.calibration.feature)
-    return Known(
-        source=file.calibration.source,
-        nominal=file.calibration.nominal,
-        features={
-            name: KnownFeature(f.points, f.u_um * UM, f.u_urad * URAD, f.u_form_um * UM)
-            for name, f in file.calibration.feature.items()
-        },
-    )
+    return file.calibration.known()
 
 
 def _sag(path: Path, file: _File) -> Sag | None:
@@ -320,26 +301,10 @@ def _table(standard: Standard) -> dict[str, Any]:
     table["sphere"] = [_sphere_table(sphere) for sphere in standard.spheres]
     table["hole"] = [_hole_table(hole) for hole in standard.holes]
     if standard.known is not None:
-        table["calibration"] = _known_table(standard.known)
+        table["calibration"] = known_table(standard.known)
     if standard.sag is not None:
         table["sag"] = _sag_table(standard.sag)
     return table
-
-
-def _known_table(known: Known) -> dict[str, Any]:
-    return {
-        "source": known.source,
-        "nominal": known.nominal,
-        "feature": {
-            name: {
-                "points": f.points,
-                "u_um": round(f.u / UM, 4),
-                "u_urad": round(f.u_tilt / URAD, 3),
-                "u_form_um": round(f.u_form / UM, 4),
-            }
-            for name, f in known.features.items()
-        },
-    }
 
 
 def _sag_table(sag: Sag) -> dict[str, Any]:

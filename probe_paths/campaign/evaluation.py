@@ -74,7 +74,7 @@ def evaluate(
         if not far:
             break
     u_touch = _uncertainty(standard, touches, u)
-    remarks += _told_of_sag(standard)
+    remarks += [*standard.remarks, *_told_of_sag(standard)]
     remarks += sensed(parts)[1]
     run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be

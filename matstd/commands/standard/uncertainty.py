@@ -63,6 +63,7 @@ def run(args: argparse.Namespace) -> int:
     remarks = [
         f"{p}: {r}" for p, one in zip(args.run_files, runs, strict=True) for r in one.remarks
     ]
+    remarks += standard.remarks
     if args.model:
         saved = read_model(args.model)
         for one in runs:
