@@ -93,6 +93,10 @@ class NotBuildable(DesignError, ValueError):
     """A standard that cannot be made; the message names the constraint that binds."""
 
 
+class NotConforming(DesignError, ValueError):
+    """A measured piece that is not the one that was drawn; the message names what is out."""
+
+
 class NotEnoughData(DesignError, ValueError):
     """Measurements too few or too uniform for what was asked; the message says what is possible."""
 

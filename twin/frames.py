@@ -88,6 +88,12 @@ def turn(T: Array, vectors: Array) -> Array:
     return np.einsum("...ij,...j->...i", T[..., :3, :3], vectors)
 
 
+def unit(vectors: Array) -> Array:
+    """Vectors (..., 3) scaled to length one."""
+    scaled: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return scaled
+
+
 def fixed_xyz(angles: Array) -> Array:
     """Rotations about the fixed x, then y, then z axis: ``R = Rz Ry Rx``.
 

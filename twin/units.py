@@ -17,6 +17,9 @@ DEG = math.pi / 180.0
 KG_M3 = 1e-9
 """One kilogram per cubic metre in kg/mm^3."""
 
+GPA = 1e3
+"""One gigapascal in N/mm^2."""
+
 MINUTE, HOUR, DAY = 60.0, 3600.0, 86400.0
 """In s."""
 

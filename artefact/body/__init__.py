@@ -8,7 +8,7 @@ numbers. A new kind of face implements `Surface`; a new limit is one more yield 
 from artefact.body.datum import DatumSphere, MountingHole, outline_distance
 from artefact.body.first_contact import contact
 from artefact.body.freeform import OVERHANG, ErrorShare, FreeformPatch, graph_patch
-from artefact.body.known import Known, KnownFeature
+from artefact.body.known import Known, KnownFeature, Verdict
 from artefact.body.limits import (
     Limits,
     check,
@@ -16,7 +16,7 @@ from artefact.body.limits import (
     max_slope,
     min_concave_radius,
 )
-from artefact.body.patch import Meeting, unit
+from artefact.body.patch import Meeting
 from artefact.body.solids import BLEND, Plate
 from artefact.body.standard import Base, Core, Material, Standard
 from artefact.body.standard_file import read_standard, write_standard
@@ -37,6 +37,7 @@ __all__ = [
     "MountingHole",
     "Plate",
     "Standard",
+    "Verdict",
     "check",
     "constraints",
     "contact",
@@ -45,6 +46,5 @@ __all__ = [
     "min_concave_radius",
     "outline_distance",
     "read_standard",
-    "unit",
     "write_standard",
 ]

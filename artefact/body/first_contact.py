@@ -6,10 +6,10 @@ import numpy as np
 
 from artefact.body.datum import DatumSphere
 from artefact.body.freeform import FreeformPatch
-from artefact.body.patch import Mask, Meeting, rows, sphere_entry, unit
+from artefact.body.patch import Mask, Meeting, rows, sphere_entry
 from artefact.body.solids import entry
 from artefact.body.standard import Standard
-from twin.frames import Array, apply, turn
+from twin.frames import Array, apply, turn, unit
 from twin.units import NM
 
 _EDGE_PITCH = 0.5  # mm, of the samples of a trimmed edge

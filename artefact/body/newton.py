@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from artefact.body.patch import Hit, Mask, unit
+from artefact.body.patch import Hit, Mask
 from artefact.body.spline import Jet
-from twin.frames import Array
+from twin.frames import Array, unit
 from twin.units import NM
 
 CONTACT_TOLERANCE = 1e-4 * NM

@@ -79,12 +79,6 @@ def rows(values: ArrayLike, count: int | None = None) -> Array:
     return table if count is None else np.broadcast_to(table, (count, table.shape[1]))
 
 
-def unit(vectors: Array) -> Array:
-    """Vectors (..., 3) scaled to length one."""
-    scaled: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return scaled
-
-
 def sphere_entry(points: Array, start: Array, direction: Array, radius: float) -> Array:
     """Travel at which a moving ball first touches a point, ``|start + t d - p| = radius``.
 

@@ -7,7 +7,7 @@ the artefact frame.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,12 +33,22 @@ class Sag:
         share: Standard uncertainty of every displacement, as a share of it.
         per_weight: By feature, displacement along x, y, z (rows) for weight along x, y, z
             (columns), (3, 3), mm.
+        modulus: Young's modulus that it was computed with, N/mm^2; None of a sag that rests on
+            none, such as a measured one.
     """
 
     source: str
     down: str
     share: float
     per_weight: Mapping[str, Array]
+    modulus: float | None = None
+
+    def with_modulus(self, modulus: float) -> "Sag":
+        """The same body of another modulus: displacements are inversely proportional to it."""
+        assert self.modulus is not None
+        ratio = self.modulus / modulus
+        scaled = {name: ratio * moved for name, moved in self.per_weight.items()}
+        return replace(self, per_weight=scaled, modulus=modulus)
 
     def moved(self, chain: Chain, q: Array, T_table_artefact: Array, feature: Labels) -> Array:
         """Displacements of features from their calibrated places, artefact frame, (N, 3), mm.

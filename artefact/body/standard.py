@@ -1,6 +1,7 @@
 """The whole standard: one body with freeform patches, datum spheres, datum plane and holes."""
 
 import hashlib
+import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,6 +14,7 @@ from artefact.body.known import Known
 from artefact.body.patch import Mask, Surface
 from artefact.body.sag import Sag
 from artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
+from twin.elastic import material as usual
 from twin.errors import ShapeMismatch
 from twin.frames import Array
 from twin.machine import Chain
@@ -33,15 +35,42 @@ class Material:
         density: In kg/mm^3.
         expansion: Coefficient of linear thermal expansion, 1/K.
         u_expansion: Its standard uncertainty, 1/K; None where it is not stated.
+        modulus: Young's, N/mm^2; None where it is not known.
+        poisson: Poisson's ratio.
+        modulus_source: Where the modulus is from.
+        modulus_share: Its standard uncertainty, as a share of it; 0 where it is stated.
     """
 
     name: str = "X40Cr14 (1.2083), hardened"
     density: float = 7.8e-6
     expansion: float = 10.5e-6
     u_expansion: float | None = None
+    modulus: float | None = None
+    poisson: float = 0.3
+    modulus_source: str = "stated"
+    modulus_share: float = 0.0
+
+    def with_usual_modulus(self) -> "Material":
+        """The same with the usual modulus of its name, unless one is stated.
+
+        Only the words before a bracket or comma count, and only as a whole: "X40Cr14 (1.2083),
+        hardened" and "Cast iron" are known, "steel-filled epoxy" is not and stays unknown.
+        """
+        word = re.split(r"[(,]", self.name)[0].strip().casefold().replace(" ", "-")
+        known = usual({"aluminum": "aluminium"}.get(word, word))
+        if self.modulus is not None or known is None:
+            return self
+        source = f"usual value of {word}: {known.source}"
+        return replace(
+            self,
+            modulus=known.young,
+            poisson=known.poisson,
+            modulus_source=source,
+            modulus_share=known.share,
+        )
 
 
-STEEL = Material()
+STEEL = Material().with_usual_modulus()
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +123,8 @@ class Standard:
         holes: Mounting holes.
         blank_height: Of the blank above the seat, mm; its outline is that of the base.
         known: Its calibration; None for a standard as designed.
-        sag: How its features move under its own weight; None where nobody computed it.
+        sag: How its features move under its own weight, as its file has it; None where it was not
+            computed.
     """
 
     name: str
@@ -131,16 +161,38 @@ class Standard:
         return digest.hexdigest()[:16]
 
     def sagging(
-        self, source: str, down: str, share: float, per_weight: Mapping[str, Array]
+        self,
+        source: str,
+        down: str,
+        share: float,
+        per_weight: Mapping[str, Array],
+        modulus: float | None = None,
     ) -> "Standard":
         """The same standard with what its weight does to it; arguments as of `Sag`."""
-        return replace(self, sag=Sag(source, down, share, per_weight))
+        sag = Sag(source, down, share, per_weight, modulus=modulus)
+        return replace(self, sag=sag)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was accepted out of tolerance when it was calibrated."""
+        if self.known is None or not self.known.accepted:
+            return ()
+        named = ", ".join(self.known.accepted)
+        return (f"calibration of '{self.name}' accepted although not conforming: {named}",)
+
+    @cached_property
+    def usable_sag(self) -> Sag | None:
+        """The sag with the modulus of the material; None where it needs one and none is known."""
+        if self.sag is None or self.sag.modulus is None:
+            return self.sag
+        modulus = self.material.modulus
+        return None if modulus is None else self.sag.with_modulus(modulus)
 
     def moved(self, chain: Chain, q: Array, T_table_artefact: Array, feature: Labels) -> Array:
-        """Displacements of features by their own weight, as of `Sag.moved`; zeros without one."""
-        if self.sag is None:
+        """Displacements of features by their own weight, as of `Sag.moved`; zeros if unknown."""
+        if self.usable_sag is None:
             return np.zeros((len(q), 3))
-        return self.sag.moved(chain, q, T_table_artefact, feature)
+        return self.usable_sag.moved(chain, q, T_table_artefact, feature)
 
     def at(self, temperature: float) -> "Standard":
         """The same standard at a temperature, degC: every length but those of stems and holes.

@@ -9,12 +9,13 @@ from pydantic import Field
 
 from artefact.body.datum import DatumSphere, MountingHole
 from artefact.body.freeform import ErrorShare, FreeformPatch
-from artefact.body.known import Known, KnownFeature
+from artefact.body.known import Known
+from artefact.body.known_file import KnownTable, known_table
 from artefact.body.sag import DIRECTIONS, Sag
 from artefact.body.standard import Base, Core, Material, Standard
 from twin.errors import BadFile, ShapeMismatch
 from twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
-from twin.units import UM, URAD
+from twin.units import UM
 
 FORMAT = "standard/1"
 
@@ -24,6 +25,9 @@ Pair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Degree = Annotated[int, Field(ge=2, le=9)]
 
+_OLD_SOURCE, _OLD_MODULUS = "finite elements", 200e3
+"""Of a sag without a modulus: earlier versions computed every one for steel, N/mm^2."""
+
 _ORTHONORMAL = 1e-9  # deviation of R R^T from 1 that counts as a slip and not as rounding
 
 
@@ -32,6 +36,10 @@ class _Material(Table):
     density_kg_mm3: Positive
     expansion: float = Field(alias="expansion_1_K", ge=0.0, lt=1e-3)
     u_expansion: float | None = Field(default=None, alias="expansion_u_1_K", ge=0.0, lt=1e-3)
+    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
+    poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
+    modulus_source: str = "stated"
+    modulus_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
 
 
 class _Base(Table):
@@ -82,23 +90,11 @@ class _Hole(Table):
     bore_depth_mm: Positive
 
 
-class _KnownFeature(Table):
-    points: Annotated[int, Field(ge=1)]
-    u_um: Annotated[float, Field(ge=0.0)]
-    u_urad: Annotated[float, Field(ge=0.0)] = 0.0
-    u_form_um: Annotated[float, Field(ge=0.0)] = 0.0
-
-
-class _Known(Table):
-    source: str
-    nominal: str
-    feature: dict[str, _KnownFeature]
-
-
 class _Sag(Table):
     source: str
     down: str = "-Z"
     share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
+    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
     um: dict[str, Annotated[list[Triple], Field(min_length=3, max_length=3)]]
 
 
@@ -113,7 +109,7 @@ class _File(Table):
     patch: Annotated[list[_Patch], Field(min_length=1)]
     sphere: list[_Sphere] = Field(default_factory=list)
     hole: list[_Hole] = Field(default_factory=list)
-    calibration: _Known | None = None
+    calibration: KnownTable | None = None
     sag: _Sag | None = None
 
 
@@ -152,6 +148,10 @@ def _standard(path: Path, file: _File) -> Standard:
                 file.material.density_kg_mm3,
                 file.material.expansion,
                 file.material.u_expansion,
+                modulus=file.material.modulus_MPa,
+                poisson=file.material.poisson,
+                modulus_source=file.material.modulus_source,
+                modulus_share=file.material.modulus_share,
             ),
             base=_base(path, file.base),
             core=None
@@ -173,14 +173,7 @@ def _known(path: Path, file: _File) -> Known | None:
     if file.calibration is None:
         return None
     _check_features(path, file, "calibration.feature", file.calibration.feature)
-    return Known(
-        source=file.calibration.source,
-        nominal=file.calibration.nominal,
-        features={
-            name: KnownFeature(f.points, f.u_um * UM, f.u_urad * URAD, f.u_form_um * UM)
-            for name, f in file.calibration.feature.items()
-        },
-    )
+    return file.calibration.known()
 
 
 def _sag(path: Path, file: _File) -> Sag | None:
@@ -191,7 +184,10 @@ def _sag(path: Path, file: _File) -> Sag | None:
     if file.sag.down not in DIRECTIONS:
         raise BadFile(path, "sag.down", file.sag.down, f"one of {', '.join(DIRECTIONS)}")
     per_weight = {name: np.array(rows) * UM for name, rows in file.sag.um.items()}
-    return Sag(file.sag.source, file.sag.down, file.sag.share, per_weight)
+    modulus = file.sag.modulus_MPa
+    if modulus is None and file.sag.source == _OLD_SOURCE:
+        modulus = _OLD_MODULUS
+    return Sag(file.sag.source, file.sag.down, file.sag.share, per_weight, modulus=modulus)
 
 
 def _check_features(path: Path, file: _File, key: str, named: Iterable[str]) -> None:
@@ -292,6 +288,13 @@ def _table(standard: Standard) -> dict[str, Any]:
     }
     if material.u_expansion is not None:
         table["material"]["expansion_u_1_K"] = float(material.u_expansion)
+    if material.modulus is not None:
+        table["material"] |= {
+            "modulus_MPa": float(material.modulus),
+            "poisson": float(material.poisson),
+            "modulus_source": material.modulus_source,
+            "modulus_share": float(material.modulus_share),
+        }
     if core is not None:
         table["core"] = {
             "low_radius_mm": float(core.low_radius),
@@ -302,26 +305,10 @@ def _table(standard: Standard) -> dict[str, Any]:
     table["sphere"] = [_sphere_table(sphere) for sphere in standard.spheres]
     table["hole"] = [_hole_table(hole) for hole in standard.holes]
     if standard.known is not None:
-        table["calibration"] = _known_table(standard.known)
+        table["calibration"] = known_table(standard.known)
     if standard.sag is not None:
         table["sag"] = _sag_table(standard.sag)
     return table
-
-
-def _known_table(known: Known) -> dict[str, Any]:
-    return {
-        "source": known.source,
-        "nominal": known.nominal,
-        "feature": {
-            name: {
-                "points": f.points,
-                "u_um": round(f.u / UM, 4),
-                "u_urad": round(f.u_tilt / URAD, 3),
-                "u_form_um": round(f.u_form / UM, 4),
-            }
-            for name, f in known.features.items()
-        },
-    }
 
 
 def _sag_table(sag: Sag) -> dict[str, Any]:
@@ -329,6 +316,7 @@ def _sag_table(sag: Sag) -> dict[str, Any]:
         "source": sag.source,
         "down": sag.down,
         "share": float(sag.share),
+        **({} if sag.modulus is None else {"modulus_MPa": float(sag.modulus)}),
         "um": {name: np.round(m / UM, 5).tolist() for name, m in sag.per_weight.items()},
     }
 

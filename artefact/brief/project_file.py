@@ -12,8 +12,10 @@ from artefact.brief.errors_table import ErrorsTable, Expected, expected_errors
 from artefact.brief.standard_tables import (
     BlankTable,
     LimitsTable,
+    MaterialTable,
     StandardTable,
     check_body,
+    check_material,
     check_standard,
 )
 from artefact.brief.task_file import Task, read_task
@@ -46,8 +48,14 @@ FARTHEST = 1e6
 """A reading beyond this (mm, degrees) is a slip; larger whole numbers are no floating ones."""
 
 
-RENAMED = {"drawn_machines": "robust_machines", "worst_share": "robust_share"}
-"""Keys of `[standard]` by what they are called in older files, which are read all the same."""
+RENAMED = {
+    "standard.drawn_machines": "standard.robust_machines",
+    "standard.worst_share": "standard.robust_share",
+    "standard.material": "material.name",
+    "standard.density_kg_m3": "material.density_kg_m3",
+    "standard.expansion_per_K": "material.expansion_1_K",
+}
+"""Present keys by those of older files, which are read all the same."""
 
 
 class MonteCarloTable(Table):
@@ -88,6 +96,7 @@ class ProjectTable(Table):
     montecarlo: MonteCarloTable = MonteCarloTable()
     errors: ErrorsTable = ErrorsTable()
     standard: StandardTable = StandardTable()
+    material: MaterialTable = MaterialTable()
     blank: BlankTable = BlankTable()
     limits: LimitsTable = LimitsTable()
     setup: dict[str, SetupTable] = Field(default_factory=lambda: {"a": SetupTable()})
@@ -113,8 +122,8 @@ class Project:
         digits: Significant digits that have to be stable (JCGM 101); 0 for none.
         tolerance: Volumetric error that users allow, mm; infinite where they said nothing.
         expected: Errors that the machine is expected to have.
-        standard: Name, material, expansion, number of patches, touches and table poses, and what
-            they are chosen for.
+        standard: Name, number of patches, touches and table poses, and what they are chosen for.
+        material: What it is made of.
         blank: What it is made from.
         limits: What workshop, probe and table allow.
         setup: Where the standard stands on the table.
@@ -143,6 +152,7 @@ class Project:
     tolerance: float
     expected: Expected
     standard: StandardTable
+    material: MaterialTable
     blank: BlankTable
     limits: LimitsTable
     setup: Setup
@@ -205,7 +215,8 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     assert probe.radius_mm is not None
     assert probe.length_mm is not None
     room = _table_radius(table, path)
-    check_body(table.blank, table.limits, table.standard, probe.radius_mm, room, path)
+    check_material(table.material, path)
+    check_body(table.blank, table.limits, table.material, probe.radius_mm, room, path)
     first, *others = _setups(table, path)
     return Project(
         path=path,
@@ -223,6 +234,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         tolerance=table.montecarlo.tolerance_um * UM,
         expected=expected_errors(table.errors, chain, path),
         standard=table.standard,
+        material=table.material,
         blank=table.blank,
         limits=table.limits,
         setup=first,
@@ -237,13 +249,18 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     )
 
 
-def _under_their_names(data: Mapping[str, Any], path: Path) -> tuple[str, ...]:
+def _under_their_names(data: dict[str, Any], path: Path) -> tuple[str, ...]:
     """Put keys of older files under their present names; a remark for each."""
-    wanted, remarks = data.get("standard"), []
+    remarks = []
     for old, new in RENAMED.items():
-        if isinstance(wanted, dict) and old in wanted and new not in wanted:
-            wanted[new] = wanted.pop(old)
-            remarks.append(f"{path}: standard.{old} is called {new} now, and read as that")
+        (table, key), (new_table, new_key) = old.split("."), new.split(".")
+        had = data.get(table)
+        if not isinstance(had, dict) or key not in had:
+            continue
+        wanted = data.setdefault(new_table, {})
+        if isinstance(wanted, dict) and new_key not in wanted:
+            wanted[new_key] = had.pop(key)
+            remarks.append(f"{path}: {old} is called {new} now, and read as that")
     return tuple(remarks)
 
 

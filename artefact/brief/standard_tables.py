@@ -21,6 +21,9 @@ CORNER_RADIUS = 25.0
 
 FEWEST_PATCHES = 3
 
+STEEL = "X40Cr14 (1.2083), hardened"
+"""Material that the defaults of density and expansion are of."""
+
 FINISHING = 3.0
 """Radius of the ball-end mill that finishes what is milled, mm: no radius is asked below it."""
 
@@ -34,9 +37,6 @@ class StandardTable(Table):
     serial: str = ""
     author: str = "not stated"
     organisation: str = "not stated"
-    material: str = "X40Cr14 (1.2083), hardened"
-    density_kg_m3: float = Field(default=7800.0, gt=0.0)
-    expansion_per_K: float = Field(default=10.5e-6, ge=0.0)  # noqa: N815  (K is the kelvin)
     patches: int = Field(default=6, ge=FEWEST_PATCHES, le=16)
     balls: int = Field(default=13, ge=3, le=25)
     touches: int = Field(default=480, ge=100, le=2000)
@@ -47,6 +47,16 @@ class StandardTable(Table):
     robust_machines: int = Field(default=0, ge=0, le=100)
     robust_share: float = Field(default=1.0, gt=0.0, le=1.0)
     down: Literal["+X", "-X", "+Y", "-Y", "+Z", "-Z"] = "-Z"
+
+
+class MaterialTable(Table):
+    """`[material]`: what the standard is made of."""
+
+    name: str = STEEL
+    density_kg_m3: float = Field(default=7800.0, gt=0.0)
+    expansion_1_K: float = Field(default=10.5e-6, ge=0.0, lt=1e-3)  # noqa: N815
+    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
+    poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
 
 
 class BlankTable(Table):
@@ -91,10 +101,26 @@ def check_standard(wanted: StandardTable, path: Path) -> None:
         )
 
 
+def check_material(material: MaterialTable, path: Path) -> None:
+    """Refuse another material with density or expansion of the default one.
+
+    Raises:
+        BadFile: The key that is missing.
+    """
+    for key in ("density_kg_m3", "expansion_1_K"):
+        if material.name != STEEL and key not in material.model_fields_set:
+            raise BadFile(
+                path,
+                f"material.{key}",
+                f"no value beside name = '{material.name}'",
+                f"that of this material; the default is that of {STEEL}",
+            )
+
+
 def check_body(
     blank: BlankTable,
     limits: LimitsTable,
-    wanted: StandardTable,
+    material: MaterialTable,
     ball_mm: float,
     table_radius_mm: float,
     path: Path,
@@ -104,7 +130,7 @@ def check_body(
     Args:
         blank: Of what it is made.
         limits: What is allowed.
-        wanted: The standard.
+        material: Of the standard.
         ball_mm: Radius of the probe's ball.
         table_radius_mm: Of the table's face.
 
@@ -142,7 +168,7 @@ def check_body(
             f"{limits.slot_pitch_mm:g}",
             f"{_NARROWEST:g} mm or more, or 0 where screws may stand anywhere",
         )
-    base = sides[0] * sides[1] * BASE_THICKNESS * wanted.density_kg_m3 * KG_M3
+    base = sides[0] * sides[1] * BASE_THICKNESS * material.density_kg_m3 * KG_M3
     if base > limits.max_mass_kg:
         raise BadFile(
             path,

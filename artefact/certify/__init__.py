@@ -1,9 +1,9 @@
 """What a calibration makes of a standard, and which of its touches are like a user's task.
 
 In: a `Standard`; points that a coordinate measuring machine took on it, touches of a run, a task.
-Out: the standard as it is, with its uncertainties (`calibrated`); the program that takes the
-points (`dmis_program`); the touches that prove a task; standards that differ from their calibration
-as much as it allows.
+Out: the standard as it is, with its uncertainties (`calibrated`), and whether it conforms to its
+drawing (`judged`); the program that takes the points (`dmis_program`); the touches that prove a
+task; standards that differ from their calibration as much as it allows.
 """
 
 from artefact.certify.calibration_fit import Calibrated, calibrated, fitted_ball
@@ -11,15 +11,19 @@ from artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
 from artefact.certify.dmis import dmis_program
 from artefact.certify.task_places import check_places, curvature, like_task, on_faces
 from artefact.certify.true_places import misplaced
+from artefact.certify.verdicts import Allowed, CommonCause, judged
 
 __all__ = [
+    "Allowed",
     "Calibrated",
     "CmmPoints",
+    "CommonCause",
     "calibrated",
     "check_places",
     "curvature",
     "dmis_program",
     "fitted_ball",
+    "judged",
     "like_task",
     "misplaced",
     "on_faces",

@@ -16,11 +16,12 @@ Reference:
 """
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import FreeformPatch, Known, KnownFeature, Standard
+from artefact.body import FreeformPatch, Known, KnownFeature, Standard, Verdict
 from artefact.certify.cmm_points_file import SIDES, CmmPoints
 from artefact.certify.face_correction import corrected_face
 from twin.errors import BadFile, NotEnoughData
@@ -50,14 +51,23 @@ class Calibrated:
     Attributes:
         standard: As it is.
         moved: Of every feature its largest deviation from the design, mm.
+        offset: Of every face its mean deviation along the normal, mm.
+        u_radius: Of every ball the standard uncertainty of its radius by its points, mm.
         left: Root mean square that the fitted feature leaves of its points, mm.
         remarks: What was not used, or is out of the ordinary.
     """
 
     standard: Standard
     moved: dict[str, float]
+    offset: dict[str, float]
+    u_radius: dict[str, float]
     left: dict[str, float]
     remarks: tuple[str, ...]
+
+    @property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Whether the features conform to the drawing, once that was judged."""
+        return () if self.standard.known is None else self.standard.known.verdicts
 
 
 def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: float) -> Calibrated:
@@ -76,25 +86,25 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
     """
     slips: list[str] = []
     balls = _balls(nominal, cmm, u_point, slips)
-    T_artefact_cmm = _alignment(nominal, cmm, {n: b[0] for n, b in balls.items()})
+    T_artefact_cmm = _alignment(nominal, cmm, {n: b.centre for n, b in balls.items()})
     point = apply(T_artefact_cmm, cmm.point)
-    known, moved, left, spheres, patches = {}, {}, {}, [], []
+    known, moved, left, offset, spheres, patches = {}, {}, {}, {}, [], []
     for sphere in nominal.spheres:
         if sphere.name not in balls:
             spheres.append(sphere)
             continue
-        centre, radius, u, rms, count = balls[sphere.name]
-        centre = apply(T_artefact_cmm, centre[None])[0]
-        spheres.append(replace(sphere, centre=centre, radius=radius))
-        known[sphere.name] = KnownFeature(count, float(np.hypot(u, u_feature)), 0.0, 0.0)
+        ball = balls[sphere.name]
+        centre = apply(T_artefact_cmm, ball.centre[None])[0]
+        spheres.append(replace(sphere, centre=centre, radius=ball.radius))
+        known[sphere.name] = KnownFeature(ball.points, float(np.hypot(ball.u, u_feature)), 0.0, 0.0)
         moved[sphere.name] = float(np.linalg.norm(centre - sphere.centre))
-        left[sphere.name] = rms
+        left[sphere.name] = ball.left
     for patch in nominal.patches:
         rows = np.flatnonzero(cmm.feature == patch.name)
         if not len(rows):
             patches.append(patch)
             continue
-        _check_face(patch, cmm, rows, point)
+        _check_face(nominal, patch, cmm, rows, point)
         found = corrected_face(patch, point[rows], u_point)
         far = _gross(found.left, u_point)
         if far.any():
@@ -104,13 +114,21 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
         patches.append(found.patch)
         known[patch.name] = KnownFeature(len(rows), u_feature, found.u_tilt, found.u_form)
         moved[patch.name], left[patch.name] = found.moved, _rms(found.left)
+        offset[patch.name] = found.offset
     standard = replace(
         nominal,
         patches=tuple(patches),
         spheres=tuple(spheres),
         known=Known(cmm.path.name, nominal.fingerprint, known),
     )
-    return Calibrated(standard, moved, left, (*cmm.remarks, *slips, *_remarks(nominal, cmm, known)))
+    return Calibrated(
+        standard=standard,
+        moved=moved,
+        offset=offset,
+        u_radius={name: ball.u_radius for name, ball in balls.items()},
+        left=left,
+        remarks=(*cmm.remarks, *slips, *_remarks(nominal, cmm, known)),
+    )
 
 
 def _remarks(nominal: Standard, cmm: CmmPoints, known: dict[str, KnownFeature]) -> list[str]:
@@ -127,8 +145,15 @@ def _remarks(nominal: Standard, cmm: CmmPoints, known: dict[str, KnownFeature]) 
     return out
 
 
-Ball = tuple[Array, float, float, float, int]
-"""Centre, radius, standard uncertainty of a coordinate of the centre, rms left, points."""
+class Ball(NamedTuple):
+    """A measured ball in the frame of the CMM; lengths in mm."""
+
+    centre: Array
+    radius: float
+    u: float  # standard uncertainty of a coordinate of the centre
+    u_radius: float
+    left: float  # rms
+    points: int
 
 
 def _gross(left: Array, u_point: float) -> NDArray[np.bool_]:
@@ -158,14 +183,17 @@ def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) 
         if len(whole):
             radius = 0.5 * float(cmm.diameter[whole].mean())
             centre = cmm.point[whole].mean(axis=0)
-            out[sphere.name] = centre, radius, u_point / np.sqrt(len(whole)), 0.0, len(whole)
+            u = u_point / np.sqrt(len(whole))
+            out[sphere.name] = Ball(
+                centre=centre, radius=radius, u=u, u_radius=0.5 * u, left=0.0, points=len(whole)
+            )
         elif len(rows) < MIN_BALL:
             raise NotEnoughData(
                 f"{cmm.path}: {sphere.name} has {len(rows)} points, expected at least {MIN_BALL}"
             )
         else:
             ball = fitted_ball(cmm.point[rows], u_point)
-            left = np.linalg.norm(cmm.point[rows] - ball[0], axis=1) - ball[1]
+            left = np.linalg.norm(cmm.point[rows] - ball.centre, axis=1) - ball.radius
             far = _gross(left, u_point)
             if far.any() and np.sum(~far) >= MIN_BALL:
                 slips.append(_slips(sphere.name, cmm, rows[far]))
@@ -177,6 +205,7 @@ def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) 
             "where the standard stood"
         )
     _check_size(nominal, cmm, out)
+    _check_radii(nominal, cmm, out)
     return out
 
 
@@ -196,30 +225,69 @@ def fitted_ball(points: Array, u_point: float) -> Ball:
             break
     left = np.linalg.norm(points - centre, axis=1) - radius
     noise = max(u_point, float(np.sqrt(left @ left / max(len(points) - 4, 1))))
-    covariance = np.linalg.pinv(J.T @ J)[:3, :3] * noise**2
-    u = float(np.sqrt(np.trace(covariance) / 3.0))
-    return centre, radius, u, float(np.sqrt(np.mean(left**2))), len(points)
+    covariance = np.linalg.pinv(J.T @ J) * noise**2
+    return Ball(
+        centre=centre,
+        radius=radius,
+        u=float(np.sqrt(np.trace(covariance[:3, :3]) / 3.0)),
+        u_radius=float(np.sqrt(covariance[3, 3])),
+        left=_rms(left),
+        points=len(points),
+    )
 
 
 def _check_size(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> None:
     """Distances between balls say whether the points are in mm, and of this standard."""
     names = list(balls)
     stated = {s.name: s.centre for s in nominal.spheres}
-    pairs = [(a, b) for i, a in enumerate(names) for b in names[:i]]
-    found = np.array([np.linalg.norm(balls[a][0] - balls[b][0]) for a, b in pairs])
-    wanted = np.array([np.linalg.norm(stated[a] - stated[b]) for a, b in pairs])
-    ratio = float(np.median(found / wanted))
+    found = _distances(np.array([balls[name].centre for name in names]))
+    wanted = _distances(np.array([stated[name] for name in names]))
+    pairs = np.tril_indices(len(names), -1)
+    ratio = float(np.median(found[pairs] / wanted[pairs]))
     for unit, factor in _UNITS.items():
         if abs(ratio / factor - 1.0) < _LIKE:
             raise BadFile(cmm.path, "x, y, z", f"distances of balls in {unit}", "mm")
-    worst = int(np.argmax(np.abs(found - wanted)))
-    if abs(found[worst] - wanted[worst]) > _ASTRAY:
-        a, b = pairs[worst]
+    a, b = np.unravel_index(int(np.argmax(np.abs(found - wanted))), found.shape)
+    if abs(found[a, b] - wanted[a, b]) <= _ASTRAY:
+        return
+    if swapped := _swapped(found, wanted):
+        told = ", ".join(f"{names[j]} under the name {names[i]}" for i, j in swapped)
+        raise BadFile(cmm.path, "feature", f"points of {told}", "every ball under its own name")
+    raise BadFile(
+        cmm.path,
+        f"{names[a]}, {names[b]}",
+        f"{found[a, b]:.3f} mm between their centres",
+        f"about {wanted[a, b]:.3f} mm: other balls, or another standard",
+    )
+
+
+def _distances(centres: Array) -> Array:
+    return np.asarray(np.linalg.norm(centres[:, None] - centres, axis=-1))
+
+
+def _swapped(found: Array, wanted: Array) -> list[tuple[int, int]]:
+    """Balls (found, wanted) that go by another's name, if with their own all distances agree.
+
+    A ball is known by its distances from all others, in their order.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    unlike = np.abs(np.sort(found, axis=1)[:, None] - np.sort(wanted, axis=1)).max(axis=-1)
+    own = linear_sum_assignment(unlike)[1]
+    if np.abs(found - wanted[np.ix_(own, own)]).max() > _ASTRAY:
+        return []
+    return [(i, int(j)) for i, j in enumerate(own) if i != j]
+
+
+def _check_radii(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> None:
+    """Refuse points of the tip's centre: all balls are as much too large as its radius."""
+    off = np.array([balls[s.name].radius - s.radius for s in nominal.spheres if s.name in balls])
+    if np.abs(off).min() > _ASTRAY and np.ptp(off) < _ASTRAY:
         raise BadFile(
             cmm.path,
-            f"{a}, {b}",
-            f"{found[worst]:.3f} mm between their centres",
-            f"about {wanted[worst]:.3f} mm: other balls, or another standard",
+            "balls",
+            f"radii that are all {abs(off.mean()):.3f} mm too {'large' if off[0] > 0 else 'small'}",
+            "points on the surface: let the CMM compensate the radius of its tip",
         )
 
 
@@ -232,17 +300,21 @@ def _alignment(nominal: Standard, cmm: CmmPoints, centres: dict[str, Array]) -> 
     return rigid_motion(found, stated, np.eye(4))
 
 
-def _check_face(patch: FreeformPatch, cmm: CmmPoints, rows: np.ndarray, point: Array) -> None:
+def _check_face(
+    nominal: Standard, patch: FreeformPatch, cmm: CmmPoints, rows: np.ndarray, point: Array
+) -> None:
     """Enough points, all of them near their face."""
     if len(rows) < MIN_FACE:
         raise NotEnoughData(
             f"{cmm.path}: {patch.name} has {len(rows)} points, expected at least {MIN_FACE}"
         )
-    uv = patch.project(point[rows])
-    far = np.linalg.norm(point[rows] - patch.point(np.nan_to_num(uv)), axis=1)
-    far = np.where(np.isfinite(uv).all(axis=1), far, np.inf)
+    far = _away(patch, point[rows])
     worst = int(np.argmax(far))
     if far[worst] > _ASTRAY:
+        for other in nominal.patches:
+            if other is not patch and _away(other, point[rows]).max() <= _ASTRAY:
+                found = f"points of {other.name} under the name {patch.name}"
+                raise BadFile(cmm.path, "feature", found, "every face under its own name")
         raise BadFile(
             cmm.path,
             f"line {cmm.line[rows[worst]]}",
@@ -251,3 +323,10 @@ def _check_face(patch: FreeformPatch, cmm: CmmPoints, rows: np.ndarray, point: A
             else f"a point beside {patch.name}",
             f"points within {_ASTRAY:g} mm of their feature",
         )
+
+
+def _away(patch: FreeformPatch, point: Array) -> Array:
+    """Distances of points (N, 3) from a face, (N,), mm; infinite beside it."""
+    uv = patch.project(point)
+    far = np.linalg.norm(point - patch.point(np.nan_to_num(uv)), axis=1)
+    return np.where(np.isfinite(uv).all(axis=1), far, np.inf)

@@ -21,6 +21,7 @@ class CorrectedFace:
         u_form: Root mean square standard uncertainty of the surface over the face, mm.
         u_tilt: Standard uncertainty of its rotations by the points, rad.
         moved: Largest deviation from the design along the normal, mm.
+        offset: Mean of these deviations over the face, mm.
         left: Deviation of every point from the corrected face, (N,), mm.
     """
 
@@ -28,6 +29,7 @@ class CorrectedFace:
     u_form: float
     u_tilt: float
     moved: float
+    offset: float
     left: Array
 
 
@@ -59,6 +61,7 @@ def corrected_face(patch: FreeformPatch, points: Array, u_point: float) -> Corre
         u_form=float(np.sqrt(np.mean(u**2))),
         u_tilt=float(np.linalg.norm(tilts) / np.sqrt(2.0)),
         moved=float(np.abs(G @ c).max()),
+        offset=float((G @ c).mean()),
         left=left,
     )
 

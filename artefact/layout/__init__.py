@@ -10,6 +10,7 @@ from artefact.layout.rival_artefacts import rivals, with_spheres
 from artefact.layout.side_by_side import Pairs, beside_balls, most_side_by_side
 from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
 from artefact.layout.upright import (
+    SOFT,
     WALL_GAP,
     balls_fit,
     balls_on_posts,
@@ -22,6 +23,7 @@ from artefact.layout.upright import (
 )
 
 __all__ = [
+    "SOFT",
     "WALL_GAP",
     "Blank",
     "Fittings",

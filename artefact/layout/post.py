@@ -16,12 +16,11 @@ Reference:
 
 import numpy as np
 
-POISSON = 0.3
 _SHEAR = 0.9
 _STEP = 0.1  # mm, of drawings
 
 
-def post_stiffness(length: float, top: float, foot: float, modulus: float) -> float:
+def post_stiffness(length: float, top: float, foot: float, modulus: float, poisson: float) -> float:
     """Force across the ball per deflection, N/mm.
 
     Args:
@@ -29,15 +28,16 @@ def post_stiffness(length: float, top: float, foot: float, modulus: float) -> fl
         top: Radius at the ball's centre, mm.
         foot: Radius at the foot, mm.
         modulus: Young's, N/mm^2.
+        poisson: Poisson's ratio.
     """
-    G = modulus / (2.0 * (1.0 + POISSON))
+    G = modulus / (2.0 * (1.0 + poisson))
     bending = 4.0 * length**3 / (3.0 * np.pi * modulus * foot**3 * top)
     shear = length / (_SHEAR * G * np.pi * foot * top)
-    turn = 3.0 * (1.0 - POISSON) * length**2 / (8.0 * G * foot**3)
+    turn = 3.0 * (1.0 - poisson) * length**2 / (8.0 * G * foot**3)
     return float(1.0 / (bending + shear + turn))
 
 
-def post_foot(length: float, top: float, stiffness: float, modulus: float) -> float:
+def post_foot(length: float, top: float, stiffness: float, modulus: float, poisson: float) -> float:
     """Smallest radius of a foot, in tenths of a millimetre, with which a post is stiff enough.
 
     Args:
@@ -45,8 +45,9 @@ def post_foot(length: float, top: float, stiffness: float, modulus: float) -> fl
         top: Radius at the ball's centre, mm.
         stiffness: Wanted, N/mm.
         modulus: Young's, N/mm^2.
+        poisson: Poisson's ratio.
     """
     foot = top + _STEP
-    while post_stiffness(length, top, foot, modulus) < stiffness:
+    while post_stiffness(length, top, foot, modulus, poisson) < stiffness:
         foot += _STEP
     return round(foot, 1)

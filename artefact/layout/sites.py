@@ -88,7 +88,6 @@ class Fittings:
         hole_radius: Of the through hole, mm (M10: 5.5).
         bore_radius: Of the counterbore, mm (M10: 9).
         bore_depth: Mm (M10: 11).
-        modulus: Young's, of the posts, N/mm^2.
     """
 
     sphere_radius: float = 12.5
@@ -100,7 +99,6 @@ class Fittings:
     hole_radius: float = 5.5
     bore_radius: float = 9.0
     bore_depth: float = 11.0
-    modulus: float = 200e3
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +115,7 @@ class Blank:
 
     base: Base = field(default_factory=Base)
     fittings: Fittings = field(default_factory=Fittings)
-    material: Material = field(default_factory=Material)
+    material: Material = field(default_factory=lambda: Material().with_usual_modulus())
     height: float = 220.0
     limits: Limits = field(default_factory=Limits)
 

@@ -35,6 +35,10 @@ WALL_GAP = 12.0
 POST_STIFFNESS = 18.0 / UM
 """Least force across a ball per deflection of its post, N/mm: with plate and pads 10 are left."""
 
+SOFT = 70e3
+"""Modulus for which posts are drawn where that of the material is not known, N/mm^2: aluminium, the
+softest that standards are usually made of."""
+
 TABLE_RIM = 8.0
 """From the rim of a screw hole to the rim of the table at least, mm."""
 
@@ -154,8 +158,9 @@ def _inside(blank: Blank, half: Array, around: Array, rng: np.random.Generator) 
 
 def ball_on_post(blank: Blank, name: str, centre: Array) -> DatumSphere:
     """A bought ball on a post of the body that is as stiff as `POST_STIFFNESS`."""
-    fit, foot = blank.fittings, blank.base.thickness
-    radius = post_foot(float(centre[2]) - foot, fit.post_radius, POST_STIFFNESS, fit.modulus)
+    fit, foot, material = blank.fittings, blank.base.thickness, blank.material
+    length, modulus = float(centre[2]) - foot, material.modulus or SOFT
+    radius = post_foot(length, fit.post_radius, POST_STIFFNESS, modulus, material.poisson)
     return DatumSphere(
         name=name,
         centre=centre,

@@ -32,7 +32,7 @@ from OCP.XCAFDoc import (
 )
 
 from cad_out.build.xcaf import name_of, text
-from cad_out.details import BALL_SIZE, DATUMS, Tolerance
+from cad_out.details import CALIBRATED, DATUMS, Tolerance
 from twin.frames import Array
 
 _KINDS = {
@@ -138,8 +138,8 @@ def add_diameter(
     spherical = "XCAFDimTolObjects_DimensionType_Size_SphericalDiameter"
     about.SetType(getattr(XCAFDimTolObjects_DimensionType, spherical))
     about.SetValue(diameter)
-    about.SetUpperTolValue(BALL_SIZE)
-    about.SetLowerTolValue(-BALL_SIZE)
+    about.SetUpperTolValue(CALIBRATED["diameter"])
+    about.SetLowerTolValue(-CALIBRATED["diameter"])
     _draw(about, name, dict(drawn))
     attribute.SetObject(about)
 

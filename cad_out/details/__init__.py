@@ -20,11 +20,11 @@ from cad_out.details.mounting import (
 )
 from cad_out.details.places import Bore, Side, datum_touches
 from cad_out.details.seats import Seat, glue_gap
-from cad_out.details.tolerances import BALL_SIZE, DATUMS, Tolerance, notes_of, tolerances_of
+from cad_out.details.tolerances import CALIBRATED, DATUMS, Tolerance, notes_of, tolerances_of
 
 __all__ = [
     "BALL",
-    "BALL_SIZE",
+    "CALIBRATED",
     "CUTTER",
     "DATUMS",
     "DEPTH",

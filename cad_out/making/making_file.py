@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from artefact.body import Standard
+from artefact.body import Material, Standard
 from cad_out.details import details_of
 from cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
 from cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
@@ -23,24 +23,26 @@ class Making:
 
     Attributes:
         cutting: Reach of cutters.
-        stiffness: First mode and sag.
+        stiffness: First mode and sag; None where the modulus of the material is not known.
         hints: How every face is milled.
+        material: Of the standard.
     """
 
     cutting: Cutting
-    stiffness: Stiffness
+    stiffness: Stiffness | None
     hints: dict[str, FaceHint]
+    material: Material
 
 
-def making_of(standard: Standard, stiffness: Stiffness) -> Making:
-    """Cutters of a standard whose stiffness is known."""
-    return Making(cutting_of(standard, details_of(standard)), stiffness, hints_of(standard))
+def making_of(standard: Standard, stiffness: Stiffness | None) -> Making:
+    """Cutters of a standard, beside its stiffness."""
+    cutting, hints = cutting_of(standard, details_of(standard)), hints_of(standard)
+    return Making(cutting, stiffness, hints, standard.material)
 
 
 def write_making(path: Path, making: Making) -> None:
     """All figures with their limits as JSON; lengths in their names' units."""
-    cutting, stiffness = making.cutting, making.stiffness
-    name, sag = stiffness.worst
+    cutting = making.cutting
     table: dict[str, Any] = {
         "format": "making/1",
         "finishing_cutter": {"diameter_mm": 2.0 * RADIUS, "overhang_mm": OVERHANG},
@@ -57,15 +59,30 @@ def write_making(path: Path, making: Making) -> None:
             }
             for face, radius in cutting.radius.items()
         },
-        "first_mode_Hz": stiffness.first_mode,
+        **_stiffness_table(making.stiffness, making.material),
         "first_mode_limit_Hz": FIRST_MODE,
+        "sag_limit_um": SAG / UM,
+    }
+    write_whole(path, json.dumps(table, indent=1, allow_nan=False) + "\n")
+
+
+def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[str, Any]:
+    """What rests on the modulus; null where it is not known."""
+    if stiffness is None:
+        keys = ("modulus_MPa", "first_mode_Hz", "ball_N_um", "element_mm", "sag_um", "sag_worst")
+        return {"material": material.name, **dict.fromkeys(keys)}
+    name, sag = stiffness.worst
+    return {
+        "material": material.name,
+        "modulus_MPa": material.modulus,
+        "modulus_source": material.modulus_source,
+        "poisson": material.poisson,
+        "first_mode_Hz": stiffness.first_mode,
         "ball_N_um": {ball: force * UM for ball, force in stiffness.at_balls.items()},
         "element_mm": stiffness.cube,
         "sag_um": {feature: value / UM for feature, value in stiffness.sag.items()},
-        "sag_limit_um": SAG / UM,
         "sag_worst": {"feature": name, "um": sag / UM},
     }
-    write_whole(path, json.dumps(table, indent=1, allow_nan=False) + "\n")
 
 
 def _hint_table(hint: FaceHint) -> dict[str, Any]:

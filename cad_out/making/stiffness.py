@@ -21,7 +21,6 @@ from twin.frames import Array
 GRAVITY = 9.81e3
 """In mm/s^2."""
 
-_MODULUS, _POISSON = 200e3, 0.3  # N/mm^2: steel
 _FILLED = 0.02  # of a cube, below which it is left out
 _TO_TIP = 0.25  # of a cantilever's mass that swings with its end: 33/140, rounded up
 _SHARE = 0.2  # of a displacement, its standard uncertainty: beams within 8 %, screws idealised
@@ -72,11 +71,14 @@ def with_sag(standard: Standard, stiffness: Stiffness, down: str) -> Standard:
         stiffness: By finite elements.
         down: Where weight pulls to in machine coordinates.
     """
-    return standard.sagging("finite elements", down, _SHARE, stiffness.per_weight)
+    made_of = standard.material
+    share = round(float(np.hypot(_SHARE, made_of.modulus_share)), 2)
+    per_weight = stiffness.per_weight
+    return standard.sagging("finite elements", down, share, per_weight, made_of.modulus)
 
 
-def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> Stiffness:
-    """By finite elements.
+def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> Stiffness | None:
+    """By finite elements; None where the modulus of the material is not known.
 
     Args:
         standard: Plate, pillars, posts and balls.
@@ -86,13 +88,16 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     from scipy.sparse import coo_array, csc_array, diags_array
     from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
+    modulus, poisson = standard.material.modulus, standard.material.poisson
+    if modulus is None:
+        return None
     cells, share = _cells(standard, side)
     corner = cells[:, None] + ((CORNERS + 1) / 2).astype(int)
     nodes, index = np.unique(corner.reshape(-1, 3), axis=0, return_inverse=True)
     index = index.reshape(-1, 8)
     places = nodes * side + _origin(standard)
     freedom = (3 * index[:, :, None] + np.arange(3)).reshape(len(index), 24)
-    K_cube = cube(side, _MODULUS, _POISSON)
+    K_cube = cube(side, modulus, poisson)
     rows = np.repeat(freedom, 24, axis=1).reshape(-1)
     columns = np.tile(freedom, (1, 24)).reshape(-1)
     values = (share[:, None] * K_cube.reshape(1, -1)).reshape(-1)
@@ -192,8 +197,10 @@ def _springs(
     length = ball.centre[2] - ball.foot
     at_ball = np.array([[1, 0, 0, 0, length, 0], [0, 1, 0, -length, 0, 0], [0, 0, 1, 0, 0, 0]])
     carried = at_ball @ np.linalg.pinv(rigid)
-    across = post_stiffness(length, ball.stem_radius, ball.foot_radius, _MODULUS)
-    along = _MODULUS * np.pi * ball.stem_radius * ball.foot_radius / length
+    modulus, poisson = standard.material.modulus, standard.material.poisson
+    assert modulus is not None
+    across = post_stiffness(length, ball.stem_radius, ball.foot_radius, modulus, poisson)
+    along = modulus * np.pi * ball.stem_radius * ball.foot_radius / length
     apart = np.hstack([np.eye(3), -carried])
     freedom = np.concatenate([tip + np.arange(3), (3 * near[:, None] + np.arange(3)).reshape(-1)])
     return freedom, apart.T @ np.diag([across, across, along]) @ apart

@@ -182,10 +182,12 @@ def _placement(
     return placement
 
 
-def _with_sag(placement: Placement, down: str) -> tuple[Placement, Stiffness]:
-    """The standard with what its weight does to it, which evaluations take off."""
+def _with_sag(placement: Placement, down: str) -> tuple[Placement, Stiffness | None]:
+    """The standard with what its weight does to it, which evaluations take off, if it is known."""
     standard = placement.standard
     stiffness = stiffness_of(standard, details_of(standard))
+    if stiffness is None:
+        return placement, None
     return replace(placement, standard=with_sag(standard, stiffness, down)), stiffness
 
 

@@ -236,7 +236,7 @@ def probe_reach(project: Project) -> ProbeReach:
 
 def blank(project: Project) -> Blank:
     """Blank, fittings, material and limits of the standard."""
-    wanted, limits = project.standard, project.limits
+    limits, stuff = project.limits, project.material
     (a, b), height = project.blank.base_mm, project.blank.height_mm
     low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * height
     setups = (project.setup, *project.further_setups)
@@ -244,7 +244,13 @@ def blank(project: Project) -> Blank:
     return Blank(
         base=Base((0.5 * a, 0.5 * b), CORNER_RADIUS, BASE_THICKNESS),
         fittings=Fittings(sphere_heights=(low, round(0.5 * (low + high), 1), round(high, 1))),
-        material=Material(wanted.material, wanted.density_kg_m3 * KG_M3, wanted.expansion_per_K),
+        material=Material(
+            stuff.name,
+            stuff.density_kg_m3 * KG_M3,
+            stuff.expansion_1_K,
+            modulus=stuff.modulus_MPa,
+            poisson=stuff.poisson,
+        ).with_usual_modulus(),
         height=height,
         limits=Limits(
             min_concave_radius=limits.min_concave_radius_mm,

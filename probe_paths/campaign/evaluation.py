@@ -15,7 +15,7 @@ from twin.errors import BadFile, NotEnoughData
 from twin.frames import Array, apply, inverse, pose, rotation
 from twin.machine import Chain, tip
 from twin.record import IntArray, Labels, Run, Setup, Touches, computed_deviation, linear_approach
-from twin.units import DEG, NM
+from twin.units import DEG, GPA, NM
 
 BESIDE = 10.0
 """Farthest that a ball can be from the surface it touched while the set-up is only believed, mm."""
@@ -74,13 +74,27 @@ def evaluate(
         if not far:
             break
     u_touch = _uncertainty(standard, touches, u)
-    if standard.sag is not None:
-        down, source = standard.sag.down, standard.sag.source
-        remarks.append(f"sag of the standard taken off: {source}, weight along {down}")
+    remarks += [*standard.remarks, *_told_of_sag(standard)]
     remarks += sensed(parts)[1]
     run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
+
+
+def _told_of_sag(standard: Standard) -> list[str]:
+    """What of the standard's own weight is taken off, or why nothing is."""
+    sag, made_of = standard.usable_sag, standard.material
+    if sag is not None:
+        by = sag.source
+        if made_of.modulus is not None and sag.modulus is not None:
+            by += f" with {made_of.modulus / GPA:g} GPa ({made_of.modulus_source})"
+        return [f"sag of the standard taken off: {by}, weight along {sag.down}"]
+    if made_of.modulus is not None:
+        return []
+    return [
+        f"sag of the standard not taken off: no modulus is stated of '{made_of.name}'; state "
+        "material.modulus_MPa in the file of the standard, or design it again"
+    ]
 
 
 def _uncertainty(standard: Standard, t: Touches, u: float) -> Array:
@@ -88,7 +102,7 @@ def _uncertainty(standard: Standard, t: Touches, u: float) -> Array:
     known = {} if standard.known is None else standard.known.features
     form = np.array([known[name].u_form if name in known else 0.0 for name in t.feature.tolist()])
     moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)
-    share = 0.0 if standard.sag is None else standard.sag.share
+    share = 0.0 if standard.usable_sag is None else standard.usable_sag.share
     sag = share * np.einsum("ni,ni->n", t.normal, moved)
     return np.asarray(np.sqrt(u**2 + form**2 + sag**2))
 

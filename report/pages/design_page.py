@@ -24,7 +24,7 @@ from report.plots import (
 )
 from report.scenes import draw_standard
 from report.style import save
-from report.task import budget_rows, task_lines
+from report.task import budget_rows, modulus_words, task_lines
 from report.words import (
     best_rival,
     comparison_remarks,
@@ -181,12 +181,7 @@ def _standard(design: Design, on_machine: dict[str, float]) -> dict[str, Any]:
 
 def _making(made: Making) -> list[tuple[str, str]]:
     """Rows about cutters and stiffness; what is beyond a limit says so."""
-    cutting, stiff = made.cutting, made.stiffness
-    name, sag = stiff.worst
-    mode = "" if stiff.first_mode >= FIRST_MODE else f"; at least {FIRST_MODE:.0f} Hz are wanted"
-    often = sorted(f for f, value in stiff.sag.items() if value > SAG)
-    told = f"; beyond {SAG / UM:g} µm: {', '.join(often)}" if often else ""
-    told += "; taken off by evaluations ([sag] of standard.toml)"
+    cutting = made.cutting
     cutters = ", ".join(
         f"{face} {f'Ø{d:g}' if d else 'none of 6 mm or more'}" for face, d in cutting.cutter.items()
     )
@@ -198,10 +193,26 @@ def _making(made: Making) -> list[tuple[str, str]]:
             f"{np.floor(1000 * cutting.tilted) / 10:g} % tilted by 45° at most{beyond}",
         ),
         ("largest ball-end mill of a face, mm", cutters),
+        *_stands(made),
+        *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
+    ]
+
+
+def _stands(made: Making) -> list[tuple[str, str]]:
+    """How stiff it is, and with what modulus; that it is not known where there is none."""
+    stiff, words = made.stiffness, modulus_words(made.material)
+    if stiff is None:
+        return [("first mode, stiffness and sag", words)]
+    name, sag = stiff.worst
+    mode = "" if stiff.first_mode >= FIRST_MODE else f"; at least {FIRST_MODE:.0f} Hz are wanted"
+    often = sorted(f for f, value in stiff.sag.items() if value > SAG)
+    told = f"; beyond {SAG / UM:g} µm: {', '.join(often)}" if often else ""
+    told += "; taken off by evaluations ([sag] of standard.toml)"
+    return [
+        ("Young's modulus", words),
         ("first mode on rigid screws", f"{stiff.first_mode:.0f} Hz{mode}"),
         *_softest(stiff),
         ("sag from upright to lying on its side", f"{name} {sag / UM:.2f} µm at most{told}"),
-        *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
     ]
 
 

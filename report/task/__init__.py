@@ -1,6 +1,12 @@
 """Calibration of a standard and uncertainty of a task, in words and rows of tables."""
 
-from report.task.calibration_words import calibration_lines
+from report.task.calibration_words import (
+    calibration_lines,
+    refusal_sentence,
+    verdict_lines,
+    verdict_rows,
+)
+from report.task.standard_words import modulus_words
 from report.task.task_words import budget_rows, decision_sentence, measured_sentence, task_lines
 
 __all__ = [
@@ -8,5 +14,9 @@ __all__ = [
     "calibration_lines",
     "decision_sentence",
     "measured_sentence",
+    "modulus_words",
+    "refusal_sentence",
     "task_lines",
+    "verdict_lines",
+    "verdict_rows",
 ]

@@ -1,8 +1,16 @@
 """What a calibration found, for the console."""
 
-from artefact.certify import Calibrated
+from collections.abc import Sequence
+
+from artefact.body import Verdict
+from artefact.certify import Calibrated, CommonCause
 from report.numbers import digits
-from twin.units import UM, URAD
+from twin.units import T_REF, UM, URAD
+
+PPM = 1e-6
+_SIGNED = ("diameter", "scale")
+_NAMED = 3  # characteristics that a refusal names
+_WARM = 15.0  # K about 20 degC, within which pieces are measured
 
 
 def calibration_lines(found: Calibrated) -> list[str]:
@@ -24,6 +32,63 @@ def calibration_lines(found: Calibrated) -> list[str]:
             text += f", of its tilt {tilt}, of its surface {_um(feature.u_form)}"
         lines.append(text)
     return [*lines, *found.remarks]
+
+
+def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
+    """Feature, characteristic, deviation, tolerance, u, verdict; in µm."""
+    rows: list[tuple[str, ...]] = []
+    for v in verdicts:
+        sign, both = ("+", "±") if v.characteristic in _SIGNED else ("", "")
+        deviation, allowed = f"{v.deviation / UM:{sign}.2f}", f"{both}{v.tolerance / UM:.2f}"
+        rows.append((v.feature, v.characteristic, deviation, allowed, f"{v.u / UM:.2f}", v.state))
+    return rows
+
+
+def refusal_sentence(verdicts: Sequence[Verdict], causes: Sequence[CommonCause]) -> str:
+    """What does not conform, what it has in common, and what to do."""
+    refused = [v for v in verdicts if v.is_refused]
+    worst = sorted(refused, key=lambda v: v.tolerance / abs(v.deviation))
+    named = [f"{v.feature} {v.characteristic} {_um(v.deviation)} ({_um(v.tolerance)} allowed)"
+             for v in worst[:_NAMED]]  # fmt: skip
+    more = f" and {len(refused) - _NAMED} more" if len(refused) > _NAMED else ""
+    why = "; ".join(map(_cause, causes)) or "measure again, or make the feature again"
+    return (
+        f"{len(refused)} of {len(verdicts)} characteristics do not conform to the drawing: "
+        f"{', '.join(named)}{more}; {why}; nothing is written, --accept takes the piece as it is"
+    )
+
+
+def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:
+    """What was accepted all the same, and what cannot be decided."""
+    refused = [f"{v.feature} {v.characteristic}" for v in verdicts if v.is_refused]
+    open_ = [f"{v.feature} {v.characteristic}" for v in verdicts if v.state == "cannot be decided"]
+    lines = [f"accepted although not conforming: {', '.join(refused)}"] if refused else []
+    if open_:
+        lines.append(f"cannot be decided with this uncertainty: {', '.join(open_)}")
+    return lines
+
+
+def _cause(cause: CommonCause) -> str:
+    """A common cause and its remedy."""
+    if cause.kind == "radius":
+        way = "large" if cause.value > 0.0 else "small"
+        faces = (
+            "the faces stand out as far: the radius of the tip is"
+            if cause.on_faces
+            else "the faces do not follow: balls of another diameter, or the radius of the tip is"
+        )
+        return (
+            f"all radii are {_um(abs(cause.value))} too {way}, to within {_um(cause.spread)}, and "
+            f"{faces} compensated wrongly; qualify the stylus and measure again"
+        )
+    way = "long" if cause.value > 0.0 else "short"
+    text = (
+        f"all distances are {digits(abs(cause.value) / PPM, 3)} ppm too {way} "
+        f"(u {digits(cause.spread / PPM, 2)} ppm): scale of the CMM"
+    )
+    if abs(cause.temperature) < _WARM:
+        text += f", or a piece at {T_REF + cause.temperature:.1f} °C"
+    return f"{text}; let the CMM compensate to {T_REF:g} °C and measure again"
 
 
 def _um(value: float) -> str:

@@ -234,10 +234,11 @@ def test_diagnosis_sees_the_form_until_the_standard_is_calibrated(
 def test_a_ball_by_hand() -> None:
     """Six points of a ball of 10 mm at (1, 2, 3), exactly."""
     points = np.array([1.0, 2.0, 3.0]) + 10.0 * np.concatenate([np.eye(3), -np.eye(3)])
-    centre, radius, u, left, count = fitted_ball(points, 1 * UM)
+    centre, radius, u, u_radius, left, count = fitted_ball(points, 1 * UM)
     assert centre == pytest.approx([1.0, 2.0, 3.0])
     assert (radius, left, count) == pytest.approx((10.0, 0.0, 6))
     assert u == pytest.approx(1 * UM / np.sqrt(2.0))  # two points see every coordinate
+    assert u_radius == pytest.approx(1 * UM / np.sqrt(6.0))  # and all six the radius
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ import pytest
 from artefact.body.datum import outline_distance
 from artefact.body.freeform import graph_patch
 from artefact.body.limits import Limits, max_slope, min_concave_radius
+from artefact.body.standard import Material
 from artefact.compare.comparison import _scatter
 from artefact.layout.post import post_foot, post_stiffness
 from artefact.layout.shapes import smooth_heights
@@ -17,6 +18,7 @@ from artefact.layout.side_by_side import most_side_by_side
 from artefact.layout.sites import Blank
 from artefact.layout.spread import spread
 from artefact.layout.upright import (
+    ball_on_post,
     balls_fit,
     balls_on_posts,
     faces_beside,
@@ -189,17 +191,30 @@ def test_screws_in_a_row_are_none():
 def test_a_post_is_as_stiff_as_its_slices(length):
     """Against the sums over a thousand slices of the cone, each with its own section."""
     top, E = 8.0, 200e3
-    foot = post_foot(length, top, 10e3, E)
+    foot = post_foot(length, top, 10e3, E, 0.3)
     s = (np.arange(1000) + 0.5) / 1000.0 * length
     r = top + (foot - top) * s / length
     G = E / 2.6
     slices = np.sum((s**2 / (E * np.pi / 4.0 * r**4) + 1.0 / (0.9 * G * np.pi * r**2)) * length)
     turn = length**2 / (8.0 * G * foot**3 / (3.0 * 0.7))
-    assert post_stiffness(length, top, foot, E) == pytest.approx(
+    assert post_stiffness(length, top, foot, E, 0.3) == pytest.approx(
         1.0 / (slices / 1000.0 + turn), rel=1e-4
     )
-    assert post_stiffness(length, top, foot, E) >= 10e3
-    assert foot < top + 0.2 or post_stiffness(length, top, foot - 0.1, E) < 10e3
+    assert post_stiffness(length, top, foot, E, 0.3) >= 10e3
+    assert foot < top + 0.2 or post_stiffness(length, top, foot - 0.1, E, 0.3) < 10e3
+
+
+def test_a_post_is_as_wide_as_its_material_asks_for():
+    """The stiffness is proportional to the modulus: the softer, the wider the foot."""
+    centre, foot = np.array([60.0, 60.0, 120.0]), {}
+    for name, modulus in (("X40Cr14", 200e3), ("Aluminium", 70e3), ("1.2379", None)):
+        stuff = Material(name, 7.8e-6, 1e-5).with_usual_modulus()
+        assert stuff.modulus == modulus
+        ball = ball_on_post(replace(Blank(), material=stuff), "SPH1", centre)
+        foot[name] = ball.foot_radius
+        drawn_for = stuff.modulus or 70e3, stuff.poisson
+        assert post_stiffness(90.0, ball.stem_radius, ball.foot_radius, *drawn_for) >= 18e3
+    assert foot["X40Cr14"] + 3.0 < foot["Aluminium"] == pytest.approx(foot["1.2379"], abs=0.2)
 
 
 def test_as_many_sites_stand_side_by_side_as_any_search_finds():

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from artefact.body.freeform import graph_patch
-from artefact.body.standard import Base
+from artefact.body.standard import Base, Material
 from artefact.layout.post import post_stiffness
 from cad_out.details.detail_list import details_of
 from cad_out.making.cutting import OVERHANG, RADIUS, cutting_of, is_free, untrimmed_radius
 from cad_out.making.hexahedron import CORNERS, cube
 from cad_out.making.hints import hints_of, step_over
-from cad_out.making.making_file import Making, write_making
-from cad_out.making.stiffness import GRAVITY, stiffness_of
+from cad_out.making.making_file import Making, making_of, write_making
+from cad_out.making.stiffness import GRAVITY, stiffness_of, with_sag
 from twin.frames import pose
 from twin.units import DEG, UM
 
@@ -50,16 +50,54 @@ def mast(upright):
     )
 
 
-def test_a_mast_swings_and_sags_as_a_cantilever(mast):
+ALUMINIUM = Material("EN AW-5083", 2.66e-6, 23.8e-6, modulus=71e3, poisson=0.33)
+INVAR = Material("Invar", 8.05e-6, 1.5e-6).with_usual_modulus()
+
+
+@pytest.mark.parametrize("stuff", [None, ALUMINIUM, INVAR])
+def test_a_mast_swings_and_sags_as_a_cantilever(mast, stuff):
     """Euler and Bernoulli: f = 1.8751^2 / (2 pi L^2) sqrt(E I / rho A), tip rho A g L^4 / 8 E I."""
+    mast = replace(mast, material=stuff or mast.material)
+    modulus = {"EN AW-5083": 71e3, "Invar": 141e3}.get(mast.material.name, E)
     found = stiffness_of(mast, details_of(mast), 10.0)
     density, L, b = mast.material.density, 90.0, 10.0
     second, area = b**4 / 12.0, b**2
-    f = 1.8751**2 / (2 * np.pi * L**2) * np.sqrt(E * second / (density * area) * 1e3)
-    tip = density * area * GRAVITY * L**4 / (8.0 * E * second) * 1e-3
+    f = 1.8751**2 / (2 * np.pi * L**2) * np.sqrt(modulus * second / (density * area) * 1e3)
+    tip = density * area * GRAVITY * L**4 / (8.0 * modulus * second) * 1e-3
     # the plate gives way a little, and the blend of the foot is in the cubes beside it
     assert found.first_mode == pytest.approx(f, rel=0.08)
     assert found.sag["FF1"] == pytest.approx(tip, rel=0.15)
+
+
+def test_sag_goes_by_density_over_modulus_and_the_first_mode_by_its_root(mast):
+    """Of two materials with one Poisson's ratio, to all digits; the plate takes part in both."""
+    steel = replace(mast.material, modulus=200e3, poisson=0.33)
+    one, other = (
+        stiffness_of(replace(mast, material=m), details_of(mast), 10.0) for m in (steel, ALUMINIUM)
+    )
+    softer, lighter = 200e3 / 71e3, 2.66 / 7.8
+    assert other.sag["FF1"] == pytest.approx(one.sag["FF1"] * softer * lighter, rel=1e-4)
+    assert other.first_mode == pytest.approx(one.first_mode / np.sqrt(softer * lighter), rel=1e-4)
+
+
+def test_without_a_modulus_stiffness_and_sag_stay_unknown(upright, tmp_path):
+    own = replace(upright, material=Material("1.2379", 7.7e-6, 11e-6).with_usual_modulus())
+    assert stiffness_of(own, details_of(own), 25.0) is None
+    write_making(tmp_path / "making.json", making_of(own, None))
+    told = json.loads((tmp_path / "making.json").read_text())
+    unknown = ("modulus_MPa", "first_mode_Hz", "ball_N_um", "sag_um", "sag_worst")
+    assert {key: told[key] for key in unknown} == dict.fromkeys(unknown)
+    assert told["material"] == "1.2379"
+
+
+def test_the_uncertainty_of_a_usual_modulus_is_in_that_of_the_sag(mast):
+    """A fifth by the elements; granite is from 30 to 90 GPa by its kind."""
+    for name, share in (("X40Cr14 (1.2083)", 0.2), ("Granite", 0.36)):
+        stuff = Material(name, 2.9e-6, 8e-6).with_usual_modulus()
+        solid = replace(mast, material=stuff)
+        sagging = with_sag(solid, stiffness_of(solid, details_of(solid), 10.0), "-Z")
+        assert sagging.sag.share == share
+        assert sagging.sag.modulus == stuff.modulus
 
 
 def test_a_ball_on_a_rigid_plate_sags_by_its_weight_over_the_stiffness_of_its_post(upright):
@@ -69,7 +107,7 @@ def test_a_ball_on_a_rigid_plate_sags_by_its_weight_over_the_stiffness_of_its_po
     length = ball.centre[2] - ball.foot
     post = 7.8e-6 * np.pi * ball.foot_radius**2 * (length - ball.radius)  # nearly a cylinder
     mass = 7.83e-6 * 4.0 / 3.0 * np.pi * ball.radius**3 + 0.25 * post
-    k = post_stiffness(length, ball.stem_radius, ball.foot_radius, E)
+    k = post_stiffness(length, ball.stem_radius, ball.foot_radius, E, NU)
     alone = mass * GRAVITY * 1e-3 / k
     assert alone < found.sag["SPH2"] < 3.0 * alone
     assert k / 3.0 < found.at_balls["SPH2"] < k
@@ -128,11 +166,13 @@ def test_the_largest_cutter_fits_the_least_radius_beyond_the_trim(upright):
 def test_the_file_has_every_figure_with_its_limit(upright, tmp_path):
     details = details_of(upright)
     stiffness, hints = stiffness_of(upright, details, 25.0), hints_of(upright)
-    made = Making(cutting_of(upright, details), stiffness, hints)
+    made = Making(cutting_of(upright, details), stiffness, hints, upright.material)
     write_making(tmp_path / "making.json", made)
     told = json.loads((tmp_path / "making.json").read_text())
     assert told["first_mode_Hz"] == pytest.approx(made.stiffness.first_mode)
     assert told["sag_limit_um"] == 0.1
+    assert (told["modulus_MPa"], told["poisson"]) == (200e3, 0.3)
+    assert told["modulus_source"].startswith("usual value of x40cr14: ")
     assert told["ball_N_um"]["SPH3"] == pytest.approx(stiffness.at_balls["SPH3"] / 1e3)
     assert set(told["sag_um"]) == {"FF1", "FF2", "SPH1", "SPH2", "SPH3"}
     face = told["faces"]["FF1"]

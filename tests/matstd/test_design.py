@@ -27,6 +27,7 @@ from probe_paths.emit.program import make_programs
 from probe_paths.language.dialect_file import read_dialect
 from probe_paths.linuxcnc.replanned import shortened
 from report.pages import design_page
+from twin.errors import BadFile
 from twin.files.machine_file import read_machine
 from twin.files.run_file import read_run
 from twin.units import UM, URAD
@@ -304,9 +305,36 @@ def test_keys_of_older_projects_are_read_and_named(tmp_path: Path) -> None:
     project = read_project(path)
     assert (project.standard.robust_machines, project.standard.robust_share) == (8, 0.5)
     assert [remark.removeprefix(f"{path}: ") for remark in project.remarks] == [
-        "standard.drawn_machines is called robust_machines now, and read as that",
-        "standard.worst_share is called robust_share now, and read as that",
+        "standard.drawn_machines is called standard.robust_machines now, and read as that",
+        "standard.worst_share is called standard.robust_share now, and read as that",
     ]
+
+
+def test_the_material_of_a_project(tmp_path: Path) -> None:
+    """Keys of older files are read; another material states its own density and expansion."""
+    path = small_project(tmp_path)
+    text = path.read_text()
+    here = text.index("[material]"), text.index("[blank]")
+    bare = text[: here[0]] + text[here[1] :]
+    known = blank(read_project(path)).material
+    assert (known.modulus, known.poisson, known.modulus_source) == (200e3, 0.3, "stated")
+    path.write_text(bare)
+    usual = blank(read_project(path)).material
+    assert (usual.name, usual.density, usual.modulus) == (known.name, known.density, 200e3)
+    assert "Uddeholm" in usual.modulus_source
+    old = 'material = "EN AW-5083"\ndensity_kg_m3 = 2660.0\nexpansion_per_K = 23.8e-6\n'
+    path.write_text(bare.replace("[standard]\n", f"[standard]\n{old}"))
+    project = read_project(path)
+    own = blank(project).material
+    assert (own.name, own.density, own.expansion) == ("EN AW-5083", 2660 * 1e-9, 23.8e-6)
+    assert own.modulus is None
+    assert len(project.remarks) == 3
+    path.write_text(bare.replace("[blank]", '[material]\nname = "EN AW-5083"\n\n[blank]'))
+    with pytest.raises(BadFile, match=r"material\.density_kg_m3: found no value beside name = 'EN"):
+        read_project(path)
+    path.write_text(text.replace("modulus_MPa = 200000.0", "modulus_MPa = 200"))
+    with pytest.raises(BadFile, match=r"material\.modulus_MPa"):
+        read_project(path)
 
 
 def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:

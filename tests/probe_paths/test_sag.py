@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from artefact.body.sag import Sag, weight_directions
+from artefact.body.standard import Material
 from artefact.body.standard_file import read_standard, write_standard
 from probe_paths.campaign.contact_solver import VirtualMachine
 from probe_paths.campaign.evaluation import evaluate
@@ -110,3 +111,52 @@ def test_the_file_keeps_it_and_refuses_what_it_cannot_be(upright, tmp_path):
         path.write_text(text.replace(old, new))
         with pytest.raises(BadFile, match=words):
             read_standard(path)
+
+
+OLD = """
+[sag]
+source = "finite elements"
+down = "-Z"
+share = 0.2
+um.SPH1 = [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.1]]
+"""
+
+
+@pytest.mark.parametrize(
+    ("modulus", "moved", "told"),
+    [
+        (None, 0.0, "not taken off: no modulus is stated of '1.2379'; state material.modulus_MPa"),
+        (200000.0, 0.5, "taken off: finite elements with 200 GPa (stated), weight along -Z"),
+        (71000.0, 0.5 * 200.0 / 71.0, "taken off: finite elements with 71 GPa (stated)"),
+    ],
+)
+def test_a_sag_of_earlier_versions_was_made_for_steel(
+    programs, small, plan, tilting, tmp_path, modulus, moved, told
+):
+    """Their files have no modulus: with one the displacements go by its reciprocal."""
+    path = tmp_path / "standard.toml"
+    write_standard(path, replace(small, material=Material("1.2379", 7.7e-6, 11e-6)))
+    text = path.read_text()
+    assert "modulus" not in text
+    if modulus:
+        text = text.replace("expansion_1_K", f"modulus_MPa = {modulus}\nexpansion_1_K")
+    path.write_text(text + OLD)
+    standard = read_standard(path)
+    lying = standard.moved(tilting, readings(tilting, B=90.0), HERE, np.array(["SPH1"]))
+    np.testing.assert_allclose(lying[0] / UM, [-moved, 0.0, moved / 5.0], atol=1e-12)
+    # what is written again says the same
+    write_standard(path, standard)
+    again = read_standard(path).moved(tilting, readings(tilting, B=90.0), HERE, np.array(["SPH1"]))
+    np.testing.assert_array_equal(again, lying)
+    rng, machine = np.random.default_rng(5), VirtualMachine(plan.chain)
+    done = simulate(programs.write(tmp_path / "p"), small, machine, rng, calibrated=small)
+    run = evaluate(done.parts, standard, plan.chain, 1.0 * UM)
+    assert [r for r in run.remarks if f"sag of the standard {told}" in r]
+    assert len([r for r in run.remarks if "sag" in r]) == 1
+
+
+def test_a_measured_sag_rests_on_no_modulus(small, tilting):
+    sag = Sag("measured on a tilting table", "-Z", 0.05, {"SPH1": np.eye(3) * UM})
+    own = replace(small, sag=sag, material=Material("1.2379", 7.7e-6, 11e-6))
+    lying = own.moved(tilting, readings(tilting, B=90.0), HERE, np.array(["SPH1"]))
+    np.testing.assert_allclose(lying[0] / UM, [-1.0, 0.0, 1.0], atol=1e-12)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from artefact.body.standard import Material
 from cad_out.making.cutting import Cutting
 from cad_out.making.hints import FaceHint
 from cad_out.making.making_file import Making
@@ -33,7 +34,12 @@ def made(mode, sag, out_of_reach=()):
     }
     return dict(
         _making(
-            Making(cutting, Stiffness(mode, soft, {"SPH1": 9e3, "SPH2": 8.4e3}, cube=10.0), hints)
+            Making(
+                cutting,
+                Stiffness(mode, soft, {"SPH1": 9e3, "SPH2": 8.4e3}, cube=10.0) if mode else None,
+                hints,
+                Material("EN AW-5083", 2.66e-6, 23.8e-6, modulus=71e3 if mode else None),
+            )
         )
     )
 
@@ -41,6 +47,7 @@ def made(mode, sag, out_of_reach=()):
 def test_a_stiff_standard_that_a_cutter_reaches_is_told_by_its_figures():
     rows = made(900.4, {"FF1": 4e-5, "SPH1": 9e-5})
     assert rows["first mode on rigid screws"] == "900 Hz"
+    assert rows["Young's modulus"] == "71 GPa, Poisson's ratio 0.3 of 'EN AW-5083' (stated)"
     assert rows["sag from upright to lying on its side"] == (
         "SPH1 0.09 µm at most; taken off by evaluations ([sag] of standard.toml)"
     )
@@ -67,3 +74,11 @@ def test_what_is_beyond_a_limit_is_named():
     assert next(iter(rows.values())).endswith(
         "90 % tilted by 45° at most, not at all: FF1 wall; 80 mm out of its holder it reaches all"
     )
+
+
+def test_without_a_modulus_nothing_is_said_of_stiffness():
+    rows = made(None, {"FF1": 4e-5})
+    assert rows["first mode, stiffness and sag"].startswith(
+        "unknown: no modulus is stated of 'EN AW-5083'; state material.modulus_MPa"
+    )
+    assert not {"Young's modulus", "first mode on rigid screws"} & set(rows)

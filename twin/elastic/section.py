@@ -10,19 +10,7 @@ import math
 import re
 from dataclasses import dataclass
 
-from twin.units import KG_M3
-
-MATERIALS = {
-    "steel": (210.0, 0.30, 7850.0),
-    "cast-iron": (120.0, 0.26, 7200.0),
-    "aluminium": (70.0, 0.33, 2700.0),
-    "granite": (60.0, 0.25, 2900.0),
-    "mineral-casting": (40.0, 0.25, 2400.0),
-}
-"""Young's modulus in GPa, Poisson's ratio, density in kg/m3: usual values, sheets of makers."""
-
-GPA = 1e3
-"""In N/mm2."""
+from twin.units import GPA, KG_M3
 
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _BOX = re.compile(rf"{_NUMBER}x{_NUMBER}(?:x{_NUMBER})?\Z")
@@ -37,16 +25,34 @@ class Material:
         young: N/mm2.
         poisson: Poisson's ratio.
         density: kg/mm3.
+        share: Standard uncertainty of the modulus, as a share of it.
+        source: Of the modulus.
     """
 
     young: float
     poisson: float
     density: float
+    share: float
+    source: str
 
     @property
     def shear(self) -> float:
         """Shear modulus, N/mm2."""
         return self.young / (2.0 * (1.0 + self.poisson))
+
+
+MATERIALS = {
+    "steel": (210.0, 0.30, 7850.0, 0.02, "EN 1993-1-1, 3.2.6"),
+    "x40cr14": (200.0, 0.30, 7800.0, 0.03, "data sheet of Uddeholm Stavax ESR"),
+    "cast-iron": (120.0, 0.26, 7200.0, 0.08, "EN 1561, EN-GJL-250 and 300: 103 to 137 GPa"),
+    "aluminium": (70.0, 0.33, 2700.0, 0.02, "EN 1999-1-1, 3.2.5"),
+    "invar": (141.0, 0.29, 8050.0, 0.04, "data sheet of Carpenter Invar 36"),
+    "alumina": (370.0, 0.22, 3900.0, 0.05, "data sheet of CoorsTek AD-995"),
+    "granite": (60.0, 0.25, 2900.0, 0.3, "suppliers: 30 to 90 GPa by its kind"),
+    "mineral-casting": (40.0, 0.25, 2400.0, 0.1, "suppliers: 30 to 45 GPa"),
+}
+"""Usual Young's modulus in GPa, Poisson's ratio, density in kg/m3, standard uncertainty of the
+modulus as a share of it, and its source."""
 
 
 @dataclass(frozen=True)
@@ -72,8 +78,10 @@ def material(word: str) -> Material | None:
     """A material by its name; None where it is unknown."""
     if word not in MATERIALS:
         return None
-    young, poisson, density = MATERIALS[word]
-    return Material(young * GPA, poisson, density * KG_M3)
+    young, poisson, density, share, source = MATERIALS[word]
+    return Material(
+        young=young * GPA, poisson=poisson, density=density * KG_M3, share=share, source=source
+    )
 
 
 def section(word: str, poisson: float) -> Section | None:

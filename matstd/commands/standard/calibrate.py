@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from matstd.options import add_output
+
+if TYPE_CHECKING:
+    from artefact.body import Standard
+    from artefact.certify import Calibrated
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,6 +36,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "the CMM), as its certificate has it, µm (0.3)",
     )
     parser.add_argument(
+        "--body-u-K",
+        metavar="U",
+        type=float,
+        default=0.5,
+        help="standard uncertainty of the temperature of the standard about 20 °C while it was "
+        "measured, which its scale is judged by, K (0.5)",
+    )
+    parser.add_argument(
+        "--accept",
+        action="store_true",
+        help="write a standard that does not conform to its drawing, and state that in the file",
+    )
+    parser.add_argument(
         "--cad", metavar="FOLDER", help="also STEP, STL, 3MF and glTF of the standard as it is"
     )
     add_output(parser, "FILE")
@@ -42,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     from artefact.certify import calibrated, dmis_program, read_cmm_points
     from cad_out.details import datum_touches, engraved_on
     from matstd.console import say, say_each
-    from report.task import calibration_lines
+    from report.task import calibration_lines, verdict_lines
     from twin.errors import DesignError
     from twin.files import refuse_to_overwrite, write_whole
     from twin.units import UM
@@ -66,8 +84,11 @@ def run(args: argparse.Namespace) -> int:
         if not 0.001 <= getattr(args, name) <= 100.0:
             option = f"--{name.replace('_', '-')} {getattr(args, name):g}"
             raise DesignError(f"{option}: expected an uncertainty from 0.001 to 100 µm")
+    if not 0.0 <= args.body_u_K <= 20.0:
+        raise DesignError(f"--body-u-K {args.body_u_K:g}: expected 0 to 20 K")
     points = read_cmm_points(args.points, nominal)
     found = calibrated(nominal, points, args.u_um * UM, args.u_feature_um * UM)
+    found = _judged(args, nominal, found)
     if args.cad:
         from cad_out.verify import export_standard
 
@@ -75,5 +96,29 @@ def run(args: argparse.Namespace) -> int:
     write_standard(args.output, found.standard)
     first, *others = calibration_lines(found)
     say(f"{args.output}: {first}")
-    say_each(others)
+    say_each([*others, *verdict_lines(found.verdicts)])
     return 0
+
+
+def _judged(args: argparse.Namespace, nominal: Standard, found: Calibrated) -> Calibrated:
+    """Show what conforms to the drawing; refuse what does not unless it is accepted."""
+    from rich.table import Column, Table
+
+    from artefact.certify import Allowed, judged
+    from cad_out.details import CALIBRATED
+    from matstd.console import console
+    from report.task import refusal_sentence, verdict_rows
+    from twin.errors import NotConforming
+    from twin.units import UM
+
+    allowed = Allowed(CALIBRATED, args.u_feature_um * UM, args.body_u_K)
+    found, causes = judged(nominal, found, allowed)
+    numbers = [Column(f"{word} µm", justify="right") for word in ("deviation", "allowed", "u")]
+    words = "feature", "characteristic"
+    table = Table(*words, *numbers, Column("verdict", no_wrap=True), box=None)
+    for verdict, row in zip(found.verdicts, verdict_rows(found.verdicts), strict=True):
+        table.add_row(*row, style="bold" if verdict.is_refused else None)
+    console().print(table)
+    if any(v.is_refused for v in found.verdicts) and not args.accept:
+        raise NotConforming(f"{args.points}: {refusal_sentence(found.verdicts, causes)}")
+    return found

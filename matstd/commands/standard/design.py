@@ -68,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.console import say, say_assumed, say_each
     from matstd.stages.from_project import dialects, feeds
     from matstd.workers import connected
-    from report.task import task_lines
+    from report.task import modulus_words, task_lines
     from report.words import design_lines, proof_line
     from twin.files import results_folder
 
@@ -111,6 +111,7 @@ def run(args: argparse.Namespace) -> int:
         if probe.tool not in tools
     )
     say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
+    say_each([f"Young's modulus: {modulus_words(made.making.material)}"])
     say_each(task_lines(made.budgets, project.task.tolerance, made.visits))
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0

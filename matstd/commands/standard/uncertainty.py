@@ -64,6 +64,7 @@ def run(args: argparse.Namespace) -> int:
     remarks = [
         f"{p}: {r}" for p, one in zip(args.run_files, runs, strict=True) for r in one.remarks
     ]
+    remarks += standard.remarks
     if args.model:
         saved = read_model(args.model, runs=runs)
         remarks += [remark_sentence(one) for one in saved.left_out]

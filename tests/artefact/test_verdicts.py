@@ -1,0 +1,241 @@
+"""Points of a CMM by formulas of this file on pieces whose faults are known, and the verdicts.
+
+Faces are evaluated by scipy's B-splines from the numbers of `standard.toml`, balls by their
+equation; nothing of the package makes the points.
+"""
+
+import re
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.interpolate import BSpline
+from scipy.spatial.transform import Rotation
+
+from artefact.body.datum import DatumSphere
+from artefact.body.known import Known, Verdict
+from artefact.body.standard_file import read_standard, write_standard
+from matstd.cli import main
+from twin.units import UM
+
+PLACES = ((-50.0, 35.0, 62.0), (5.0, -45.0, 70.0), (60.0, -10.0, 55.0))
+MORE = ((-60.0, -30.0, 58.0), (62.0, 45.0, 66.0), (-5.0, 60.0, 75.0), (40.0, -55.0, 50.0))
+"""Of the balls: a frame of seven, of which no two have like distances from the others."""
+
+NOISE = 0.2 * UM
+
+
+@pytest.fixture(scope="module")
+def nominal(upright):
+    """The upright standard of the fixtures with four balls more."""
+    ball = upright.spheres[0]
+    added = [
+        DatumSphere(f"SPH{i}", np.array(c), ball.radius, ball.stem_radius, 12.0, ball.foot)
+        for i, c in enumerate(MORE, 4)
+    ]
+    return replace(upright, spheres=(*upright.spheres, *added))
+
+
+@pytest.fixture
+def drawn(nominal, tmp_path) -> Path:
+    path = tmp_path / "standard.toml"
+    write_standard(path, nominal)
+    return path
+
+
+def on_face(face: dict, count: int, rng, out: float) -> np.ndarray:
+    """Points on a face by scipy, `out` mm along its normal, (N, 3)."""
+    degree, heights = face["degree"], np.array(face["heights_mm"])
+    u, v = (rng.uniform(-a, a, count) for a in face["half_size_mm"])
+    knots = np.array(face["knots_u_mm"]), np.array(face["knots_v_mm"])
+
+    def height(u, v):
+        along_v = BSpline(knots[1], heights.T, degree[1])(v)  # (N, poles in u)
+        basis = BSpline(knots[0], np.eye(len(heights)), degree[0])(u)
+        return np.einsum("nk,nk->n", basis, along_v)
+
+    h = 1e-5
+    slope_u = (height(u + h, v) - height(u - h, v)) / (2.0 * h)
+    slope_v = (height(u, v + h) - height(u, v - h)) / (2.0 * h)
+    normal = np.column_stack([-slope_u, -slope_v, np.ones(count)])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    off = out + NOISE * rng.normal(size=(count, 1))
+    points = np.column_stack([u, v, height(u, v)]) + off * normal
+    return points @ np.array(face["rotation"]).T + face["origin_mm"]
+
+
+def on_ball(ball: dict, count: int, rng, larger: float, beside: np.ndarray) -> np.ndarray:
+    """Points on the upper half of a ball."""
+    z, phi = rng.uniform(0.0, 1.0, count), rng.uniform(0.0, 2.0 * np.pi, count)
+    n = np.column_stack([np.sqrt(1 - z**2) * np.cos(phi), np.sqrt(1 - z**2) * np.sin(phi), z])
+    radius = ball["radius_mm"] + larger + NOISE * rng.normal(size=(count, 1))
+    return np.array(ball["centre_mm"]) + beside + radius * n
+
+
+def measured(drawn: Path, **fault) -> Path:
+    """Points on a piece with a fault, in the frame of a CMM, as a file."""
+    rng = np.random.default_rng(fault.get("seed", 1))
+    file = tomllib.loads(drawn.read_text())
+    beside = fault.get("beside", {})
+    rows: list[tuple[str, np.ndarray]] = []
+    for ball in file["sphere"]:
+        larger = fault.get("radii", 0.0) + fault.get("one_radius", {}).get(ball["name"], 0.0)
+        place = np.array(beside.get(ball["name"], (0.0, 0.0, 0.0)))
+        rows.append((ball["name"], on_ball(ball, 40, rng, larger, place)))
+    for face in file["patch"]:
+        out = fault.get("tip", 0.0) + fault.get("faces", {}).get(face["name"], 0.0)
+        rows.append((face["name"], on_face(face, 120, rng, out)))
+    names = fault.get("names", {})
+    turn = Rotation.from_rotvec([0.01, -0.02, 1.2])
+    scale = (1.0 + fault.get("scale", 0.0)) * fault.get("unit", 1.0)
+    path = drawn.with_name("cmm.csv")
+    lines = ["feature,x [mm],y [mm],z [mm]"]
+    for name, points in rows:
+        there = scale * (turn.apply(points) + np.array([300.0, 200.0, -50.0]))
+        lines += [f"{names.get(name, name)},{x:.7f},{y:.7f},{z:.7f}" for x, y, z in there]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def calibrate(drawn: Path, points: Path, *options: str) -> tuple[int, Path]:
+    out = drawn.with_name("made.toml")
+    return main(["calibrate", str(drawn), "--points", str(points), "-o", str(out), *options]), out
+
+
+def by_name(path: Path) -> dict[str, Verdict]:
+    known = read_standard(path).known
+    return {f"{v.feature} {v.characteristic}": v for v in known.verdicts}
+
+
+def test_a_piece_as_drawn_conforms(nominal, drawn, capsys):
+    code, out = calibrate(drawn, measured(drawn))
+    assert code == 0
+    found = by_name(out)
+    assert {v.state for v in found.values()} == {"conforming"}
+    assert len(found) == 7 * 2 + 2 + 1
+    table = capsys.readouterr().out
+    assert len(re.findall(r"profile .* 25\.00 .* conforming", table)) == 2
+    assert len(re.findall(r"diameter .* ±2\.50 .* conforming", table)) == 7
+    assert read_standard(out).known.accepted == ()
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        (
+            {"radii": 20 * UM},
+            "7 of 17 characteristics do not conform .* all radii are 20 µm too large, .* the faces "
+            "do not follow: balls of another diameter, or the radius of the tip",
+        ),
+        (
+            {"radii": 20 * UM, "tip": 20 * UM},
+            "all radii are 20 µm too large, .* the faces stand out as far: the radius of the tip",
+        ),
+        ({"radii": -20 * UM, "tip": -20 * UM}, "all radii are 20 µm too small"),
+        ({"one_radius": {"SPH3": 6 * UM}}, "1 of 17 .* SPH3 diameter 12 µm .2.5 µm allowed"),
+        ({"faces": {"FF2": 370 * UM}}, "1 of 17 .* FF2 profile 370 µm .25 µm allowed"),
+        ({"beside": {"SPH5": (0.3, 0.2, 0.0)}}, "SPH5 position .* .100 µm allowed"),
+        (
+            {"scale": 20e-6},
+            r"are (19|20)[.0-9]* ppm too long .* scale of the CMM, or a piece at 21\.9 °C",
+        ),
+        ({"scale": -20e-6}, "ppm too short .* or a piece at 18.1 °C; let the CMM compensate"),
+    ],
+)
+def test_a_fault_is_refused_and_named_and_can_be_accepted(nominal, drawn, capsys, fault, told):
+    points = measured(drawn, **fault)
+    code, out = calibrate(drawn, points)
+    assert code == 2
+    assert not out.exists()
+    said = capsys.readouterr()
+    assert re.search(told, said.err), said.err
+    assert said.err.count("\n") == 1
+    assert "--accept takes the piece as it is" in said.err
+    assert "not conforming" in said.out
+    code, out = calibrate(drawn, points, "--accept")
+    assert code == 0
+    assert "accepted although not conforming: " in capsys.readouterr().out
+    standard = read_standard(out)
+    assert standard.known.accepted
+    refused = tomllib.loads(out.read_text())["calibration"]["verdict"]
+    assert [v["verdict"] for v in refused].count("not conforming, accepted") == len(
+        standard.known.accepted
+    )
+    assert standard.known.accepted[0] in standard.remarks[0]
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        ({"names": {"SPH2": "SPH5", "SPH5": "SPH2"}}, "points of SPH5 under the name SPH2, SPH2"),
+        ({"names": {"FF1": "FF2", "FF2": "FF1"}}, "points of FF2 under the name FF1"),
+        ({"unit": 1.0 / 25.4}, "distances of balls in inches, expected mm"),
+        ({"radii": 1.5, "tip": 1.5}, "radii that are all 1.500 mm too large"),
+    ],
+)
+def test_points_that_are_no_measurement_of_the_piece_are_named(drawn, capsys, fault, told):
+    points = measured(drawn, **fault)
+    for options in ((), ("--accept",)):
+        code, out = calibrate(drawn, points, *options)
+        assert code == 2
+        assert told in capsys.readouterr().err
+        assert not out.exists()
+
+
+def test_what_lies_within_the_guard_band_cannot_be_decided(drawn, capsys):
+    """A diameter 2.3 µm off of 2.5 allowed, known to 0.6 µm, passes undecided."""
+    code, out = calibrate(drawn, measured(drawn, one_radius={"SPH1": 1.15 * UM}))
+    assert code == 0
+    found = by_name(out)["SPH1 diameter"]
+    assert found.deviation == pytest.approx(2.3 * UM, abs=0.4 * UM)
+    assert found.state == "cannot be decided"
+    assert "cannot be decided with this uncertainty: SPH1 diameter" in capsys.readouterr().out
+    # of a better CMM it conforms
+    finer = measured(drawn, one_radius={"SPH1": 1.0 * UM}), "--u-feature-um", "0.05"
+    code, out = calibrate(drawn, *finer, "--force")
+    assert by_name(out)["SPH1 diameter"].state == "conforming"
+
+
+def test_balls_within_their_drawing_hide_a_scale(drawn, capsys):
+    """Places that scatter by 20 µm, of 100 allowed, leave a scale open that 20 ppm lie within."""
+    rng = np.random.default_rng(4)
+    beside = {f"SPH{i}": 0.02 * rng.normal(size=3) for i in range(1, 8)}
+    code, out = calibrate(drawn, measured(drawn, beside=beside, scale=20e-6))
+    assert code == 0
+    found = {name: v.state for name, v in by_name(out).items()}
+    assert [state for name, state in found.items() if "scale" in name] == ["cannot be decided"]
+    assert not [name for name, state in found.items() if state == "not conforming"]
+
+
+def test_a_warm_piece_is_within_a_stated_temperature(drawn):
+    """10.5 ppm/K: 20 ppm are what 2 K leave open."""
+    points = measured(drawn, scale=20e-6)
+    assert calibrate(drawn, points, "--body-u-K", "2")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("deviation", "u", "state"),
+    [
+        (24.0, 0.6, "conforming"),
+        (24.02, 0.6, "cannot be decided"),
+        (-25.98, 0.6, "cannot be decided"),
+        (-26.0, 0.6, "not conforming"),
+        (25.0, 0.0, "conforming"),
+        (25.001, 0.0, "not conforming"),
+    ],
+)
+def test_the_guard_band_by_hand(deviation, u, state):
+    """ISO 14253-1: 1.65 u on either side of the limit: 25 - 0.99 and 25 + 0.99."""
+    assert Verdict("FF1", "profile", deviation, 25.0, u=u).state == state
+
+
+def test_a_standard_repeats_what_was_accepted(nominal):
+    refused = Verdict("FF2", "profile", 0.37, 0.025, u=0.001)
+    good = Verdict("FF1", "profile", 0.007, 0.025, u=0.001)
+    known = Known("cmm.csv", nominal.fingerprint, {}, (good, refused))
+    assert replace(nominal, known=known).remarks == (
+        "calibration of 'small' accepted although not conforming: FF2 profile",
+    )
+    assert nominal.remarks == ()
