@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from artefact.brief.standard_tables import BlankTable, LimitsTable, StandardTable, check_body
+from artefact.brief.standard_tables import BlankTable, LimitsTable, MaterialTable, check_body
 from cad_out.making.cutting import CUTTERS
 from twin.errors import BadFile
 
@@ -12,7 +12,7 @@ from twin.errors import BadFile
 def check(**limits: float) -> None:
     """With a ball of 2 mm, on a table of 320 mm."""
     table = LimitsTable(**limits)
-    check_body(BlankTable(), table, StandardTable(), 1.0, 160.0, Path("project.toml"))
+    check_body(BlankTable(), table, MaterialTable(), 1.0, 160.0, Path("project.toml"))
 
 
 @pytest.mark.parametrize(
