@@ -55,6 +55,7 @@ class MaterialTable(Table):
     name: str = STEEL
     density_kg_m3: float = Field(default=7800.0, gt=0.0)
     expansion_1_K: float = Field(default=10.5e-6, ge=0.0, lt=1e-3)  # noqa: N815
+    expansion_u_1_K: float | None = Field(default=None, ge=0.0, lt=1e-3)  # noqa: N815
     modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
     poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
 

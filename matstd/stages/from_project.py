@@ -248,6 +248,7 @@ def blank(project: Project) -> Blank:
             stuff.name,
             stuff.density_kg_m3 * KG_M3,
             stuff.expansion_1_K,
+            u_expansion=stuff.expansion_u_1_K,
             modulus=stuff.modulus_MPa,
             poisson=stuff.poisson,
         ).with_usual_modulus(),
